@@ -36,12 +36,14 @@
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`explain`]: the colour of one pixel, with the equation and every number in it.
 //! - [`compare`]: pictures compared: layouts of views, maps of differences, numbers.
 //! - [`matching`]: the parameters of one view that come nearest to another.
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
 //! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
+//! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
 //!
 //! The program:
 //!
@@ -90,6 +92,8 @@ pub mod caption;
 
 pub mod reference;
 
+pub mod explain;
+
 pub mod compare;
 pub mod matching;
 
@@ -98,6 +102,8 @@ pub mod recovery;
 pub mod render;
 
 pub mod export;
+
+pub mod curves;
 
 pub mod panel;
 pub mod window;

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
 pub(super) struct Settings {
     /// Set a parameter of the model, such as k_d=0.7 or base_colour=255,128,0; can be repeated
     #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<Setting>,
+    pub settings: Vec<Setting>,
 }
 
 /// The machine that evaluates a model.
@@ -111,9 +111,9 @@ impl Machine {
 
 /// One `NAME=VALUE`.
 #[derive(Clone, Debug)]
-struct Setting {
-    name: String,
-    value: String,
+pub(super) struct Setting {
+    pub name: String,
+    pub value: String,
 }
 
 impl FromStr for Setting {
@@ -211,7 +211,7 @@ impl Settings {
         for Setting { name, value } in &self.settings {
             match setting(model, name, value) {
                 Ok((name, value)) => values.set(name, value),
-                Err(problem) => problems.push(problem),
+                Err(problem) => problems.push(format!("--set {name}={value}: {problem}")),
             }
         }
         if problems.is_empty() { Ok(values) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
@@ -219,7 +219,11 @@ impl Settings {
 }
 
 /// One parameter of a model, checked.
-fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static str, Value), String> {
+pub(super) fn setting(
+    model: &ModelEntry,
+    name: &str,
+    written: &str,
+) -> Result<(&'static str, Value), String> {
     let spelling = name.replace("color", "colour");
     let Some(parameter) = model.parameter(&spelling) else {
         let names: Vec<_> = model.parameters.iter().map(|p| p.name).collect();
@@ -228,14 +232,11 @@ fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static st
             || format!("it has {}", crate::text::listed(&names, "and")),
             |n| format!("did you mean {n}?"),
         );
-        return Err(format!(
-            "--set {name}={written}: {} has no parameter {name}; {hint}",
-            model.declaration.id
-        ));
+        return Err(format!("{} has no parameter {name}; {hint}", model.declaration.id));
     };
     match parameter.parse(written) {
         Ok(value) => Ok((parameter.name, value)),
-        Err(error) => Err(format!("--set {name}={written}: {name} {error}")),
+        Err(error) => Err(format!("{name} {error}")),
     }
 }
 

@@ -32,12 +32,14 @@ mod check;
 mod compare;
 mod custom;
 mod evaluate;
+mod explain;
 mod export;
 mod matching;
 mod models;
 mod new;
 mod outputs;
 mod pictures;
+mod plot;
 mod render;
 #[cfg(target_os = "linux")]
 mod runtime_folder;
@@ -153,6 +155,11 @@ enum Command {
     },
     /// Write a scene as code: a project, shaders, a page, a program, a scene for another renderer
     Export(export::Arguments),
+    /// Explain the colour of a pixel: the equation with its numbers, light by light, and the way to the display
+    ///
+    /// Prints a worked example: where the equation was evaluated, directions and cosines, the intensity of each light, each
+    /// term, their sum, exposure, tone mapping, encoding and code. One sample, at the pixel's centre, by the CPU renderer.
+    Explain(explain::Arguments),
     /// Find the parameters of a view that come nearest to view A
     Match(matching::Arguments),
     /// List the reflection models with their laws and parameters; write and check custom models
@@ -175,6 +182,11 @@ enum Command {
     /// above 0 and at most 1. Adds the columns e_r, e_g, e_b: the directional albedo, the fraction of uniform light
     /// that the surface sends to the observer. Anisotropic models are seen along the tangent.
     Albedo(evaluate::Arguments),
+    /// Plot models: BRDF, albedo, Fresnel factor, distribution, masking, image slice; as SVG, PNG or CSV
+    ///
+    /// Without -o, prints CSV: a line per point, angles in degrees, the BRDF in 1/sr. Several curves of one model differ
+    /// in their parameters, such as phong:alpha=20 phong:alpha=80.
+    Plot(plot::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
     /// Try shaders for a window
@@ -300,6 +312,9 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Command::Export(arguments)) => {
             export::run(&arguments, options, &mut places.open(options, known)?)
         }
+        Some(Command::Explain(arguments)) => {
+            explain::run(&arguments, options, &mut places.open(options, known)?)
+        }
         Some(Command::Match(arguments)) => {
             matching::run(&arguments, options, &mut places.open(options, known)?)
         }
@@ -308,6 +323,7 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options, known)?),
         Some(Command::Study(arguments)) => study::run(&arguments, options, &known),
         Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options, known)?),
+        Some(Command::Plot(arguments)) => plot::run(&arguments, options, &mut places.open(options, known)?),
         Some(Command::TryShaders) => trial::run(),
         Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
     }

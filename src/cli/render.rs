@@ -135,7 +135,7 @@ pub(super) fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
-fn term(text: &str) -> Result<TermSelection, String> {
+pub(super) fn term(text: &str) -> Result<TermSelection, String> {
     TermSelection::from_id(text).ok_or_else(|| {
         let known = TermSelection::ALL.map(TermSelection::id);
         let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())

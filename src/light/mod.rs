@@ -17,6 +17,7 @@ use crate::{
 mod ambient;
 mod builder;
 mod directional;
+mod factor;
 pub mod ies;
 mod photometric;
 mod point;
@@ -24,6 +25,7 @@ mod spot;
 
 pub use ambient::Ambient;
 pub use directional::Directional;
+pub use factor::Factor;
 pub use photometric::Photometric;
 pub use point::Point;
 pub use spot::Spot;
@@ -121,6 +123,12 @@ pub trait LightType: ParameterSet + Component + Reflectable {
     /// The light that arrives at `p` (room coordinates).
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
 
+    /// The factors of the intensity at `p`, as the [equation](Declaration::equation) has them, for explanations: their
+    /// product is the intensity of [`incident`](Self::incident). By default, the intensity of the light, and the rest.
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
+        factor::whole(self.incident(light, p), light, Self::DECLARATION.unit)
+    }
+
     /// The integral of its profile over all directions, sr: luminous flux (lm) over intensity (cd), `Φ = I Ω`. `None`
     /// for types without flux, such as light from infinitely far away.
     fn solid_angle(&self) -> Option<f64> {
@@ -132,11 +140,18 @@ pub trait LightType: ParameterSet + Component + Reflectable {
 pub trait Emitter: Send + Sync {
     /// See [`LightType::incident`].
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
+
+    /// See [`LightType::factors`].
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
 
 impl<L: LightType> Emitter for L {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         LightType::incident(self, light, p)
+    }
+
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
+        LightType::factors(self, light, p)
     }
 }
 

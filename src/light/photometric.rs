@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{
-    Declaration, Incident, LightRecord, LightType,
+    Declaration, Factor, Incident, LightRecord, LightType,
     ies::{self, Web},
 };
 use crate::{
@@ -62,6 +62,12 @@ impl Photometric {
         let c = y.atan2(x).to_degrees() - self.rotation;
         (gamma.clamp(0.0, 180.0), c.rem_euclid(360.0).clamp(0.0, 360.0))
     }
+
+    /// The candelas of the file in the direction of a point, and the angles γ and C of that direction.
+    fn candela(&self, light: &LightRecord, l: Vec3) -> (f32, [f32; 2]) {
+        let (gamma, c) = self.angles(light.direction, -l);
+        (Web::new(&self.file.numbers).map_or(0.0, |web| web.candela(gamma, c)), [gamma, c])
+    }
 }
 
 impl LightType for Photometric {
@@ -83,9 +89,21 @@ impl LightType for Photometric {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;
         let l = to_light.normalize_or_zero();
-        let (gamma, c) = self.angles(light.direction, -l);
-        let candela = Web::new(&self.file.numbers).map_or(0.0, |web| web.candela(gamma, c));
+        let (candela, _) = self.candela(light, l);
         Incident::From { l, intensity: Vec3::splat(light.intensity * candela * inverse_square(to_light)) }
+    }
+
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
+        let to_light = light.position - p;
+        let (candela, [gamma, c]) = self.candela(light, to_light.normalize_or_zero());
+        vec![
+            Factor::intensity(light, Self::DECLARATION.unit),
+            Factor::new("w", "the distribution in the photometric file, in this direction", candela)
+                .unit("cd")
+                .given("γ", gamma, "°")
+                .given("C", c, "°"),
+            Factor::inverse_square(inverse_square(to_light), to_light.length()),
+        ]
     }
 
     fn solid_angle(&self) -> Option<f64> {

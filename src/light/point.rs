@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType};
+use super::{Declaration, Factor, Incident, LightRecord, LightType};
 use crate::{
     optics::radiometry::{SPHERE, inverse_square},
     parameters,
@@ -35,6 +35,14 @@ impl LightType for Point {
             l: to_light.normalize_or_zero(),
             intensity: Vec3::splat(light.intensity * inverse_square(to_light)),
         }
+    }
+
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
+        let to_light = light.position - p;
+        vec![
+            Factor::intensity(light, Self::DECLARATION.unit),
+            Factor::inverse_square(inverse_square(to_light), to_light.length()),
+        ]
     }
 
     fn solid_angle(&self) -> Option<f64> {

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType};
+use super::{Declaration, Factor, Incident, LightRecord, LightType};
 use crate::{
     optics::radiometry::{cone, cone_solid_angle, inverse_square},
     parameter::{ABOVE_ZERO, Parameter, ParameterKind},
@@ -40,6 +40,14 @@ parameters! {
     }
 }
 
+impl Spot {
+    /// The profile of the cone towards a point, and the cosine between the axis and the ray to it.
+    fn profile(&self, light: &LightRecord, l: Vec3) -> (f32, f32) {
+        let cos_angle = light.direction.dot(-l);
+        (cone(cos_angle, self.cone_angle, self.penumbra), cos_angle)
+    }
+}
+
 impl LightType for Spot {
     const DECLARATION: Declaration = Declaration {
         id: "spot",
@@ -59,8 +67,21 @@ impl LightType for Spot {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;
         let l = to_light.normalize_or_zero();
-        let profile = cone(light.direction.dot(-l), self.cone_angle, self.penumbra);
+        let (profile, _) = self.profile(light, l);
         Incident::From { l, intensity: Vec3::splat(light.intensity * profile * inverse_square(to_light)) }
+    }
+
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
+        let to_light = light.position - p;
+        let (profile, cos_angle) = self.profile(light, to_light.normalize_or_zero());
+        vec![
+            Factor::intensity(light, Self::DECLARATION.unit),
+            Factor::new("cone(θ)", "1 inside the cone, 0 outside, smooth in its soft edge", profile)
+                .given("θ", cos_angle.clamp(-1.0, 1.0).acos().to_degrees(), "°")
+                .given("inner edge", self.cone_angle * (1.0 - self.penumbra), "°")
+                .given("outer edge", self.cone_angle, "°"),
+            Factor::inverse_square(inverse_square(to_light), to_light.length()),
+        ]
     }
 
     fn solid_angle(&self) -> Option<f64> {

@@ -6,7 +6,7 @@ use glam::{Vec3, Vec4};
 
 use crate::{
     optics::{
-        colour::{BACKGROUND, Encoding, srgb_decode, srgb_encode8},
+        colour::{BACKGROUND, Encoding, srgb_decode, srgb_encode, srgb_encode8},
         tone::exposure_factor,
     },
     scene::Display,
@@ -74,6 +74,28 @@ pub fn encode8(x: f32) -> u8 {
     ENCODER.encode(x)
 }
 
+/// The way of a pixel from light to the display.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisplaySteps {
+    /// The light of the objects: linear Rec. 709, before exposure.
+    pub light: Vec3,
+    /// The fraction of the pixel that objects cover; the rest is background.
+    pub coverage: f32,
+    /// The factor of the exposure, `2^EV`.
+    pub exposure: f32,
+    /// Light times exposure, plus the background, which has no exposure.
+    pub exposed: Vec3,
+    /// The input of the tone curve: without encoding, the numbers decoded, so that encoding gives them back; otherwise
+    /// the same.
+    pub input: Vec3,
+    /// After the tone curve.
+    pub mapped: Vec3,
+    /// Clipped to the range of the display and sRGB-encoded, 0 to 1.
+    pub encoded: Vec3,
+    /// The same in eight bits, rounded; 0 for NaN.
+    pub codes: [u8; 3],
+}
+
 /// The steps from a pixel of light to a pixel on the display, with common parts calculated once.
 pub(super) struct DisplayTransform {
     display: Display,
@@ -94,13 +116,38 @@ impl DisplayTransform {
 
     /// Light of objects, and the fraction of the pixel that they cover, to sRGB.
     pub(super) fn apply(&self, pixel: Vec4) -> [u8; 3] {
-        let mut c = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
-        if self.display.encoding == Encoding::Off {
+        let [.., c] = self.curve(pixel);
+        self.codes(c)
+    }
+
+    /// The light after exposure, as the input of the tone curve, and after the curve.
+    fn curve(&self, pixel: Vec4) -> [Vec3; 3] {
+        let exposed = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
+        let input = match self.display.encoding {
+            Encoding::Srgb => exposed,
             // Encoding follows and must return the number itself.
-            c = c.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode);
-        }
-        let c = self.display.tone_mapping.map(c);
+            Encoding::Off => exposed.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode),
+        };
+        [exposed, input, self.display.tone_mapping.map(input)]
+    }
+
+    fn codes(&self, c: Vec3) -> [u8; 3] {
         [self.encoder.encode(c.x), self.encoder.encode(c.y), self.encoder.encode(c.z)]
+    }
+
+    /// [`apply`](Self::apply), step by step.
+    pub(super) fn steps(&self, pixel: Vec4) -> DisplaySteps {
+        let [exposed, input, mapped] = self.curve(pixel);
+        DisplaySteps {
+            light: pixel.truncate(),
+            coverage: pixel.w,
+            exposure: self.exposure,
+            exposed,
+            input,
+            mapped,
+            encoded: mapped.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_encode),
+            codes: self.codes(mapped),
+        }
     }
 }
 
@@ -141,6 +188,32 @@ mod tests {
         for (x, code) in [(-1.0, 0), (f32::NAN, 0), (f32::INFINITY, 255), (2.0, 255), (-0.0, 0), (1e-40, 0)] {
             assert_eq!(encode8(x), code, "{x}");
         }
+    }
+
+    #[test]
+    fn the_steps_end_at_the_code_of_the_picture() {
+        let mut largest: f32 = 0.0;
+        for tone_mapping in ToneMapping::ALL {
+            for encoding in Encoding::ALL {
+                for exposure in [-1.5, 0.0, 2.0] {
+                    let transform = DisplayTransform::new(&Display { tone_mapping, exposure, encoding });
+                    for i in 0..200 {
+                        let i = i as f32;
+                        let pixel =
+                            Vec4::new(0.01 * i, 0.003 * i, 2.0 / (i + 1.0), [0.0, 1.0, 0.5][i as usize % 3]);
+                        let steps = transform.steps(pixel);
+                        assert_eq!(steps.codes, transform.apply(pixel), "{tone_mapping:?} {pixel}");
+                        // Rounding is the last step: the code is within half of one.
+                        for (code, encoded) in steps.codes.into_iter().zip(steps.encoded.to_array()) {
+                            let rest = (f32::from(code) - 255.0 * encoded).abs();
+                            assert!(rest < 0.501, "{tone_mapping:?} {pixel}: {code} {encoded}");
+                            largest = largest.max(rest);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(largest > 0.4, "rounded to nearest, not cut off: {largest}");
     }
 
     #[test]

@@ -3,11 +3,11 @@
 use glam::Vec3;
 
 use crate::{
-    light::{AT_ONCE, Emitters},
-    optics::{Frame, TermSelection, radiometry::Arriving},
+    light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
+    optics::{Frame, TermSelection, Terms, radiometry::Arriving},
     reflection::Surface,
     registry::Registry,
-    scene::{Scene, record},
+    scene::{Light, Scene, record},
     shading::Lighting,
 };
 
@@ -52,13 +52,17 @@ pub(super) struct LightsOn<'a> {
     surface: &'a dyn Surface,
 }
 
-impl Lighting for LightsOn<'_> {
-    fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
+impl LightsOn<'_> {
+    /// The direction to the viewer, and the direction that the model gets for it.
+    fn view(&self, position: Vec3, normal: Vec3) -> [Vec3; 2] {
         // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then mirrored in
         // the surface, or rims would be black.
         let eye = (self.lights.observer - position).normalize_or_zero();
-        let v = eye - 2.0 * normal.dot(eye).min(0.0) * normal;
-        let frame = Frame::new(normal, tangent);
+        [eye, eye - 2.0 * normal.dot(eye).min(0.0) * normal]
+    }
+
+    /// The sum over the lights, as it comes.
+    fn sum(&self, position: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
         let terms = self.lights.terms;
         let (mut sum, mut uniform) = (Vec3::ZERO, Vec3::ZERO);
         let mut arriving = [Arriving::default(); AT_ONCE];
@@ -67,13 +71,104 @@ impl Lighting for LightsOn<'_> {
                 let (count, everywhere) = group.arrive(first, position, &mut arriving);
                 uniform += everywhere;
                 if count > 0 {
-                    sum += self.surface.lit_by(&arriving[..count], v, &frame, terms);
+                    sum += self.surface.lit_by(&arriving[..count], v, frame, terms);
                 }
             }
         }
         if uniform != Vec3::ZERO && matches!(terms, TermSelection::All | TermSelection::Ambient) {
-            sum += self.surface.ambient_response(v, &frame) * uniform;
+            sum += self.surface.ambient_response(v, frame) * uniform;
         }
+        sum
+    }
+}
+
+impl Lighting for LightsOn<'_> {
+    fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
+        let [_, v] = self.view(position, normal);
+        let sum = self.sum(position, v, &Frame::new(normal, tangent));
         sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
+    }
+}
+
+/// A point at which the light loop runs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) tangent: Vec3,
+    /// The result of the loop.
+    pub(crate) colour: Vec3,
+}
+
+/// The light loop at one point, light by light.
+pub(crate) struct Loop {
+    /// The direction to the observer.
+    pub(crate) eye: Vec3,
+    /// The direction to the observer that the model gets: mirrored in the surface if the normal faces away.
+    pub(crate) v: Vec3,
+    pub(crate) frame: Frame,
+    pub(crate) lights: Vec<LitBy>,
+    /// The sum before values that are no numbers, or too bright, are replaced.
+    pub(crate) sum: Vec3,
+}
+
+/// One light at one point.
+pub(crate) struct LitBy {
+    /// Its place among the lights of the scene.
+    pub(crate) index: usize,
+    pub(crate) record: LightRecord,
+    pub(crate) incident: Incident,
+    pub(crate) factors: Vec<Factor>,
+    /// The answer of the model to light of unit intensity.
+    pub(crate) response: Terms,
+    /// Its part of the sum, with the selected terms.
+    pub(crate) contribution: Vec3,
+}
+
+/// The light loop at a point, light by light: each contribution is what the loop gives for that light alone.
+pub(super) fn light_by_light(
+    scene: &Scene,
+    registry: &Registry,
+    terms: TermSelection,
+    surface: &dyn Surface,
+    point: &Point,
+) -> Loop {
+    let all = Lights::new(scene, registry, terms);
+    let lights = all.on(surface);
+    let [eye, v] = lights.view(point.position, point.normal);
+    let frame = Frame::new(point.normal, point.tangent);
+    let encoding = scene.display.encoding;
+    let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
+    let lit_by = |(index, light): (usize, &Light)| {
+        let entry = registry.light(&light.light_type)?;
+        let record = record(light, registry, encoding);
+        let emitter = (entry.instantiate)(&light.parameters, encoding);
+        let incident = emitter.incident(&record, point.position);
+        let alone = Lights {
+            groups: vec![(entry.group)(&[(&light.parameters, record)], encoding)],
+            observer: all.observer,
+            terms,
+        };
+        let response = match incident {
+            Incident::From { l, .. } => surface.response(l, v, &frame),
+            Incident::Uniform { .. } => {
+                Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
+            }
+        };
+        Some(LitBy {
+            index,
+            record,
+            incident,
+            factors: emitter.factors(&record, point.position),
+            response,
+            contribution: alone.on(surface).sum(point.position, v, &frame),
+        })
+    };
+    Loop {
+        eye,
+        v,
+        frame,
+        lights: shining.filter_map(lit_by).collect(),
+        sum: lights.sum(point.position, v, &frame),
     }
 }

@@ -19,30 +19,31 @@
 //! normal, tangent and centre of its [`Corner`] are then the vertex's. A shading model of [`Stage::Polygon`] runs once
 //! per polygon, at its centre.
 
-use std::{sync::Arc, time::Instant};
+use std::time::Instant;
 
-use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
+use glam::Vec4;
 use rayon::prelude::*;
 
 use crate::{
     optics::TermSelection,
-    reflection::Surface,
     registry::Registry,
-    scene::{Display, Object, Scene, observer::clip_from_room},
-    shading::{Corner, Lighting, Shading, Stage, Varying},
+    scene::{Display, Scene, observer::clip_from_room},
 };
 
 mod display;
 mod lighting;
 mod meshes;
+mod object;
+pub(crate) mod probe;
 mod raster;
 
 pub use crate::optics::colour::BACKGROUND;
 use display::DisplayTransform;
-pub use display::encode8;
+pub use display::{DisplaySteps, encode8};
 use lighting::Lights;
-use meshes::{Meshes, Prepared};
-use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
+use meshes::Meshes;
+use object::{Draw, hidden};
+use raster::{Screen, TILE, Tile, Triangle};
 
 /// The settings of a picture, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +82,12 @@ impl Picture {
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec4 {
         self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// The way of a pixel from light to the codes that [`to_rgb8`](Self::to_rgb8) gives it, step by step.
+    #[must_use]
+    pub fn display_steps(pixel: Vec4, display: &Display) -> DisplaySteps {
+        DisplayTransform::new(display).steps(pixel)
     }
 
     /// The picture for a display: exposure, tone mapping, sRGB encoding, eight bits; red, green, blue, row by row from
@@ -128,22 +135,8 @@ pub fn render_rgb8_until(
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
-/// An object with everything needed to draw it.
-struct Draw<'a> {
-    object: &'a Object,
-    shape: Arc<Prepared>,
-    stage: Stage,
-    shading: Box<dyn Shading>,
-    surface: Arc<dyn Surface>,
-    /// True if the model needs tangents.
-    anisotropic: bool,
-}
-
 /// Polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
-/// The fewest vertices or polygons that one task shades.
-const SHADED_PER_TASK: usize = 256;
-
 /// Draws a scene: `background` where there is no object, and elsewhere the result of `finish` on the light. Anything
 /// not done by `end` is skipped.
 fn draw<T: Copy + Send + Sync>(
@@ -189,39 +182,25 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         while let [object, later @ ..] = rest
             && !late()
         {
-            if let Some(shape) = meshes.first(rest) {
-                let radius = shape.radius * object.size;
-                let hidden = frustum.iter().any(|plane| plane.dot(object.position.extend(1.0)) < -radius);
-                if !hidden {
-                    polygons += shape.mesh.polygons.len();
-                    if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
-                        break;
-                    }
-                    batch.push((*object, shape));
+            if let Some(shape) = meshes.first(rest)
+                && !hidden(object, &shape, &frustum)
+            {
+                polygons += shape.mesh.polygons.len();
+                if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
+                    break;
                 }
+                batch.push((*object, shape));
             }
             rest = later;
         }
 
         let draws: Vec<Draw> = batch
             .into_par_iter()
-            .filter_map(|(object, shape)| {
-                let model = registry.model(scene.model_of(object)).filter(|_| !late())?;
-                let shading = registry.shading_model(scene.shading_model_of(object))?;
-                let encoding = scene.display.encoding;
-                Some(Draw {
-                    object,
-                    shape,
-                    stage: shading.declaration.stage,
-                    shading: (shading.instantiate)(&object.material, encoding),
-                    surface: model.instantiate(&object.material, encoding),
-                    anisotropic: model.declaration.anisotropic,
-                })
-            })
+            .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
             .collect();
         let triangles: Vec<Vec<Triangle>> = draws
             .par_iter()
-            .map(|draw| if late() { Vec::new() } else { triangles(draw, &lights, &clip_from_room, &screen) })
+            .map(|draw| if late() { Vec::new() } else { draw.triangles(&lights, &clip_from_room, &screen) })
             .collect();
         let bins = bin(&triangles, &screen);
 
@@ -263,82 +242,6 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
 /// The first pixel of a tile.
 fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
     [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
-}
-
-/// The rotation of an object: about x first, then y, then z of the room, degrees.
-fn rotation(degrees: Vec3) -> Mat3 {
-    let r = degrees.map(f32::to_radians);
-    Mat3::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
-}
-
-/// The triangles of an object that may be visible, shaded as far as its shading model does at corners.
-fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
-    let Draw { object, shape, stage, shading, surface, anisotropic } = draw;
-    let mesh = &shape.mesh;
-    let rotation = rotation(object.rotation);
-    let room = |p: Vec3| rotation * (p * object.size) + object.position;
-    let lighting = lights.on(&**surface);
-
-    let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| room(p)).collect();
-    let placed: Vec<Placed> =
-        positions.iter().map(|p| Placed::new(*clip_from_room * p.extend(1.0), screen)).collect();
-
-    let visible: Vec<(u32, [u32; 3])> = mesh
-        .triangles()
-        .filter(|(_, t)| Placed::may_be_seen(t.map(|c| &placed[c as usize]), screen))
-        .map(|(polygon, t)| (polygon as u32, t))
-        .collect();
-
-    // The values of corners are calculated once per polygon or once per vertex, and only where needed.
-    let per_polygon = *stage == Stage::Polygon;
-    let mut needed: Vec<u32> = if per_polygon {
-        visible.iter().map(|(polygon, _)| *polygon).collect()
-    } else {
-        visible.iter().flat_map(|(_, t)| *t).collect()
-    };
-    needed.sort_unstable();
-    needed.dedup();
-    let tangents = anisotropic.then(|| shape.tangents());
-    let shaded: Vec<Varying> = needed
-        .par_iter()
-        .with_min_len(SHADED_PER_TASK)
-        .map(|&i| {
-            let i = i as usize;
-            let (position, normals) = if per_polygon {
-                (room(shape.polygon_centres[i]), &shape.polygon_normals)
-            } else {
-                (positions[i], &shape.vertex_normals)
-            };
-            let normal = rotation * normals[i];
-            let tangent = tangents.map_or(Vec3::ZERO, |[polygon, vertex]| {
-                rotation * if per_polygon { polygon } else { vertex }[i]
-            });
-            let corner = Corner {
-                position,
-                normal,
-                tangent,
-                face_normal: normal,
-                face_tangent: tangent,
-                face_centre: position,
-            };
-            shading.vertex(&lighting as &dyn Lighting, &corner)
-        })
-        .collect();
-    let mut place = vec![0u32; if per_polygon { mesh.polygons.len() } else { mesh.positions.len() }];
-    for (at, &i) in needed.iter().enumerate() {
-        place[i as usize] = at as u32;
-    }
-
-    let mut out = Vec::with_capacity(visible.len());
-    for (polygon, corners) in visible {
-        let varyings = corners.map(|c| {
-            let shaded = shaded[place[if per_polygon { polygon } else { c } as usize] as usize];
-            Varying { position: positions[c as usize], ..shaded }
-        });
-        let placed = corners.map(|c| &placed[c as usize]);
-        set_up(placed, varyings, *anisotropic, screen, &mut |triangle| out.push(triangle));
-    }
-    out
 }
 
 /// For each tile, the triangles that may touch it, in the order of drawing: object, triangle.

@@ -1,7 +1,8 @@
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    preset,
 };
 use crate::{
     optics::{Frame, Terms, fresnel::schlick, geometry::half_slope},
@@ -134,6 +135,13 @@ impl ReflectionModel for AshikhminShirley {
 
     fn readouts(&self) -> Vec<Readout> {
         vec![Readout::of_f0(self.k_s * self.specular_colour)]
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        match factor {
+            Factor::Fresnel { cos_d } => Some(schlick(self.k_s * self.specular_colour, cos_d)),
+            _ => None,
+        }
     }
 
     /// F_0 as the colour of the highlight. A metal has no diffuse reflection.

@@ -3,7 +3,8 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    preset,
 };
 use crate::{
     optics::{
@@ -134,6 +135,16 @@ impl ReflectionModel for CookTorrance {
 
     fn readouts(&self) -> Vec<Readout> {
         vec![Readout::of_f0(normal_reflectance_rgb(self.ior, self.extinction)), Readout::of_alpha(self.slope)]
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        Some(match factor {
+            Factor::Fresnel { cos_d } => conductor_rgb(self.ior, self.extinction, cos_d),
+            Factor::Distribution { h } => Vec3::splat(beckmann(h, Vec2::splat(self.slope))),
+            Factor::Masking { l, v } => {
+                Factor::of_visibility(v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()), l, v)
+            }
+        })
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -3,7 +3,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    preset,
 };
 use crate::{
     optics::{
@@ -11,7 +12,7 @@ use crate::{
         colour::luminance,
         diffuse::burley,
         distribution::{MINIMUM_ALPHA, ggx, gtr},
-        fresnel::schlick_weight,
+        fresnel::{schlick, schlick_weight},
         geometry::half_vector,
         masking::{separable, smith_ggx},
     },
@@ -256,6 +257,18 @@ impl ReflectionModel for Disney {
 
     fn readouts(&self) -> Vec<Readout> {
         vec![Readout::of_f0(self.f0()), Readout::of_alpha(self.roughness * self.roughness)]
+    }
+
+    /// Those of the main lobe, without the clear coat.
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        let alpha = self.alpha();
+        Some(match factor {
+            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
+            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
+            Factor::Masking { l, v } => {
+                Factor::of_visibility(separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)), l, v)
+            }
+        })
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

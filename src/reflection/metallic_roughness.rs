@@ -3,7 +3,8 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    preset,
 };
 use crate::{
     optics::{
@@ -126,6 +127,18 @@ impl ReflectionModel for MetallicRoughness {
 
     fn readouts(&self) -> Vec<Readout> {
         vec![Readout::of_f0(self.f0()), Readout::of_alpha(self.alpha())]
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        let alpha = Vec2::splat(self.alpha());
+        Some(match factor {
+            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
+            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
+            Factor::Masking { l, v } => {
+                let visibility = height_correlated(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha));
+                Factor::of_visibility(visibility, l, v)
+            }
+        })
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -3,7 +3,8 @@ use std::f32::consts::{PI, SQRT_2};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    preset,
 };
 use crate::{
     optics::{
@@ -338,6 +339,14 @@ impl ReflectionModel for Microfacet {
 
     fn readouts(&self) -> Vec<Readout> {
         vec![Readout::of_f0(self.f0())]
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        Some(match factor {
+            Factor::Fresnel { cos_d } => self.f(cos_d),
+            Factor::Distribution { h } => Vec3::splat(self.d(h)),
+            Factor::Masking { l, v } => Factor::of_visibility(self.visibility(l, v, half_vector(l, v)), l, v),
+        })
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

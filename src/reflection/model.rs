@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{declaration::Declaration, preset::Measured, readout::Readout};
+use super::{declaration::Declaration, factor::Factor, preset::Measured, readout::Readout};
 use crate::{
     optics::{Frame, Terms, albedo::LobeAlbedo},
     parameter::{ParameterSet, Value},
@@ -37,6 +37,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// roughness on another scale.
     fn readouts(&self) -> Vec<Readout> {
         Vec::new()
+    }
+
+    /// A factor of the lobe alone, as [`response`](Self::response) uses it, for plots. `None` for a factor that the
+    /// model lacks, whatever the angles.
+    fn factor(&self, _factor: Factor) -> Option<Vec3> {
+        None
     }
 
     /// The parameters that turn the surface into a measured material; `None` if the model cannot represent it.

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 
-use super::{declaration::Ambient, model::ReflectionModel, readout::Readout};
+use super::{declaration::Ambient, factor::Factor, model::ReflectionModel, readout::Readout};
 use crate::optics::{
     Frame, TermSelection, Terms,
     albedo::{self, AlbedoCurve, LobeAlbedo},
@@ -23,6 +23,10 @@ pub trait Surface: Send + Sync {
     fn lobe(&self) -> Option<LobeAlbedo>;
     /// See [`ReflectionModel::readouts`].
     fn readouts(&self) -> Vec<Readout>;
+    /// See [`ReflectionModel::factor`].
+    fn factor(&self, _factor: Factor) -> Option<Vec3> {
+        None
+    }
 
     /// The light that leaves towards `v` under some lights: the sum of the responses. Each model has its own copy of this
     /// loop, from which the compiler moves what depends on the object or on the view alone.
@@ -72,6 +76,10 @@ impl<M: ReflectionModel> Surface for M {
     fn readouts(&self) -> Vec<Readout> {
         ReflectionModel::readouts(self)
     }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        ReflectionModel::factor(self, factor)
+    }
 }
 
 /// A model that calculates its curve once, at the first call, and then uses it: for pictures.
@@ -102,6 +110,10 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn readouts(&self) -> Vec<Readout> {
         ReflectionModel::readouts(&self.model)
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        ReflectionModel::factor(&self.model, factor)
     }
 }
 

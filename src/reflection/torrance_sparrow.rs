@@ -3,7 +3,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
     cook_torrance::{SPECULAR_WEIGHT, conductor_preset},
 };
 use crate::{
@@ -132,6 +132,18 @@ impl ReflectionModel for TorranceSparrow {
         // Near the normal the tangent is the angle, so the width of slopes is β in radians.
         let alpha = self.facet_spread.to_radians();
         vec![Readout::of_f0(normal_reflectance_rgb(self.ior, self.extinction)), Readout::of_alpha(alpha)]
+    }
+
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        Some(match factor {
+            Factor::Fresnel { cos_d } => conductor_rgb(self.ior, self.extinction, cos_d),
+            Factor::Distribution { h } => {
+                Vec3::splat(gaussian(h.truncate().length(), h.z, self.facet_spread))
+            }
+            Factor::Masking { l, v } => {
+                Factor::of_visibility(v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()), l, v)
+            }
+        })
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -4,11 +4,10 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, pictures,
-    plot::{Axis, Line, Mark, Plot, Series},
-    svg, words,
+    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, pictures, svg, words,
 };
 use crate::{
+    curves::draw::{Axis, Line, Mark, Plot, Series},
     optics::{
         TermSelection,
         colour::luminance,
@@ -146,9 +145,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         series,
         size: (720, 380),
         legend: true,
+        ..Plot::default()
     };
     let reflectance = lab.figure(
-        &svg(&reflectance)?,
+        &svg(&reflectance),
         &html! {
             "Reflectance of smooth boundaries for unpolarised light at 532 nm, from measured optical constants. Solid: the exact "
             "equations. Dashed: Schlick’s approximation from the same F₀. Dotted: a constant specular coefficient for glass."
@@ -221,9 +221,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         ],
         size: (720, 360),
         legend: true,
+        ..Plot::default()
     };
     let relative = lab.figure(
-        &svg(&relative)?,
+        &svg(&relative),
         &html! {
             "Fraction of uniform light that the specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
             "along the normal. Glass, n = 1.5. Each curve is relative to its own value at 0° and therefore starts at 1, whatever " (words("k_s")) " is. Logarithmic axis."

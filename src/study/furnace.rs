@@ -4,11 +4,11 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, Setting, StudyError, Table, albedo_at, alpha, choice, fixed, image, percent, pictures,
-    plot::{Axis, Line, Mark, Plot, Series},
-    svg, words,
+    Chapter, Lab, Setting, StudyError, Table, albedo_at, alpha, choice, fixed, image, percent, pictures, svg,
+    words,
 };
 use crate::{
+    curves::draw::{Axis, Line, Mark, Plot, Series},
     optics::{Frame, TermSelection, colour::luminance},
     parameter::Value,
     reference::{Picture, encode8},
@@ -218,9 +218,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         series,
         size: (720, 380),
         legend: true,
+        ..Plot::default()
     };
     let plot = lab.figure(
-        &svg(&plot)?,
+        &svg(&plot),
         &html! { "Directional albedo of white surfaces. Above 1 a surface sends out more light than it receives; below 1 it loses light although it should absorb none. Settings as in the table." },
     );
 

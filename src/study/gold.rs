@@ -5,10 +5,11 @@ use maud::html;
 
 use super::{
     Chapter, Lab, StudyError, Table, fixed, image,
-    lobe::{Contestant, PAINTS, paint_samples},
+    lobe::{Contestant, paint_samples},
     percent, pictures, words,
 };
 use crate::{
+    curves::data::PAINTS,
     optics::{TermSelection, colour::luminance},
     parameter::Value,
     reference::Picture,

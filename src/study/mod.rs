@@ -2,7 +2,7 @@
 //! reproduce and Blinn–Phong does not.
 //!
 //! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe` (the shape of
-//! the highlight); their measured data are in [`sources`]. It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
+//! the highlight); their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
 //! Every sentence of a conclusion that depends on a number is chosen by that number.
 
 use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
@@ -11,6 +11,7 @@ use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
+    curves::draw::Plot,
     files,
     optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
@@ -29,9 +30,7 @@ mod fresnel;
 mod furnace;
 mod gold;
 mod lobe;
-pub mod plot;
 mod report;
-pub mod sources;
 
 /// The number of steps reported by [`run`].
 pub const STEPS: u64 = 5;
@@ -292,8 +291,8 @@ fn pictures(all: &[(Markup, &str)]) -> Markup {
 }
 
 /// A plot for the page.
-fn svg(plot: &plot::Plot) -> Result<Markup, StudyError> {
-    plot.svg().map(PreEscaped).map_err(StudyError::Figure)
+fn svg(plot: &Plot) -> Markup {
+    PreEscaped(plot.page_svg())
 }
 
 /// The directional albedo of a surface by term, for a viewer at an angle from the normal: diffuse and

@@ -129,7 +129,8 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
     }
 }
 
-/// Light is finite and not negative, comes from a direction of unit length, and is proportional to the intensity.
+/// Light is finite and not negative, comes from a direction of unit length, is proportional to the intensity, and is the
+/// product of its factors.
 ///
 /// # Errors
 /// The first violation.
@@ -149,6 +150,13 @@ pub fn laws(light: &LightEntry) -> Outcome {
         let directed = uniform == 0 && intensity != Vec3::ZERO && p != record.position;
         if directed && (l.length() - 1.0).abs() > 1e-4 {
             return case(format!("the direction to the light is {l}, but must be a unit vector"));
+        }
+        let factors = emitter.factors(&record, p);
+        let product = factors.iter().fold(Vec3::ONE, |product, factor| product * factor.value);
+        if !((product - intensity).abs().cmple(1e-4 * intensity + Vec3::splat(1e-6)).all()) {
+            return case(format!(
+                "its factors multiply to {product}, but its intensity is {intensity}: {factors:?}"
+            ));
         }
         let twice = LightRecord { intensity: 2.0 * record.intensity, ..record };
         let (_, doubled, _) = flat(emitter.incident(&twice, p));

@@ -71,8 +71,8 @@ pub fn assert_parity_on_gpu<M: ReflectionModel>() {
     assert(M::DECLARATION.id, both());
 }
 
-/// Asserts that a light type is the same in Rust and in WGSL, that its light is finite, not negative and proportional
-/// to the intensity, and that its luminous flux is what it sends out in all directions.
+/// Asserts that a light type is the same in Rust and in WGSL, that its light is finite, not negative, proportional
+/// to the intensity and the product of its factors, and that its luminous flux is what it sends out in all directions.
 ///
 /// # Panics
 /// If it is not.

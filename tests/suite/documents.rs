@@ -5,6 +5,7 @@ use std::{fs, io};
 
 use glam::Vec3;
 use lights_camera_models::{
+    explain,
     matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{Parameter, Value, Values},
@@ -114,6 +115,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             "docs/comparing.md",
             vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
         ),
+        ("docs/command-line.md", vec![("explain", explained())]),
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
             "docs/extending.md",
@@ -138,6 +140,14 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The worked example of a pixel.
+fn explained() -> String {
+    let (path, registry) = (root().join("scenes/compare_phong_blinn_phong.json"), Registry::builtin());
+    let scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let explained = explain::pixel(&scene, &registry, &Settings::default(), [780, 220]);
+    format!("```text\n{}```\n", explained.expect("in the picture").to_text())
 }
 
 /// What a match compares.

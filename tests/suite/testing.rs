@@ -140,6 +140,31 @@ downlight!(Downlight, |i| i, std::f64::consts::PI);
 downlight!(Dimmer, |i| 0.9995 * i, std::f64::consts::PI);
 downlight!(Wider, |i| i, 1.1 * std::f64::consts::PI);
 
+parameters! {
+    struct Forgetful {}
+}
+impl LightType for Forgetful {
+    const DECLARATION: light::Declaration = DOWNLIGHT;
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
+        LightType::incident(&Downlight::default(), light, p)
+    }
+    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<light::Factor> {
+        vec![
+            light::Factor::intensity(light, "cd"),
+            light::Factor::inverse_square(1.0, light.position.distance(p)),
+        ]
+    }
+    fn solid_angle(&self) -> Option<f64> {
+        LightType::solid_angle(&Downlight::default())
+    }
+}
+
+#[test]
+#[should_panic(expected = "its factors multiply to")]
+fn a_light_whose_factors_are_not_its_light_fails() {
+    testing::assert_light::<Forgetful>();
+}
+
 #[test]
 #[should_panic(expected = "downlight: ")]
 fn a_light_that_is_darker_by_a_twentieth_of_a_percent_in_one_language_fails() {

@@ -23,6 +23,8 @@ pub(super) struct Screen {
     pub(super) height: usize,
     /// Distance of the sample positions' grid lines, and the first line, in 1/256 pixel.
     grid: (i64, i64),
+    /// The centre of the only pixel that is drawn, if it is only one, in 1/256 pixel.
+    only: Option<[i64; 2]>,
     /// The planes with all visible points on their positive side: near, and far beyond the four sides of the picture.
     planes: [Vec4; 5],
 }
@@ -38,7 +40,13 @@ impl Screen {
             Vec4::new(0.0, 1.0, 0.0, y),
             Vec4::new(0.0, -1.0, 0.0, y),
         ];
-        Self { width, height, grid: if samples == 4 { (64, 32) } else { (256, 128) }, planes }
+        Self { width, height, grid: if samples == 4 { (64, 32) } else { (256, 128) }, only: None, planes }
+    }
+
+    /// The same screen for one pixel alone, with one sample.
+    pub(super) fn of_pixel(width: usize, height: usize, pixel: [usize; 2]) -> Self {
+        let centre = pixel.map(|c| c as i64 * SUBPIXEL + SUBPIXEL / 2);
+        Self { only: Some(centre), ..Self::new(width, height, 1) }
     }
 
     pub(super) fn tiles_across(&self) -> usize {
@@ -58,6 +66,9 @@ impl Screen {
 
     /// True if any column and any row of sample positions lies within a box.
     fn holds_samples(&self, low: [i64; 2], high: [i64; 2]) -> bool {
+        if let Some(at) = self.only {
+            return (0..2).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
+        }
         let (step, first) = self.grid;
         (0..2).all(|axis| {
             let line = (low[axis] - first + step - 1).div_euclid(step) * step + first;

@@ -23,16 +23,16 @@ const fn positions<const S: usize>() -> [[i64; 2]; S] {
     out
 }
 
-/// The samples of one tile of the picture.
-pub(in crate::reference) struct Tile<const S: usize> {
+/// The samples of one tile of the picture, `E` pixels wide and high.
+pub(in crate::reference) struct Tile<const S: usize, const E: usize = TILE> {
     /// Nearest `1 / w` so far; 0 for background.
     nearness: Vec<[f32; S]>,
     colour: Vec<[Vec3; S]>,
 }
 
-impl<const S: usize> Tile<S> {
+impl<const S: usize, const E: usize> Tile<S, E> {
     pub(in crate::reference) fn new() -> Self {
-        Self { nearness: vec![[0.0; S]; TILE * TILE], colour: vec![[Vec3::ZERO; S]; TILE * TILE] }
+        Self { nearness: vec![[0.0; S]; E * E], colour: vec![[Vec3::ZERO; S]; E * E] }
     }
 
     /// Draws the part of a triangle that lies in the tile whose first pixel is `origin`. The colour is
@@ -47,8 +47,8 @@ impl<const S: usize> Tile<S> {
     ) {
         let samples = const { positions::<S>() };
         let Some([left, right, top, bottom]) = triangle.bounds(screen) else { return };
-        let (left, right) = (left.max(origin[0]), right.min(origin[0] + TILE - 1));
-        let (top, bottom) = (top.max(origin[1]), bottom.min(origin[1] + TILE - 1));
+        let (left, right) = (left.max(origin[0]), right.min(origin[0] + E - 1));
+        let (top, bottom) = (top.max(origin[1]), bottom.min(origin[1] + E - 1));
         if left > right || top > bottom {
             return;
         }
@@ -103,7 +103,7 @@ impl<const S: usize> Tile<S> {
                 if !any {
                     continue;
                 }
-                let pixel = (y - origin[1]) * TILE + left + x as usize - origin[0];
+                let pixel = (y - origin[1]) * E + left + x as usize - origin[0];
                 let nearness = &mut self.nearness[pixel];
                 let mut visible = false;
                 for s in 0..S {

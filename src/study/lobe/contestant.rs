@@ -1,6 +1,7 @@
 //! The models in the comparison of lobes, and their fits.
 
 use crate::{
+    curves::draw::{Line, Mark},
     optics::{Frame, colour::Encoding, equivalence},
     parameter::{Value, Values},
     registry::Registry,
@@ -8,7 +9,6 @@ use crate::{
         Lab, Setting, StudyError, alpha, choice,
         fit::{self, Fit, Sample},
         number,
-        plot::{Line, Mark},
     },
 };
 

@@ -3,21 +3,19 @@
 use maud::{Markup, html};
 use rayon::prelude::*;
 
-use super::{
-    contestant::{Contestant, Found},
-    paint::LARGEST_ANGLE,
-};
+use super::contestant::{Contestant, Found};
 use crate::{
+    curves::{
+        data::{LARGEST_ANGLE, Sgd},
+        draw::{Axis, Line, Mark, Plot, Series},
+    },
     matching,
     optics::geometry::direction,
     registry::Registry,
     study::{
         Lab, StudyError, Table,
         fit::{self, Sample},
-        fixed, grid,
-        plot::{Axis, Line, Mark, Plot, Series},
-        sources::Sgd,
-        svg, words,
+        fixed, grid, svg, words,
     },
 };
 
@@ -218,9 +216,10 @@ impl Merl {
                 .collect(),
             size: (720, 400),
             legend: true,
+            ..Plot::default()
         };
         let caption = html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if self.flat > 0 { " The " (self.flat) " materials without a specular part have error 0 and are not shown." } };
-        Ok(lab.figure(&svg(&chart)?, &caption))
+        Ok(lab.figure(&svg(&chart), &caption))
     }
 
     /// The lobes of some materials; `None` if the study has skipped all of them.
@@ -294,8 +293,9 @@ fn merl_plot(
         series,
         size: (430, 350),
         legend: false,
+        ..Plot::default()
     };
-    svg(&plot)
+    Ok(svg(&plot))
 }
 
 /// The legend of the panels.

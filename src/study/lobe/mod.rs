@@ -3,10 +3,13 @@
 use maud::{Markup, html};
 
 use super::{Chapter, Lab, StudyError, image, pictures};
-use crate::optics::{Frame, TermSelection, colour::Encoding};
+use crate::{
+    curves::data::LARGEST_ANGLE,
+    optics::{Frame, TermSelection, colour::Encoding},
+};
 use conclusion::Conclusion;
 use merl::Merl;
-use paint::{LARGEST_ANGLE, Paints};
+use paint::Paints;
 
 mod conclusion;
 mod contestant;
@@ -14,7 +17,7 @@ mod merl;
 mod paint;
 
 pub(super) use contestant::Contestant;
-pub(super) use paint::{PAINTS, paint_samples};
+pub(super) use paint::paint_samples;
 
 const SCENE: &str = include_str!("../../../scenes/lobe_shape.json");
 

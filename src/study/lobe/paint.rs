@@ -4,23 +4,33 @@ use maud::{Markup, html};
 
 use super::contestant::Contestant;
 use crate::{
+    curves::{
+        data::{self, LARGEST_ANGLE, Measurement, PAINTS},
+        draw::{Axis, Line, Mark, Plot, Series},
+    },
     optics::geometry::direction,
     study::{
         Lab, StudyError, Table,
         fit::{self, Fit, Sample},
-        fixed,
-        plot::{Axis, Line, Mark, Plot, Series},
-        sources, svg,
+        fixed, svg,
     },
 };
 
-/// Measurements beyond are unreliable and violate reciprocity.
-pub(super) const LARGEST_ANGLE: f32 = 71.0;
-/// The paints: id, name.
-pub(in crate::study) const PAINTS: [(&str, &str); 3] =
-    [("krylon_blue", "Krylon blue"), ("garnet_red", "Garnet red"), ("acryl_blue", "Acryl blue")];
 /// Angles of the light in the plots of paints, degrees.
 const INCIDENCES: [f32; 2] = [40.0, 60.0];
+
+/// Measured values in one band as samples for fitting; non-positive values are skipped.
+fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -> bool) -> Vec<Sample> {
+    paint
+        .iter()
+        .filter(|m| keep(m) && m.f[band] > 0.0)
+        .map(|m| Sample {
+            l: direction(m.theta_i.into(), m.phi_i.into()),
+            v: direction(m.theta_o.into(), (m.phi_i + m.delta_phi).into()),
+            value: m.f[band],
+        })
+        .collect()
+}
 
 /// The samples of a paint for the fits: in its brightest band, away from grazing angles, and with the light at an angle
 /// accepted by `keep`.
@@ -28,11 +38,9 @@ pub(in crate::study) fn paint_samples(
     id: &str,
     keep: impl Fn(f32) -> bool,
 ) -> Result<Vec<Sample>, StudyError> {
-    let all = sources::paint(id);
-    let good = |m: &sources::Measurement| {
-        m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i)
-    };
-    let samples = sources::samples(&all, sources::brightest(&all), good);
+    let all = data::paint(id);
+    let good = |m: &Measurement| m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i);
+    let samples = samples(&all, data::brightest(&all), good);
     if samples.is_empty() { Err(StudyError::Data(format!("there is no paint {id}"))) } else { Ok(samples) }
 }
 
@@ -146,24 +154,13 @@ fn plots(lab: &Lab, paint: usize) -> Result<Markup, StudyError> {
 
 /// The plot of a paint in the plane of incidence, with the fits.
 fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, StudyError> {
-    let all = sources::paint(id);
-    let band = sources::brightest(&all);
+    let all = data::paint(id);
+    let band = data::brightest(&all);
     let samples = paint_samples(id, |_| true)?;
-    // Positive angles on the side of the mirror direction.
-    let signed = |m: &sources::Measurement| {
-        let delta = m.delta_phi.rem_euclid(360.0);
-        if (delta - 180.0).abs() < 1.0 {
-            Some(m.theta_o)
-        } else if !(1.0..=359.0).contains(&delta) {
-            Some(-m.theta_o)
-        } else {
-            None
-        }
-    };
     let mut measured: Vec<(f64, f64)> = all
         .iter()
         .filter(|m| (m.theta_i - theta_i).abs() < 0.5 && m.theta_o <= LARGEST_ANGLE && m.f[band] > 0.0)
-        .filter_map(|m| Some((f64::from(signed(m)?), m.f[band])))
+        .filter_map(|m| Some((f64::from(m.in_plane()?), m.f[band])))
         .collect();
     measured.sort_by(|a, b| a.0.total_cmp(&b.0));
     let dense: Vec<Sample> = (-71..=71)
@@ -199,14 +196,22 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
         series,
         size: (720, 360),
         legend: true,
+        ..Plot::default()
     };
-    svg(&plot)
+    Ok(svg(&plot))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{registry::Registry, study::Settings};
+
+    #[test]
+    fn non_positive_values_have_no_logarithm() {
+        let all = data::paint("krylon_blue");
+        let kept = samples(&all, 0, |_| true);
+        assert!(!kept.is_empty() && kept.iter().all(|s| s.value > 0.0));
+    }
 
     /// Errors found by another program with other means (a general least-squares solver).
     #[test]

@@ -1,13 +1,10 @@
-//! The data of the study: measured paints, and fits of measured materials.
+//! Measured data: paints, and fits of measured materials. `assets/data/README.md` names their sources.
 
 use std::f64::consts::PI;
 
 use glam::Vec3;
 
-use super::fit::Sample;
-use crate::optics::geometry::direction;
-
-const PAINTS: &str = include_str!("../../assets/data/cornell_paints.csv");
+const PAINT_TABLE: &str = include_str!("../../assets/data/cornell_paints.csv");
 const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
 
 /// A measured value: angles in degrees and the BRDF in sr⁻¹ at 630, 550 and 465 nm.
@@ -24,6 +21,30 @@ pub struct Measurement {
     /// `f_r`.
     pub f: [f64; 3],
 }
+
+impl Measurement {
+    /// The angle of the viewer in the plane of incidence, degrees, positive on the side of the mirror direction; none
+    /// outside the plane.
+    #[must_use]
+    pub fn in_plane(&self) -> Option<f32> {
+        let delta = self.delta_phi.rem_euclid(360.0);
+        if (delta - 180.0).abs() < 1.0 {
+            Some(self.theta_o)
+        } else if !(1.0..=359.0).contains(&delta) {
+            Some(-self.theta_o)
+        } else {
+            None
+        }
+    }
+}
+
+/// The paints: id, name.
+pub const PAINTS: [(&str, &str); 3] =
+    [("krylon_blue", "Krylon blue"), ("garnet_red", "Garnet red"), ("acryl_blue", "Acryl blue")];
+
+/// Angles of the light beyond which, and angles of the viewer beyond which, the measurements are unreliable and violate
+/// reciprocity, degrees.
+pub const LARGEST_ANGLE: f32 = 71.0;
 
 /// The measured values of a paint; none for an unknown paint.
 #[must_use]
@@ -44,7 +65,7 @@ pub fn paint(id: &str) -> Vec<Measurement> {
             f: [r, g, b],
         })
     };
-    PAINTS.lines().filter_map(row).collect()
+    PAINT_TABLE.lines().filter_map(row).collect()
 }
 
 /// The band in which a paint is brightest.
@@ -52,20 +73,6 @@ pub fn paint(id: &str) -> Vec<Measurement> {
 pub fn brightest(paint: &[Measurement]) -> usize {
     let sum = |band: usize| paint.iter().map(|m| m.f[band]).sum::<f64>();
     (0..3).max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap_or(0)
-}
-
-/// Measured values in one band as samples for fitting; non-positive values are skipped.
-#[must_use]
-pub fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -> bool) -> Vec<Sample> {
-    paint
-        .iter()
-        .filter(|m| keep(m) && m.f[band] > 0.0)
-        .map(|m| Sample {
-            l: direction(m.theta_i.into(), m.phi_i.into()),
-            v: direction(m.theta_o.into(), (m.phi_i + m.delta_phi).into()),
-            value: m.f[band],
-        })
-        .collect()
 }
 
 /// **The model of the shifted gamma distribution**, with the parameters fitted by its authors to a material of the MERL
@@ -142,6 +149,7 @@ impl Sgd {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::geometry::direction;
 
     #[test]
     fn every_row_is_read() {
@@ -152,9 +160,9 @@ mod tests {
         assert_eq!(brightest(&paint("krylon_blue")), 2);
         assert_eq!(brightest(&paint("garnet_red")), 0);
         assert_eq!(Sgd::all().len(), 100);
-        // Non-positive values have no logarithm.
-        let all = paint("krylon_blue");
-        assert!(samples(&all, 0, |_| true).iter().all(|s| s.value > 0.0));
+        for (id, _) in PAINTS {
+            assert!(!paint(id).is_empty(), "{id}");
+        }
     }
 
     #[test]

@@ -1,0 +1,298 @@
+//! `lcm plot`: curves of models as figures and numbers.
+
+use std::{
+    ffi::OsStr,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+use clap::{Args, builder::PossibleValuesParser, builder::TypedValueParser as _};
+
+use super::{
+    Options, Outcome, complain,
+    evaluate::{Machine, Settings, find, setting},
+    outputs, print, progress,
+    workshop::{Workshop, valid},
+};
+use crate::{
+    curves::{Channel, CurveError, Detail, Kind, Setup, Sheet, Subject, curve, slice, subjects_with},
+    failure::Failure,
+    files::{self, Output, Signature},
+    optics::colour::Encoding,
+    parameter::Values,
+    progress::Progress,
+    registry::Registry,
+    text::{listed, quoted},
+};
+
+/// The parser of kinds, which lists them in the help.
+fn kind() -> impl clap::builder::TypedValueParser<Value = Kind> {
+    PossibleValuesParser::new(Kind::ALL.map(Kind::id)).map(|id| Kind::from_id(&id).unwrap_or(Kind::Brdf))
+}
+
+fn channel() -> impl clap::builder::TypedValueParser<Value = Channel> {
+    PossibleValuesParser::new(Channel::ALL.map(Channel::id))
+        .map(|id| Channel::from_id(&id).unwrap_or(Channel::Luminance))
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// IDs of models, each with parameters of its own if it has any: phong, phong:alpha=20, phong:alpha=20:k_s=0.3; with
+    /// spaces or commas between them
+    #[arg(value_name = "MODEL[:NAME=VALUE]", required_unless_present = "data")]
+    wanted: Vec<String>,
+    #[command(flatten)]
+    set: Settings,
+    /// The quantity: f (the BRDF), f_cos, pi_f_cos (the response), polar (f as a polar plot), albedo, fresnel, d and g
+    /// (factors of microfacet models), slice (f by half and difference angle)
+    #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true)]
+    kind: Kind,
+    /// The angle between light and normal, degrees, for kinds in the plane of incidence
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, allow_negative_numbers = true)]
+    theta_i: f64,
+    /// The azimuth of the plane from the tangent, degrees, for anisotropic models
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    phi_i: f64,
+    /// What figures show of three channels: luminance by default, for slices colour
+    #[arg(long, value_parser = channel())]
+    channel: Option<Channel>,
+    /// Use a logarithmic axis
+    #[arg(long)]
+    log: bool,
+    /// Lay measured data over the curves: krylon_blue, garnet_red, acryl_blue, or the fit to a material of the MERL
+    /// database, such as gold-metallic-paint; can be repeated
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    data: Vec<String>,
+    /// File to write: .svg, .png or .csv; without it CSV goes to standard output
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// The format of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+    Csv,
+}
+
+impl Format {
+    /// The format that the name of a file asks for.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        match path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            Some("csv") => Ok(Self::Csv),
+            // A device or a pipe has no format in its name.
+            None if files::is_stream(path) => Ok(Self::Csv),
+            _ => Err(Failure::Usage(format!(
+                "-o {}: a plot is written as .svg, .png or .csv; did you mean {}?",
+                path.display(),
+                path.with_extension("svg").display()
+            ))),
+        }
+    }
+
+    fn signature(self) -> Signature {
+        match self {
+            Self::Svg => Signature { what: "an SVG file", begins: b"<svg" },
+            Self::Png => files::PNG,
+            Self::Csv => Signature { what: "a CSV file of lcm plot", begins: b"curve," },
+        }
+    }
+
+    fn bytes(self, sheet: &Sheet) -> Result<Vec<u8>, Failure> {
+        Ok(match self {
+            Self::Svg => sheet.figure().svg().into_bytes(),
+            Self::Png => sheet.png()?,
+            Self::Csv => sheet.csv().into_bytes(),
+        })
+    }
+}
+
+/// One curve as written: `phong:alpha=20:k_s=0.3`.
+struct Wanted<'a> {
+    id: &'a str,
+    settings: Vec<&'a str>,
+    written: &'a str,
+}
+
+/// The curves in one word. A comma before a number is one within a value, such as that of a colour.
+fn wanted(word: &str) -> Vec<Wanted<'_>> {
+    let starts_number = |text: &str| text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    let (mut all, mut start) = (Vec::new(), 0);
+    for (comma, _) in word.match_indices(',').chain([(word.len(), "")]) {
+        if !word[comma..].strip_prefix(',').is_some_and(|rest| starts_number(rest.trim_start())) {
+            let written = word[start..comma].trim();
+            let mut parts = written.split(':');
+            let id = parts.next().unwrap_or_default().trim();
+            all.push(Wanted { id, settings: parts.collect(), written });
+            start = comma + 1;
+        }
+    }
+    all
+}
+
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
+    let format = arguments.output.as_deref().map(Format::of).transpose()?;
+    let setup = Setup::new(arguments.kind, arguments.theta_i, arguments.phi_i).map_err(|error| {
+        let option = match error {
+            CurveError::Azimuth(_) => "--phi-i",
+            _ => "--theta-i",
+        };
+        Failure::Usage(format!("{option}: {error}"))
+    })?;
+    let models: Vec<_> = arguments.wanted.iter().flat_map(|word| wanted(word)).collect();
+    models.iter().for_each(|model| workshop.need(model.id));
+    let registry = &workshop.registry;
+    let mut subjects = subjects(&models, &arguments.set, registry)?;
+    for name in &arguments.data {
+        let measured = Subject::measured(name.trim());
+        subjects.push(
+            measured.map_err(|rule| Failure::Usage(format!("--data is {}, but {rule}", quoted(name))))?,
+        );
+    }
+    if let (Some(file), Some(format)) = (&arguments.output, format) {
+        let inputs = outputs::inputs([], registry);
+        files::may_overwrite(file, format.signature(), inputs.iter().map(PathBuf::as_path))
+            .map_err(|refused| Failure::Write(refused.to_string()))?;
+    }
+    let sheet = sheet(&subjects, setup, arguments, options, registry)?;
+    let (Some(file), Some(format)) = (&arguments.output, format) else {
+        print(&sheet.csv())?;
+        sheet.notes().iter().for_each(complain);
+        return Ok(());
+    };
+    write(file, &format.bytes(&sheet)?)?;
+    sheet.notes().iter().for_each(complain);
+    options.tell(format_args!("wrote {}", file.display()));
+    Ok(())
+}
+
+/// The models with their parameters.
+fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Vec<Subject>, Failure> {
+    let mut subjects = Vec::new();
+    let mut problems = Vec::new();
+    let mut entries = Vec::new();
+    for wanted in models {
+        let model = find(registry, wanted.id)?;
+        valid(registry, model)?;
+        Machine::Cpu.can_run(model)?;
+        entries.push((wanted, model));
+    }
+    for (wanted, model) in &entries {
+        let mut values = Values::default();
+        let written = wanted.settings.iter().map(|text| {
+            let (name, value) = text.split_once('=').unwrap_or((text, ""));
+            (name.trim(), value.trim(), wanted.written.to_owned(), text.contains('='))
+        });
+        // What stands with the model goes before what is said of all.
+        let common = set
+            .settings
+            .iter()
+            .map(|s| (s.name.as_str(), s.value.as_str(), format!("--set {}={}", s.name, s.value), true));
+        let alone = wanted.settings.len();
+        for (i, (name, value, place, is_setting)) in written.chain(common).enumerate() {
+            // A parameter that another of the models has is no mistake.
+            let elsewhere = i >= alone && entries.iter().any(|(_, m)| m.parameter(name).is_some());
+            let given = wanted.settings.iter().any(|text| text.split('=').next() == Some(name));
+            if i >= alone && (given || elsewhere && model.parameter(name).is_none()) {
+                continue;
+            }
+            if !is_setting {
+                problems.push(format!("{place}: after a colon must stand NAME=VALUE, e.g. phong:alpha=20"));
+                continue;
+            }
+            match setting(model, name, value) {
+                Ok((name, value)) => values.set(name, value),
+                Err(problem) => problems.push(format!("{place}: {problem}")),
+            }
+        }
+        subjects.push(Subject::model(model, &values, Encoding::Srgb));
+    }
+    problems.dedup();
+    if problems.is_empty() { Ok(subjects) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+}
+
+/// Everything calculated.
+fn sheet(
+    subjects: &[Subject],
+    setup: Setup,
+    arguments: &Arguments,
+    options: Options,
+    registry: &Registry,
+) -> Result<Sheet, Failure> {
+    let failed = |error: CurveError| match error {
+        CurveError::NoFactor { .. } => {
+            let known = listed(&subjects_with(setup.kind, registry), "and");
+            Failure::Usage(format!("--kind {}: {error}; models with one: {known}", setup.kind.id()))
+        }
+        CurveError::NotMeasured { .. } => Failure::Usage(format!("--kind {}: {error}", setup.kind.id())),
+        CurveError::OtherLight { .. } => Failure::Usage(format!("--theta-i: {error}")),
+        error => Failure::Invalid(error.to_string()),
+    };
+    // Before any is calculated.
+    subjects.iter().try_for_each(|subject| subject.has(setup.kind)).map_err(failed)?;
+    let mut sheet = Sheet { channel: arguments.channel, log: arguments.log, ..Sheet::new(setup) };
+    let bar = progress(100 * subjects.len() as u64, options);
+    for (i, subject) in subjects.iter().enumerate() {
+        let tell = |done: f32, _: &str| bar.set_position(100 * i as u64 + (100.0 * done) as u64);
+        let progress = Progress { tell: &tell, cancelled: &|| false };
+        if setup.kind == Kind::Slice {
+            sheet.slices.push(slice(subject, &setup, Detail::Fine, &progress).map_err(failed)?);
+        } else {
+            sheet.curves.push(curve(subject, &setup, Detail::Fine, &progress).map_err(failed)?);
+        }
+    }
+    bar.finish_and_clear();
+    Ok(sheet)
+}
+
+/// Writes a file whole or not at all.
+fn write(file: &Path, bytes: &[u8]) -> Outcome {
+    let failed =
+        |error: files::FileError| Failure::Write(format!("{} could not be written: {error}", file.display()));
+    outputs::tidy_beside(file);
+    let mut output = Output::open(file).map_err(failed)?;
+    output.write_all(bytes).map_err(|error| failed(error.into()))?;
+    output.finish().map_err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_are_taken_apart_at_commas_and_colons() {
+        let parts = |word: &str| -> Vec<(String, Vec<String>)> {
+            let each = |w: Wanted| (w.id.to_owned(), w.settings.iter().map(|s| (*s).to_owned()).collect());
+            wanted(word).into_iter().map(each).collect()
+        };
+        let one = |id: &str, settings: &[&str]| {
+            (id.to_owned(), settings.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>())
+        };
+        assert_eq!(parts("phong"), [one("phong", &[])]);
+        assert_eq!(parts("phong,lambert"), [one("phong", &[]), one("lambert", &[])]);
+        assert_eq!(
+            parts("phong:alpha=20:k_s=0.3,lambert:base_colour=255,128,0,ward"),
+            [
+                one("phong", &["alpha=20", "k_s=0.3"]),
+                one("lambert", &["base_colour=255,128,0"]),
+                one("ward", &[])
+            ]
+        );
+        assert_eq!(parts("a, b"), [one("a", &[]), one("b", &[])]);
+        assert_eq!(parts(""), [one("", &[])]);
+    }
+
+    #[test]
+    fn the_name_of_the_file_says_its_format() {
+        for (name, format) in [("a.svg", Format::Svg), ("a.PNG", Format::Png), ("b/a.csv", Format::Csv)] {
+            assert_eq!(Format::of(Path::new(name)).ok(), Some(format));
+        }
+        for name in ["a.jpg", "a", "svg"] {
+            let Err(Failure::Usage(said)) = Format::of(Path::new(name)) else { panic!("{name}") };
+            assert!(said.contains(".svg, .png or .csv; did you mean"), "{said}");
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! Figures: plots with two axes, polar plots and image slices, as SVG and as pictures.
+//!
+//! Series differ in colour (M. Okabe, K. Ito 2008, *Color Universal Design*), in dash and in marker, so they remain
+//! distinguishable without colour. In a page, text and axes use colours that its style sheet replaces by its own, so
+//! plots follow light and dark pages.
+
+mod axis;
+mod bitmap;
+mod cartesian;
+mod layout;
+mod pen;
+mod polar;
+mod slices;
+mod svg;
+
+pub use axis::Axis;
+pub use polar::Polar;
+pub use slices::{Slices, Tile};
+
+use bitmap::Bitmap;
+use pen::Pen;
+use svg::{Place, Svg};
+
+/// Text and axes of figures that stand alone.
+const INK: [u8; 3] = [28, 29, 31];
+/// Their thin lines behind the curves.
+const GRID: [u8; 3] = [222, 222, 218];
+
+/// The line between the points of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// Without a gap.
+    Solid,
+    /// By dashes.
+    Dashed,
+    /// By dots.
+    Dotted,
+    /// By dashes and dots in turn.
+    DashDot,
+    /// By long dashes.
+    LongDashed,
+    /// By a dash and two dots in turn.
+    DashDotDot,
+    /// By long and short dashes in turn.
+    LongShort,
+    /// By short dashes close to each other.
+    ShortDashed,
+    /// Not at all.
+    None,
+}
+
+impl Line {
+    /// The lines that there are, the plainest first.
+    pub const ALL: [Self; 8] = [
+        Self::Solid,
+        Self::Dashed,
+        Self::Dotted,
+        Self::DashDot,
+        Self::LongDashed,
+        Self::DashDotDot,
+        Self::LongShort,
+        Self::ShortDashed,
+    ];
+
+    /// The lengths of dashes and gaps; none if there are no gaps.
+    #[must_use]
+    pub fn dash(self) -> &'static [f64] {
+        match self {
+            Self::Solid | Self::None => &[],
+            Self::Dashed => &[8.0, 5.0],
+            Self::Dotted => &[2.0, 4.0],
+            Self::DashDot => &[10.0, 4.0, 2.0, 4.0],
+            Self::LongDashed => &[16.0, 6.0],
+            Self::DashDotDot => &[10.0, 4.0, 2.0, 3.0, 2.0, 4.0],
+            Self::LongShort => &[16.0, 4.0, 5.0, 4.0],
+            Self::ShortDashed => &[4.0, 3.0],
+        }
+    }
+}
+
+/// The mark at each point of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// Nothing.
+    None,
+    /// A filled circle.
+    Disc,
+    /// A circle.
+    Ring,
+    /// A filled triangle.
+    Triangle,
+    /// A cross.
+    Cross,
+    /// A square.
+    Square,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its points. Where one is not finite the line has a gap, with crosses at the edge of the plot.
+    pub points: Vec<(f64, f64)>,
+    /// Its colour, counted from 0; 6 is the text colour.
+    pub colour: usize,
+    /// The line between them.
+    pub line: Line,
+    /// The mark at each of them.
+    pub mark: Mark,
+}
+
+/// A plot with two axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// Its content, for screen readers.
+    pub title: String,
+    /// The line above it; often empty, where a caption stands below.
+    pub heading: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// Width and height.
+    pub size: (u32, u32),
+    /// True if it has a legend, at the right.
+    pub legend: bool,
+    /// Remarks below it.
+    pub notes: Vec<String>,
+}
+
+impl Default for Plot {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            heading: String::new(),
+            x: Axis::new("", 0.0, 1.0, 6),
+            y: Axis::new("", 0.0, 1.0, 6),
+            series: Vec::new(),
+            size: (960, 600),
+            legend: true,
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl Plot {
+    /// The plot as an `<svg>` element for a page.
+    #[must_use]
+    pub fn page_svg(&self) -> String {
+        let mut svg = Svg::new(Place::Page);
+        cartesian::draw(self, &mut svg);
+        svg.finish(size(self.size), &self.title)
+    }
+}
+
+/// A picture of a figure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Red, green and blue, row by row from the top.
+    pub rgb8: Vec<u8>,
+}
+
+/// Something drawn, which stands alone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Figure {
+    /// With two axes.
+    Plot(Plot),
+    /// Around a point of the surface.
+    Polar(Polar),
+    /// Pictures with two angles as axes.
+    Slices(Slices),
+}
+
+/// Pixels per unit of a figure.
+const SCALE: f64 = 2.0;
+
+impl Figure {
+    fn draw(&self, pen: &mut impl Pen) {
+        match self {
+            Self::Plot(plot) => cartesian::draw(plot, pen),
+            Self::Polar(polar) => polar::draw(polar, pen),
+            Self::Slices(slices) => slices::draw(slices, pen),
+        }
+    }
+
+    fn frame(&self) -> ([f64; 2], &str) {
+        match self {
+            Self::Plot(plot) => (size(plot.size), &plot.title),
+            Self::Polar(polar) => (size(polar.size), &polar.title),
+            Self::Slices(slices) => (slices.size(), &slices.title),
+        }
+    }
+
+    /// As an SVG file.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let (size, title) = self.frame();
+        let mut svg = Svg::new(Place::Alone);
+        self.draw(&mut svg);
+        svg.finish(size, title)
+    }
+
+    /// As a picture, two pixels per unit.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        let mut bitmap = Bitmap::new(self.frame().0, SCALE);
+        self.draw(&mut bitmap);
+        Picture { size: bitmap.size, rgb8: bitmap.rgb8 }
+    }
+}
+
+fn size((width, height): (u32, u32)) -> [f64; 2] {
+    [width.into(), height.into()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(log: bool) -> Plot {
+        let y = if log { Axis::log("f (sr⁻¹)", 0.001, 10.0) } else { Axis::new("E", 0.0, 1.0, 5) };
+        let mut marks =
+            [Mark::None, Mark::Disc, Mark::Ring, Mark::Triangle, Mark::Cross, Mark::Square].into_iter();
+        let series = Line::ALL.into_iter().chain([Line::None]).enumerate().map(|(i, line)| Series {
+            name: format!("a < b & {i}"),
+            points: (1..20u8)
+                .map(|x| (f64::from(x), 0.05 * f64::from(x)))
+                .chain([(20.0, f64::NAN), (21.0, 0.5), (22.0, 0.5)])
+                .collect(),
+            colour: i,
+            line,
+            mark: marks.next().unwrap_or(Mark::None),
+        });
+        Plot {
+            title: "a \"test\" & more".to_owned(),
+            x: Axis::new("θ (°)", 0.0, 90.0, 7),
+            y,
+            series: series.collect(),
+            size: (720, 360),
+            notes: vec!["a remark <".to_owned()],
+            ..Plot::default()
+        }
+    }
+
+    /// The names of elements, each closed as it was opened, or what is wrong.
+    fn elements(xml: &str) -> Result<Vec<String>, String> {
+        let (mut open, mut all) = (Vec::new(), Vec::new());
+        let mut rest = xml;
+        while let Some(start) = rest.find('<') {
+            let inside = &rest[start + 1..];
+            let end = inside.find('>').ok_or("an element does not end")?;
+            let tag = &inside[..end];
+            if tag.contains('<') || tag.matches('"').count() % 2 == 1 {
+                return Err(format!("<{tag}> is no element"));
+            }
+            if let Some(name) = tag.strip_prefix('/') {
+                if open.pop().as_deref() != Some(name) {
+                    return Err(format!("</{name}> closes nothing"));
+                }
+            } else {
+                let name: String = tag.split([' ', '/', '\n']).next().unwrap_or_default().to_owned();
+                all.push(name.clone());
+                if !tag.ends_with('/') {
+                    open.push(name);
+                }
+            }
+            rest = &inside[end + 1..];
+        }
+        if open.is_empty() { Ok(all) } else { Err(format!("{open:?} stays open")) }
+    }
+
+    #[test]
+    fn plots_are_sound_and_show_every_series() {
+        for log in [false, true] {
+            for svg in [plot(log).page_svg(), Figure::Plot(plot(log)).svg()] {
+                let names = elements(&svg).unwrap_or_else(|e| panic!("{e}\n{svg}"));
+                assert_eq!(names[0], "svg");
+                assert!(names.iter().filter(|n| *n == "polyline").count() > 16, "{names:?}");
+                assert!(!svg.contains("NaN") && svg.contains("a &lt; b &amp; 3") && svg.contains("θ (°)"));
+                assert!(svg.contains("aria-label=\"a &quot;test&quot; &amp; more\""));
+                assert!(svg.contains("a remark &lt;"));
+            }
+        }
+        assert!(elements("<svg><g></svg>").is_err() && elements("<svg a=\"1></svg>").is_err());
+    }
+
+    #[test]
+    fn pages_get_colours_to_replace_and_files_get_their_own() {
+        let (page, alone) = (plot(false).page_svg(), Figure::Plot(plot(false)).svg());
+        for stand_in in ["#010203", "#040506"] {
+            assert!(page.contains(stand_in) && !alone.contains(stand_in), "{stand_in}");
+        }
+        assert!(alone.contains("fill=\"#ffffff\"") && !page.contains("fill=\"#ffffff\""));
+        assert!(alone.contains("#0072b2") && alone.contains("#1c1d1f"));
+    }
+
+    #[test]
+    fn a_gap_is_a_gap_and_is_marked() {
+        let with = |missing: f64| {
+            let mut plot = plot(false);
+            plot.series = vec![Series {
+                name: "gap".to_owned(),
+                points: vec![(0.0, 0.1), (30.0, 0.2), (45.0, missing), (60.0, 0.2), (90.0, 0.1)],
+                colour: 0,
+                line: Line::Solid,
+                mark: Mark::None,
+            }];
+            plot.page_svg().matches("stroke=\"#0072b2\"").count()
+        };
+        // In the legend and in the plot; with two pieces, and a cross of two lines.
+        assert_eq!((with(0.3), with(f64::NAN), with(f64::INFINITY)), (2, 5, 5));
+    }
+
+    #[test]
+    fn pictures_have_the_colours_of_the_curves() {
+        let picture = Figure::Plot(plot(true)).picture();
+        assert_eq!(picture.size, [1440, 720]);
+        assert_eq!(picture.rgb8.len(), 3 * 1440 * 720);
+        let count = |colour: [u8; 3]| picture.rgb8.chunks(3).filter(|p| *p == colour).count();
+        for colour in pen::COLOURS {
+            assert!(count(colour) > 100, "{colour:?}: {}", count(colour));
+        }
+        assert_eq!(count([240, 228, 66]), 0, "yellow is not among them");
+        assert!(count([255; 3]) > 720 * 720);
+    }
+
+    #[test]
+    fn every_line_has_a_dash_of_its_own() {
+        let mut dashes: Vec<_> = Line::ALL.iter().map(|line| format!("{:?}", line.dash())).collect();
+        dashes.sort();
+        dashes.dedup();
+        assert_eq!(dashes.len(), Line::ALL.len());
+    }
+}

@@ -1,0 +1,82 @@
+//! Image slices: pictures with two angles as axes.
+
+use super::{
+    layout::{self, Around, FONT},
+    pen::{Anchor, Ink, Pen},
+};
+
+/// One picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Its name, above it.
+    pub name: String,
+    /// Pixels across and down.
+    pub side: u32,
+    /// Red, green and blue, row by row from the top.
+    pub rgb8: Vec<u8>,
+}
+
+/// Pictures side by side, with axes from 0° to 90°.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slices {
+    /// Its content, for screen readers.
+    pub title: String,
+    /// The line above it.
+    pub heading: String,
+    /// The pictures.
+    pub tiles: Vec<Tile>,
+    /// Remarks below it.
+    pub notes: Vec<String>,
+}
+
+/// The side of a picture.
+const SIDE: f64 = 320.0;
+/// The room between two pictures, with labels.
+const GAP: [f64; 2] = [84.0, 5.6 * FONT];
+/// The most pictures in a row.
+const ROW: usize = 3;
+/// The quantities of the axes.
+const AXES: [&str; 2] = ["half angle (°)", "difference angle (°)"];
+
+impl Slices {
+    fn columns(&self) -> usize {
+        match self.tiles.len() {
+            4 => 2,
+            n => n.clamp(1, ROW),
+        }
+    }
+
+    /// Width and height.
+    pub(super) fn size(&self) -> [f64; 2] {
+        // In a narrow figure, remarks may need two lines.
+        let lines = self.notes.len() as f64 * if self.columns() == 1 { 2.0 } else { 1.0 };
+        let rows = self.tiles.len().div_ceil(self.columns()).max(1);
+        let width = (self.columns() as f64 * (SIDE + GAP[0]) + 28.0).max(560.0);
+        [width, rows as f64 * (SIDE + GAP[1]) + 56.0 + 19.0 * lines]
+    }
+}
+
+/// Draws them.
+pub(super) fn draw(slices: &Slices, pen: &mut impl Pen) {
+    let parts = Around { size: slices.size(), heading: &slices.heading, notes: &slices.notes, legend: &[] };
+    let [left, top, _, _] = layout::around(pen, &parts);
+    let columns = slices.columns();
+    for (i, tile) in slices.tiles.iter().enumerate() {
+        let x = left + 50.0 + (i % columns) as f64 * (SIDE + GAP[0]);
+        let y = top + 2.6 * FONT + (i / columns) as f64 * (SIDE + GAP[1]);
+        pen.text([x, y - 1.7 * FONT], Anchor::Start, FONT, &tile.name);
+        pen.text([x - 40.0, y - 0.5 * FONT], Anchor::Start, FONT - 2.0, AXES[1]);
+        pen.picture([x, y, SIDE, SIDE], [tile.side; 2], &tile.rgb8);
+        let frame = [[x, y], [x + SIDE, y], [x + SIDE, y + SIDE], [x, y + SIDE], [x, y]];
+        pen.stroke(&frame, Ink::Text, 1.0, &[]);
+        for angle in [0.0, 30.0, 60.0, 90.0] {
+            let at = SIDE * angle / 90.0;
+            let label = format!("{angle}");
+            pen.stroke(&[[x + at, y + SIDE], [x + at, y + SIDE + 5.0]], Ink::Text, 1.0, &[]);
+            pen.text([x + at, y + SIDE + 6.0 + FONT], Anchor::Middle, FONT - 2.0, &label);
+            pen.stroke(&[[x - 5.0, y + SIDE - at], [x, y + SIDE - at]], Ink::Text, 1.0, &[]);
+            pen.text([x - 9.0, y + SIDE - at + 0.33 * FONT], Anchor::End, FONT - 2.0, &label);
+        }
+        pen.text([x + 0.5 * SIDE, y + SIDE + 2.0 * FONT + 8.0], Anchor::Middle, FONT - 2.0, AXES[0]);
+    }
+}

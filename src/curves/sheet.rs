@@ -1,0 +1,260 @@
+//! A plot: curves with what they have in common, as a figure.
+
+use std::io;
+
+use super::{
+    Channel, Curve, Kind, Setup, Slice,
+    draw::{Axis, Figure, Line, Mark, Plot, Polar, Series, Slices, Tile},
+    slice::LOG_RANGE,
+};
+use crate::render::capture::png::{About, encode};
+
+/// Curves or slices of one kind, and how they are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// The quantity and the angles.
+    pub setup: Setup,
+    /// The channel; for curves luminance and for slices colour if there is none.
+    pub channel: Option<Channel>,
+    /// True for a logarithmic axis.
+    pub log: bool,
+    /// The curves.
+    pub curves: Vec<Curve>,
+    /// The slices, where [`Kind::Slice`] is shown.
+    pub slices: Vec<Slice>,
+}
+
+/// The powers of ten of a logarithmic axis at most.
+const DECADES: f64 = 6.0;
+
+impl Sheet {
+    /// A plot without curves.
+    #[must_use]
+    pub fn new(setup: Setup) -> Self {
+        Self { setup, channel: None, log: false, curves: Vec::new(), slices: Vec::new() }
+    }
+
+    /// The value of a point as it is shown.
+    #[must_use]
+    pub fn value(&self, rgb: glam::Vec3) -> f64 {
+        self.channel.unwrap_or(Channel::Luminance).of(rgb)
+    }
+
+    /// What must be said of the values: those that are not finite, and those that the figure cannot show.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        for curve in &self.curves {
+            if let Some(missing) = curve.missing() {
+                notes.push(format!("{}: {missing}, where the curve has a gap.", curve.name));
+            }
+            let mut values = curve.points.iter().map(|p| self.value(p.rgb)).filter(|v| v.is_finite());
+            let what = if self.log && values.clone().any(|v| v < 0.0) {
+                "negative values have"
+            } else if self.log && values.clone().next().is_some() && !values.any(|v| v > 0.0) {
+                "every value is 0, which has"
+            } else {
+                continue;
+            };
+            notes.push(format!("{}: {what} no place on a logarithmic axis.", curve.name));
+        }
+        for slice in &self.slices {
+            match slice.missing() {
+                0 => {}
+                n => notes.push(format!(
+                    "{}: {n} of {} values are not finite numbers (magenta and black).",
+                    slice.name,
+                    slice.values.len()
+                )),
+            }
+        }
+        notes
+    }
+
+    /// The heading: the quantity, the light, the channel.
+    #[must_use]
+    pub fn heading(&self) -> String {
+        let Setup { kind, theta_i, phi_i } = self.setup;
+        let mut words = match kind {
+            Kind::Slice => "image slice of the BRDF".to_owned(),
+            _ => kind.name().to_owned(),
+        };
+        if let Some(first) = words.get(..1) {
+            words = format!("{}{}", first.to_uppercase(), &words[1..]);
+        }
+        if kind.has_light() {
+            words += &format!(" in the plane of incidence, light at {theta_i}°");
+        }
+        if phi_i != 0.0 && kind != Kind::Fresnel {
+            words += &format!(", azimuth {phi_i}°");
+        }
+        match self.channel {
+            _ if kind.is_scalar() => {}
+            Some(channel) => words += &format!(", {}", channel.name()),
+            None if self.is_coloured() => words += ", luminance",
+            None => {}
+        }
+        words
+    }
+
+    /// True if the channels of some curve differ, so that it matters which one is shown.
+    fn is_coloured(&self) -> bool {
+        let grey = |rgb: &glam::Vec3| rgb.x == rgb.y && rgb.y == rgb.z || !rgb.is_finite();
+        self.curves.iter().flat_map(|curve| &curve.points).any(|p| !grey(&p.rgb))
+    }
+
+    /// The figure.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        let heading = self.heading();
+        let names: Vec<_> = match self.setup.kind {
+            Kind::Slice => self.slices.iter().map(|s| s.name.as_str()).collect(),
+            _ => self.curves.iter().map(|c| c.name.as_str()).collect(),
+        };
+        let title = format!("{heading}: {}", names.join("; "));
+        match self.setup.kind {
+            Kind::Slice => Figure::Slices(self.tiles(heading, title)),
+            Kind::Polar => Figure::Polar(Polar {
+                title,
+                heading,
+                radius: self.axis(true),
+                series: self.series(),
+                light: self.setup.theta_i,
+                size: (960, 500),
+                notes: self.notes(),
+            }),
+            _ => {
+                let (from, to) = match self.setup.kind {
+                    Kind::Albedo | Kind::Fresnel | Kind::Distribution => (0.0, 90.0),
+                    _ => (-90.0, 90.0),
+                };
+                let y = self.axis(false);
+                let mut notes = self.notes();
+                notes.extend(self.beyond(&y));
+                Figure::Plot(Plot {
+                    title,
+                    heading,
+                    x: Axis::new(self.setup.kind.angle(), from, to, 7),
+                    y,
+                    series: self.series(),
+                    notes,
+                    ..Plot::default()
+                })
+            }
+        }
+    }
+
+    /// The figure as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// If the picture is too large to be encoded.
+    pub fn png(&self) -> io::Result<Vec<u8>> {
+        let picture = self.figure().picture();
+        let mut bytes = Vec::new();
+        let about = About::program().with("Title", self.heading());
+        encode(&mut bytes, picture.size[0], picture.size[1], &picture.rgb8, &about)?;
+        Ok(bytes)
+    }
+
+    /// What the axis cuts off.
+    fn beyond(&self, axis: &Axis) -> Vec<String> {
+        let largest = |curve: &Curve| {
+            let values = curve.points.iter().map(|p| self.value(p.rgb));
+            values.filter(|v| v.is_finite()).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let over = |curve: &&Curve| largest(curve) > axis.to * 1.001;
+        let note = |curve: &Curve| {
+            format!("{} rises to {:.3} at grazing angles, beyond the plot.", curve.name, largest(curve))
+        };
+        self.curves.iter().filter(over).map(note).collect()
+    }
+
+    fn tiles(&self, heading: String, title: String) -> Slices {
+        let tiles = self
+            .slices
+            .iter()
+            .map(|s| Tile { name: s.name.clone(), side: s.side, rgb8: s.rgb8(self.channel, self.log) })
+            .collect();
+        let all: usize = self.slices.iter().map(|s| s.values.len()).sum();
+        let clipped: usize = self.slices.iter().map(|s| s.clipped(self.channel)).sum();
+        let mut notes = vec![if self.log {
+            let range = 10f32.powf(LOG_RANGE);
+            format!("π f, logarithmic: {} is black, 1 is grey, {range} is white.", 1.0 / range)
+        } else {
+            let part = 100.0 * clipped as f64 / all.max(1) as f64;
+            let digits = if part < 10.0 { 1 } else { 0 };
+            match clipped {
+                0 => "π f in sRGB: 1 is white.".to_owned(),
+                _ => format!("π f in sRGB: 1 is white; {part:.digits$} % of the pixels would be brighter."),
+            }
+        }];
+        notes.extend(self.notes());
+        Slices { title, heading, tiles, notes }
+    }
+
+    /// The series of the curves: each with a colour and a dash of its own, black for what was measured.
+    fn series(&self) -> Vec<Series> {
+        let marks = [Mark::Ring, Mark::Square, Mark::Triangle, Mark::Cross];
+        let (mut lines, mut measured) = (0, 0);
+        let each = |curve: &Curve| {
+            let points = curve.points.iter().map(|p| (p.angle, self.value(p.rgb))).collect();
+            let (colour, line, mark) = if curve.measured {
+                measured += 1;
+                (6, Line::None, marks[(measured - 1) % marks.len()])
+            } else {
+                lines += 1;
+                // Six colours and eight dashes: 24 pairs before the first comes back.
+                ((lines - 1) % 6, Line::ALL[(lines - 1) % Line::ALL.len()], Mark::None)
+            };
+            Series { name: curve.name.clone(), points, colour, line, mark }
+        };
+        self.curves.iter().map(each).collect()
+    }
+
+    /// The largest angle whose values the axis must hold. Some models rise without limit towards grazing angles, and the
+    /// rest of a curve shall not be flat because of its last degree.
+    fn limit(&self) -> f64 {
+        let Setup { kind, theta_i, .. } = self.setup;
+        let rises = kind == Kind::Albedo || kind.is_lobe() && theta_i <= 70.0;
+        if rises { 86.0 } else { 90.0 }
+    }
+
+    /// The axis of the values, wide enough for those up to the limit.
+    fn axis(&self, from_centre: bool) -> Axis {
+        let kind = self.setup.kind;
+        let limit = if from_centre || self.log { 90.0 } else { self.limit() };
+        let values = || {
+            let points = self.curves.iter().flat_map(|curve| &curve.points);
+            let shown = points.filter(move |p| p.angle.abs() <= limit);
+            shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite())
+        };
+        let top = values().fold(f64::NEG_INFINITY, f64::max);
+        if self.log {
+            let least = values().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+            if !least.is_finite() {
+                return Axis::log(kind.quantity(), 0.001, 1.0);
+            }
+            let to = round_up(top, &[1.0, 2.0, 5.0, 10.0]);
+            let from = least.max(to / 10f64.powf(DECADES)).min(to / 10.0);
+            return Axis::log(kind.quantity(), 10f64.powf((from.log10() + 1e-9).floor()), to);
+        }
+        let whole = matches!(kind, Kind::Albedo | Kind::Fresnel | Kind::Masking);
+        let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+        let to = match () {
+            () if whole => top.max(1.0),
+            () if top > 0.0 => top,
+            () => 1.0,
+        };
+        let to = if to <= 1.0 && whole { 1.0 } else { round_up(to, &steps) };
+        let bottom = values().fold(0.0, f64::min);
+        let from = if bottom < 0.0 && !from_centre { -round_up(-bottom, &steps) } else { 0.0 };
+        Axis::new(kind.quantity(), from, to, 6)
+    }
+}
+
+/// The next number that is one of some times a power of ten.
+fn round_up(v: f64, steps: &[f64]) -> f64 {
+    let power = 10f64.powf(v.log10().floor());
+    let found = steps.iter().map(|s| s * power).find(|s| *s >= v * (1.0 - 1e-9));
+    found.unwrap_or(10.0 * power)
+}

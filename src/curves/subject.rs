@@ -1,0 +1,188 @@
+//! What a curve is of.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::{
+    CurveError, Kind,
+    data::{self, PAINTS, Sgd},
+};
+use crate::{
+    caption,
+    optics::{Frame, Terms, colour::Encoding},
+    parameter::{Parameter, ParameterKind, Value, Values},
+    reflection::{Factor, ModelEntry, Surface, brdf, usage},
+    registry::Registry,
+    text::did_you_mean,
+};
+
+/// A model with its parameters, a measured paint, or the fit to a measured material.
+#[derive(Clone)]
+pub struct Subject {
+    /// Its name in the legend.
+    pub name: String,
+    source: Source,
+}
+
+#[derive(Clone)]
+enum Source {
+    Model { surface: Arc<dyn Surface>, entry: ModelEntry },
+    Fit(Box<Sgd>),
+    Paint(&'static str),
+}
+
+/// A parameter with its value, in words; none if there are none for it.
+fn setting(parameter: &'static Parameter, value: &Value) -> Option<String> {
+    let (symbol, text) = caption::value(parameter, value)?;
+    if matches!(parameter.kind, ParameterKind::Choice { .. }) {
+        return Some(text);
+    }
+    // A subscript would be lost.
+    let name = if symbol.is_empty() || symbol.contains('_') { parameter.label } else { symbol };
+    let unit = match (parameter.unit, &parameter.kind) {
+        ("", _) | (_, ParameterKind::Colour { .. }) => String::new(),
+        ("°", _) => "°".to_owned(),
+        (unit, _) => format!(" {unit}"),
+    };
+    Some(format!("{name} = {text}{unit}"))
+}
+
+/// Behind the names of measured paints.
+pub(super) const MEASURED: &str = " (measured)";
+
+impl Subject {
+    /// A model with parameters. Its name says which differ from their defaults.
+    #[must_use]
+    pub fn model(entry: &ModelEntry, values: &Values, encoding: Encoding) -> Self {
+        let changed = entry.parameters.iter().filter_map(|parameter| {
+            let value = values.get(parameter);
+            let used = usage::unused(entry.parameters, parameter, values).is_none();
+            (used && value != parameter.default_value()).then(|| setting(parameter, &value)).flatten()
+        });
+        let name = [entry.declaration.name.to_owned()].into_iter().chain(changed).collect::<Vec<_>>();
+        let surface = entry.instantiate(values, encoding);
+        Self { name: name.join(", "), source: Source::Model { surface, entry: entry.clone() } }
+    }
+
+    /// Measured data by name: a paint of [`PAINTS`], or a material of the MERL database, as fitted.
+    ///
+    /// # Errors
+    /// The names that there are.
+    pub fn measured(id: &str) -> Result<Self, String> {
+        if let Some((id, name)) = PAINTS.iter().find(|(known, _)| *known == id) {
+            return Ok(Self { name: format!("{name}{MEASURED}"), source: Source::Paint(id) });
+        }
+        let all = Sgd::all();
+        let names: Vec<_> = all.iter().map(|m| m.name).collect();
+        if let Some(fit) = all.into_iter().find(|m| m.name == id) {
+            let name = format!("{} (fit to MERL)", fit.name.replace('-', " "));
+            return Ok(Self { name, source: Source::Fit(Box::new(fit)) });
+        }
+        let paints = PAINTS.map(|(id, _)| id);
+        let known = paints.iter().chain(&names).map(|n| (*n, *n));
+        Err(format!(
+            "measured data must be one of the paints {}, or one of {} materials of the MERL database, such as {}{}",
+            crate::text::listed(&paints, "and"),
+            names.len(),
+            names.first().copied().unwrap_or_default(),
+            did_you_mean(id, known),
+        ))
+    }
+
+    /// The id of a measured paint.
+    pub(super) fn paint(&self) -> Option<&'static str> {
+        match self.source {
+            Source::Paint(id) => Some(id),
+            _ => None,
+        }
+    }
+
+    /// Fails if the CPU cannot run the model, or could not at the last attempt.
+    pub(super) fn runs(&self) -> Result<(), CurveError> {
+        match &self.source {
+            Source::Model { entry, .. } => entry.not_on_cpu().map_or(Ok(()), |why| {
+                Err(CurveError::NotOnCpu { name: entry.declaration.name.to_owned(), why })
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// `f` in sr⁻¹.
+    pub(super) fn brdf(&self, l: Vec3, v: Vec3) -> Vec3 {
+        match &self.source {
+            Source::Model { surface, .. } => brdf(surface.as_ref(), l, v, &Frame::LOCAL),
+            Source::Fit(fit) => Vec3::from(fit.brdf(l, v).map(|f| f as f32)),
+            Source::Paint(_) => Vec3::NAN,
+        }
+    }
+
+    /// The response `π f cos θ_i` by term, for integrals.
+    pub(super) fn response(&self, l: Vec3, v: Vec3) -> Terms {
+        match &self.source {
+            Source::Model { surface, .. } => surface.response(l, v, &Frame::LOCAL),
+            _ => {
+                let specular = std::f32::consts::PI * l.z * self.brdf(l, v);
+                Terms { specular, ..Terms::default() }
+            }
+        }
+    }
+
+    /// A factor of the model alone.
+    pub(super) fn factor(&self, factor: Factor) -> Option<Vec3> {
+        match &self.source {
+            Source::Model { surface, .. } => surface.factor(factor),
+            _ => None,
+        }
+    }
+
+    /// Fails if there is no such curve of it.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn has(&self, kind: Kind) -> Result<(), CurveError> {
+        let asked = match kind {
+            Kind::Fresnel => Some(Factor::Fresnel { cos_d: 1.0 }),
+            Kind::Distribution => Some(Factor::Distribution { h: Vec3::Z }),
+            Kind::Masking => Some(Factor::Masking { l: Vec3::Z, v: Vec3::Z }),
+            _ => None,
+        };
+        let name = self.name.trim_end_matches(MEASURED).to_owned();
+        match asked {
+            Some(factor) if self.factor(factor).is_none() => {
+                Err(CurveError::NoFactor { name, what: kind.name() })
+            }
+            None if self.paint().is_some() && !kind.is_lobe() => {
+                Err(CurveError::NotMeasured { name, what: kind.name() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The ids of the models that have curves of a kind.
+#[must_use]
+pub fn subjects_with(kind: Kind, registry: &Registry) -> Vec<&'static str> {
+    let has =
+        |entry: &&ModelEntry| Subject::model(entry, &Values::default(), Encoding::Srgb).has(kind).is_ok();
+    registry.models().iter().filter(has).map(|entry| entry.declaration.id).collect()
+}
+
+/// The measured values of a paint in the plane of incidence, by increasing angle, for the light at an angle; or the
+/// angles at which it was measured.
+pub(super) fn in_plane(id: &str, theta_i: f64) -> Result<Vec<(f64, Vec3)>, Vec<f32>> {
+    let all = data::paint(id);
+    let mut points: Vec<_> = all
+        .iter()
+        .filter(|m| (f64::from(m.theta_i) - theta_i).abs() < 0.5)
+        .filter_map(|m| Some((f64::from(m.in_plane()?), Vec3::from(m.f.map(|f| f as f32)))))
+        .collect();
+    if points.is_empty() {
+        let mut known: Vec<_> = all.iter().map(|m| m.theta_i).collect();
+        known.sort_by(f32::total_cmp);
+        known.dedup();
+        return Err(known);
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(points)
+}

@@ -1,0 +1,331 @@
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::{
+    optics::colour::Encoding,
+    parameter::{Value, Values},
+    progress::Progress,
+    reflection::{Factor, brdf},
+    registry::Registry,
+};
+
+fn subject(id: &str, set: &[(&'static str, Value)]) -> Subject {
+    let mut values = Values::default();
+    set.iter().for_each(|(name, value)| values.set(*name, value.clone()));
+    let registry = Registry::builtin();
+    Subject::model(registry.model(id).expect("built in"), &values, Encoding::Srgb)
+}
+
+fn fine(subject: &Subject, kind: Kind, theta_i: f64) -> Curve {
+    let setup = Setup::new(kind, theta_i, 0.0).expect("legal");
+    curve(subject, &setup, Detail::Fine, &Progress::NONE).expect("exists")
+}
+
+fn number(v: f32) -> Value {
+    Value::Number(v)
+}
+
+#[test]
+fn names_say_what_differs() {
+    assert_eq!(subject("phong", &[]).name, "Phong");
+    let set =
+        [("alpha", Value::Integer(20)), ("k_s", number(0.3)), ("base_colour", Value::Colour([255, 128, 0]))];
+    assert_eq!(
+        subject("phong", &set).name,
+        "Phong, base colour = (255, 128, 0), specular coefficient = 0.3, α = 20"
+    );
+    // What has no effect is not said.
+    let set = [("fresnel", Value::Choice("none".into())), ("ior", Value::Triple([2.0; 3]))];
+    assert_eq!(subject("microfacet", &set).name, "Microfacet, no Fresnel term");
+}
+
+#[test]
+fn fresnel_has_the_known_values() {
+    let glass = fine(&subject("microfacet", &[]), Kind::Fresnel, 45.0);
+    let at = |curve: &Curve, angle: f64| {
+        curve.points.iter().find(|p| (p.angle - angle).abs() < 1e-9).map_or(f32::NAN, |p| p.rgb.x)
+    };
+    assert!((at(&glass, 0.0) - 0.04).abs() < 1e-6 && at(&glass, 90.0) == 1.0);
+    assert!((at(&glass, 60.0) - 0.089_186_71).abs() < 1e-6);
+    // A wrong twin: Schlick's approximation.
+    let schlick =
+        fine(&subject("microfacet", &[("fresnel", Value::Choice("schlick".into()))]), Kind::Fresnel, 45.0);
+    assert!((at(&schlick, 60.0) - 0.089_186_71).abs() > 1e-3 && (at(&schlick, 0.0) - 0.04).abs() < 1e-6);
+}
+
+/// `∫ D cos θ dω` by the trapezoidal rule over the points of a curve.
+fn norm(curve: &Curve, power: i32) -> f64 {
+    let weighted = |p: &Point| {
+        let (sin, cos) = p.angle.to_radians().sin_cos();
+        TAU * f64::from(p.rgb.x) * cos.powi(power) * sin
+    };
+    let step =
+        |pair: &[Point]| 0.5 * (weighted(&pair[0]) + weighted(&pair[1])) * (pair[1].angle - pair[0].angle);
+    curve.points.windows(2).map(step).sum::<f64>().to_radians()
+}
+
+#[test]
+fn distributions_are_normalised() {
+    for (id, set) in [
+        ("microfacet", vec![]),
+        ("microfacet", vec![("distribution", Value::Choice("beckmann".into()))]),
+        ("microfacet", vec![("alpha_x", number(0.02)), ("alpha_y", number(0.02))]),
+        ("cook_torrance", vec![]),
+        ("metallic_roughness", vec![("roughness", number(0.1))]),
+        ("disney", vec![]),
+    ] {
+        let curve = fine(&subject(id, &set), Kind::Distribution, 0.0);
+        assert!((norm(&curve, 1) - 1.0).abs() < 3e-3, "{id} {set:?}: {}", norm(&curve, 1));
+    }
+    let wide = fine(&subject("microfacet", &[]), Kind::Distribution, 0.0);
+    assert!((norm(&wide, 0) - 1.0).abs() > 0.05, "the wrong twin passes");
+}
+
+#[test]
+fn factors_are_those_of_the_response() {
+    let registry = Registry::builtin();
+    let all = |kind| subjects_with(kind, &registry);
+    let microfacets = all(Kind::Distribution);
+    assert_eq!(
+        microfacets,
+        ["microfacet", "torrance_sparrow", "cook_torrance", "metallic_roughness", "disney"]
+    );
+    assert_eq!(all(Kind::Masking), microfacets);
+    assert!(all(Kind::Fresnel).contains(&"ashikhmin_shirley") && !all(Kind::Fresnel).contains(&"phong"));
+    assert_eq!(all(Kind::Brdf).len(), registry.models().len());
+    for id in microfacets {
+        // The share of the lobe in the model.
+        let share = if ["torrance_sparrow", "cook_torrance"].contains(&id) { 0.5 } else { 1.0 };
+        let model = subject(id, &[]);
+        let mut twin = 0.0f32;
+        for (theta_i, theta_o, phi) in
+            [(10.0, 30.0, 150.0), (60.0, 50.0, 180.0), (40.0, 5.0, 77.0), (85.0, 60.0, 180.0)]
+        {
+            let l = crate::optics::geometry::direction(theta_i, 0.0);
+            let v = crate::optics::geometry::direction(theta_o, phi);
+            let h = (l + v).normalize();
+            let factor = |f| model.factor(f).expect("has all three").x;
+            let [f, d, g] = [
+                factor(Factor::Fresnel { cos_d: h.dot(l) }),
+                factor(Factor::Distribution { h }),
+                factor(Factor::Masking { l, v }),
+            ];
+            let found = std::f32::consts::PI * d * f * g / (4.0 * v.z) * share;
+            let expected = model.response(l, v).specular.x;
+            assert!((found - expected).abs() <= 2e-4 * expected + 1e-9, "{id}: {found} {expected}");
+            twin = twin.max((found / g / expected - 1.0).abs());
+            assert!((0.0..=1.0 + 1e-5).contains(&g) && (0.0..=1.0).contains(&f), "{id}: {g} {f}");
+        }
+        assert!(twin > 1e-3, "{id}: without G nothing changes");
+    }
+}
+
+#[test]
+fn curves_are_the_brdf_and_fine_ones_follow_the_highlight() {
+    let phong = subject("phong", &[("alpha", Value::Integer(2000))]);
+    let registry = Registry::builtin();
+    let mut values = Values::default();
+    values.set("alpha", Value::Integer(2000));
+    let surface = registry.model("phong").expect("built in").instantiate(&values, Encoding::Srgb);
+    for (kind, factor) in
+        [(Kind::Brdf, 1.0), (Kind::BrdfCos, 0.5f32), (Kind::Response, 0.5 * std::f32::consts::PI)]
+    {
+        let lobe = fine(&phong, kind, 60.0);
+        assert!(lobe.points.windows(2).all(|pair| pair[0].angle < pair[1].angle));
+        assert!(lobe.points.len() > 100 && lobe.points.len() < 2000, "{}", lobe.points.len());
+        for p in &lobe.points {
+            // Positive angles are on the side of the mirror direction.
+            let l = crate::optics::geometry::direction(60.0, 0.0);
+            let v = crate::optics::geometry::direction(p.angle, 180.0);
+            let expected = factor * brdf(surface.as_ref(), l, v, &crate::optics::Frame::LOCAL);
+            assert!((p.rgb - expected).abs().max_element() < 1e-4 * expected.max_element(), "{}", p.angle);
+        }
+        let peak = lobe.points.iter().max_by(|a, b| a.rgb.x.total_cmp(&b.rgb.x)).expect("points");
+        assert!((peak.angle - 60.0).abs() < 0.5, "{}", peak.angle);
+    }
+    let setup = Setup::new(Kind::Brdf, 60.0, 0.0).expect("legal");
+    let coarse = curve(&phong, &setup, Detail::Coarse, &Progress::NONE).expect("exists");
+    assert!(coarse.points.len() < 120);
+    let stop = Progress { tell: &|_, _| (), cancelled: &|| true };
+    assert_eq!(
+        curve(&phong, &setup, Detail::Coarse, &stop).map(|c| c.points.len()),
+        Err(CurveError::Cancelled(crate::progress::Cancelled))
+    );
+    let setup = Setup { kind: Kind::Slice, ..setup };
+    assert!(slice(&phong, &setup, Detail::Coarse, &stop).is_err());
+}
+
+#[test]
+fn slices_are_the_brdf_at_their_angles() {
+    let registry = Registry::builtin();
+    for id in ["disney", "ward", "lambert"] {
+        let model = subject(id, &[]);
+        let surface = registry.model(id).expect("built in").instantiate(&Values::default(), Encoding::Srgb);
+        let setup = Setup::new(Kind::Slice, 0.0, 0.0).expect("legal");
+        let slice = slice(&model, &setup, Detail::Coarse, &Progress::NONE).expect("exists");
+        assert_eq!(slice.values.len(), (slice.side * slice.side) as usize);
+        let (mut worst, mut twin) = (0.0f32, 0.0f32);
+        for (i, f) in slice.values.iter().enumerate() {
+            let (theta_h, theta_d) = slice.angles(i);
+            let (l, v) = super::slice::directions(theta_h, theta_d, 0.0);
+            // The angles of Rusinkiewicz, from the directions.
+            let h = (l + v).as_dvec3().normalize();
+            assert!((h.z.acos().to_degrees() - theta_h).abs() < 0.02, "{theta_h}");
+            assert!((h.dot(l.as_dvec3()).min(1.0).acos().to_degrees() - theta_d).abs() < 0.02, "{theta_d}");
+            // φ_d = 90°: light and viewer lie across the plane of normal and half vector.
+            assert!((l - v).z.abs() < 1e-6 && h.y.abs() < 1e-6);
+            let expected = brdf(surface.as_ref(), l, v, &crate::optics::Frame::LOCAL);
+            worst = worst.max((*f - expected).abs().max_element());
+            let (l, v) = super::slice::directions(theta_d, theta_h, 0.0);
+            twin = twin
+                .max((*f - brdf(surface.as_ref(), l, v, &crate::optics::Frame::LOCAL)).abs().max_element());
+        }
+        assert_eq!(worst, 0.0, "{id}");
+        assert!(twin > 1e-3 || id == "lambert", "{id}: the axes are exchanged");
+        // The first row is grazing, the first column has the highlight.
+        assert!(slice.angles(0).1 > 85.0 && slice.angles(0).0 < 5.0);
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers_are_said_and_shown() {
+    let points = (0..10u8).map(|i| Point {
+        angle: f64::from(i) - 5.0,
+        rgb: Vec3::splat(if (2..4).contains(&i) {
+            f32::NAN
+        } else if i == 7 {
+            f32::INFINITY
+        } else {
+            1.0
+        }),
+    });
+    let curve = Curve { name: "broken".to_owned(), points: points.collect(), measured: false };
+    let missing = curve.missing().expect("there are some");
+    assert_eq!(missing.to_string(), "values are not finite numbers from −3° to −2° and at 2°");
+    let none = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::NAN }], ..curve.clone() };
+    assert_eq!(none.missing().map(|m| m.to_string()).as_deref(), Some("no value is a finite number"));
+    let whole = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::ONE }], ..curve.clone() };
+    assert_eq!(whole.missing(), None);
+    for kind in [Kind::Brdf, Kind::Polar] {
+        let setup = Setup::new(kind, 30.0, 0.0).expect("legal");
+        for log in [false, true] {
+            let with = |curve: &Curve| Sheet { curves: vec![curve.clone()], log, ..Sheet::new(setup) };
+            let note =
+                "broken: values are not finite numbers from −3° to −2° and at 2°, where the curve has a gap.";
+            assert_eq!(with(&curve).notes(), [note]);
+            // In several lines, perhaps.
+            assert!(with(&curve).figure().svg().contains("broken: values are not"));
+            assert!(!with(&whole).figure().svg().contains("finite"));
+            let csv = with(&curve).csv();
+            assert!(csv.contains(",NaN,NaN,NaN,NaN\n") && csv.contains(",inf,inf,inf,inf\n"), "{csv}");
+        }
+    }
+    let broken =
+        Slice { name: "x".to_owned(), side: 2, values: vec![Vec3::NAN, Vec3::ONE, Vec3::ONE, Vec3::ZERO] };
+    assert_eq!(broken.rgb8(None, false)[..3], [255, 0, 255], "nothing else is magenta");
+    assert_eq!(broken.rgb8(None, false)[3..6], [255; 3]);
+    let setup = Setup::new(Kind::Slice, 0.0, 0.0).expect("legal");
+    let sheet = Sheet { slices: vec![broken], ..Sheet::new(setup) };
+    assert!(sheet.notes()[0].contains("1 of 4 values are not finite numbers"), "{:?}", sheet.notes());
+}
+
+#[test]
+fn every_curve_has_a_colour_and_a_dash() {
+    let setup = Setup::new(Kind::Brdf, 30.0, 0.0).expect("legal");
+    let one = |i: usize| Curve {
+        name: format!("curve {i}"),
+        points: vec![Point { angle: 0.0, rgb: Vec3::ONE }, Point { angle: 9.0, rgb: Vec3::ONE }],
+        measured: false,
+    };
+    let sheet = Sheet { curves: (0..8).map(one).collect(), ..Sheet::new(setup) };
+    let draw::Figure::Plot(plot) = sheet.figure() else { panic!("a plot") };
+    for (i, a) in plot.series.iter().enumerate() {
+        for b in &plot.series[i + 1..] {
+            assert!(a.line != b.line, "{} and {} have one dash", a.name, b.name);
+        }
+        assert!(a.points.iter().all(|p| p.1 == 1.0));
+    }
+    // Names with commas stay one cell.
+    let mut sheet = sheet;
+    sheet.curves[0].name = "a, \"b\"".to_owned();
+    assert!(sheet.csv().contains("\n\"a, \"\"b\"\"\",0,30,0,0,180,1,1,1,1\n"), "{}", sheet.csv());
+}
+
+#[test]
+fn measured_data_is_what_was_measured() {
+    let krylon = Subject::measured("krylon_blue").expect("measured");
+    let points = fine(&krylon, Kind::Brdf, 60.0);
+    assert!(points.measured && points.points.len() == 16);
+    assert!(points.points.windows(2).all(|pair| pair[0].angle <= pair[1].angle));
+    let cos = fine(&krylon, Kind::BrdfCos, 60.0);
+    assert!((cos.points[3].rgb / points.points[3].rgb - 0.5).abs().max_element() < 1e-5);
+    let at = |kind, theta_i| {
+        let setup = Setup::new(kind, theta_i, 0.0).expect("legal");
+        curve(&krylon, &setup, Detail::Fine, &Progress::NONE).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert_eq!(
+        at(Kind::Brdf, 45.0),
+        "Krylon blue was measured with the light at 10°, 20°, 30°, 40°, 50°, 60°, 70° and 80°, not at 45°"
+    );
+    assert!(
+        at(Kind::Albedo, 45.0).contains("at single directions only: there is no directional albedo E of it")
+    );
+    assert!(at(Kind::Fresnel, 45.0).contains("has no Fresnel factor F"));
+    let gold = Subject::measured("gold-metallic-paint").expect("fitted");
+    assert_eq!(gold.name, "gold metallic paint (fit to MERL)");
+    assert!(fine(&gold, Kind::Brdf, 45.0).points.len() > 100);
+    let albedo = fine(&Subject::measured("white-paint").expect("fitted"), Kind::Albedo, 0.0);
+    assert!(albedo.points[0].rgb.x > 0.3 && albedo.points[0].rgb.x < 1.1, "{:?}", albedo.points[0]);
+    for (wrong, said) in [("krylon_blu", "did you mean \"krylon_blue\"?"), ("x", "one of 100 materials")] {
+        let rule = Subject::measured(wrong).err().unwrap_or_default();
+        assert!(rule.contains(said), "{rule}");
+    }
+}
+
+#[test]
+fn light_from_below_is_refused() {
+    for (theta, phi, said) in [
+        (90.0, 0.0, "is 90°, but it must be at least 0° and less than 90°"),
+        (-1.0, 0.0, "is -1°, but"),
+        (f64::NAN, 0.0, "is NaN°, but"),
+        (1.0, f64::INFINITY, "the azimuth of the light is inf°"),
+    ] {
+        let error = Setup::new(Kind::Brdf, theta, phi).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn what_a_logarithmic_axis_cannot_show_is_said() {
+    let setup = Setup::new(Kind::Brdf, 30.0, 0.0).expect("legal");
+    let said = |values: [f32; 3], log: bool| {
+        let point = |(i, v): (usize, f32)| Point { angle: i as f64, rgb: Vec3::splat(v) };
+        let points = values.into_iter().enumerate().map(point).collect();
+        let curves = vec![Curve { name: "x".to_owned(), points, measured: false }];
+        let sheet = Sheet { curves, log, ..Sheet::new(setup) };
+        assert!(!sheet.figure().svg().contains("NaN"));
+        sheet.notes().join(" ")
+    };
+    assert_eq!(said([1.0, 0.0, 1.0], true), "", "a zero leaves at the foot of the plot");
+    assert_eq!(said([1.0, -1.0, 1.0], true), "x: negative values have no place on a logarithmic axis.");
+    assert_eq!(said([0.0; 3], true), "x: every value is 0, which has no place on a logarithmic axis.");
+    assert_eq!(said([0.0, -1.0, 1.0], false), "");
+}
+
+#[test]
+fn what_rises_beyond_the_plot_is_said() {
+    let figure = |theta_i: f64| {
+        let curves = ["ward", "lambert"].map(|id| fine(&subject(id, &[]), Kind::Brdf, theta_i)).to_vec();
+        let setup = Setup::new(Kind::Brdf, theta_i, 0.0).expect("legal");
+        let draw::Figure::Plot(plot) = (Sheet { curves, ..Sheet::new(setup) }).figure() else {
+            panic!("a plot")
+        };
+        plot
+    };
+    let cut = figure(70.0);
+    assert!(cut.y.to < 12.0 && cut.notes.len() == 1, "{:?} {:?}", cut.y, cut.notes);
+    assert!(cut.notes[0].starts_with("Ward rises to ") && cut.notes[0].ends_with("beyond the plot."));
+    // At grazing light the highlight itself is there.
+    let whole = figure(80.0);
+    assert!(whole.notes.is_empty() && whole.y.to > 20.0, "{:?} {:?}", whole.y, whole.notes);
+}

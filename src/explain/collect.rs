@@ -1,0 +1,149 @@
+//! Explanations from what the renderer did.
+
+use glam::Vec3;
+
+use super::{Corner, Geometry, Lit, Model, Part, Place, Seen, Setting, Spot};
+use crate::{
+    light::Incident,
+    optics::geometry::{half_vector, mirror},
+    parameter::{Parameter, Value},
+    reference::{
+        Settings,
+        probe::{LitBy, Loop, Point, Probe, light_loop},
+    },
+    reflection::{ModelEntry, Surface},
+    registry::Registry,
+    scene::{Light, Object, Scene},
+    shading::Stage,
+};
+
+/// A picture of a scene, to be explained.
+pub(super) struct Explain<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) registry: &'a Registry,
+    pub(super) settings: &'a Settings,
+}
+
+impl Explain<'_> {
+    /// The object that a probe found.
+    pub(super) fn seen(&self, found: Probe) -> Option<Seen> {
+        let object = self.scene.objects.get(found.object)?;
+        let model = self.registry.model(self.scene.model_of(object))?;
+        let shading = self.registry.shading_model(self.scene.shading_model_of(object))?;
+        let corners = found.corners.map(|c| Corner {
+            vertex: c.vertex,
+            position: c.position,
+            weight: c.weight,
+            colour: c.colour,
+        });
+        let spot = |place: Place, point: &Point| self.spot(place, point, &*found.surface);
+        let of_corner = |corner: usize| match found.stage {
+            Stage::Polygon => Place::Polygon,
+            _ => Place::Vertex { vertex: corners[corner].vertex, weight: corners[corner].weight },
+        };
+        let at_corners = found.at_corners.iter().map(|(corner, point)| spot(of_corner(*corner), point));
+        let at_pixel = found.at_pixel.iter().map(|point| spot(Place::Pixel, point));
+        Some(Seen {
+            object: self.object(found.object, object),
+            shading: shading.declaration,
+            position: found.varying.position,
+            polygon: found.polygon,
+            face_normal: found.face_normal,
+            interpolated_normal: found.varying.normal,
+            corners,
+            spots: at_corners.chain(at_pixel).collect(),
+            per_pixel: found.phong.as_ref().map(|point| spot(Place::Pixel, point)),
+            light: found.light.truncate(),
+            // Asked last: an endless function shows only when it runs.
+            model: self.model(model, object),
+        })
+    }
+
+    fn object(&self, index: usize, object: &Object) -> Part {
+        Part {
+            index,
+            name: object.name.clone(),
+            id: object.object_type.clone(),
+            type_name: self.registry.shape(&object.object_type).map_or("", |entry| entry.declaration.name),
+        }
+    }
+
+    fn model(&self, entry: &ModelEntry, object: &Object) -> Model {
+        let encoding = self.scene.display.encoding;
+        let setting = |parameter: &'static Parameter| {
+            let value = object.material.get(parameter);
+            let linear = matches!(value, Value::Colour(_) | Value::Triple(_))
+                .then(|| object.material.colour(parameter, encoding));
+            Setting { parameter, value, linear }
+        };
+        Model {
+            id: entry.declaration.id,
+            declaration: entry.declaration,
+            settings: entry.parameters.iter().map(setting).collect(),
+            interpreted: entry.is_interpreted(),
+            trouble: entry.not_on_cpu(),
+        }
+    }
+
+    fn spot(&self, place: Place, point: &Point, surface: &dyn Surface) -> Spot {
+        let run = light_loop(self.scene, self.registry, self.settings, surface, point);
+        let lit = |by: &LitBy| Some(self.lit(self.scene.lights.get(by.index)?, by, point, &run));
+        Spot {
+            place,
+            position: point.position,
+            normal: point.normal,
+            eye: run.eye,
+            view: run.v,
+            distance: self.scene.observer.position.distance(point.position),
+            lights: run.lights.iter().filter_map(lit).collect(),
+            sum: run.sum,
+            colour: point.colour,
+        }
+    }
+
+    fn lit(&self, light: &Light, by: &LitBy, point: &Point, run: &Loop) -> Lit {
+        let declaration = self.registry.light(&light.light_type).map(|entry| entry.declaration);
+        let position = declaration.filter(|d| d.has_position).map(|_| by.record.position);
+        let (intensity, geometry) = match by.incident {
+            Incident::From { l, intensity } => (intensity, Some(Geometry::new(l, run))),
+            Incident::Uniform { intensity } => (intensity, None),
+        };
+        Lit {
+            light: Part {
+                index: by.index,
+                name: light.name.clone(),
+                id: light.light_type.clone(),
+                type_name: declaration.map_or("", |d| d.name),
+            },
+            equation: declaration.map_or("", |d| d.equation),
+            position,
+            distance: position.map(|p| p.distance(point.position)),
+            factors: by.factors.clone(),
+            intensity,
+            colour: by.record.colour,
+            arriving: intensity * by.record.colour,
+            geometry,
+            response: by.response,
+            contribution: by.contribution,
+        }
+    }
+}
+
+impl Geometry {
+    fn new(l: Vec3, point: &Loop) -> Self {
+        let Loop { v, frame, .. } = point;
+        let (h, r) = (half_vector(l, *v), mirror(l, frame.n));
+        let cosines = [
+            ("N·L", frame.n.dot(l)),
+            ("N·V", frame.n.dot(*v)),
+            ("N·H", frame.n.dot(h)),
+            ("V·H", v.dot(h)),
+            ("R·V", r.dot(*v)),
+            ("L·H", l.dot(h)),
+            ("L·V", l.dot(*v)),
+            ("H·T", h.dot(frame.t)),
+            ("H·B", h.dot(frame.b)),
+        ];
+        Self { l, h, r, cosines }
+    }
+}

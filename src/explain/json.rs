@@ -1,0 +1,194 @@
+//! Explanations for programs.
+
+use glam::Vec3;
+use serde_json::{Value as Json, json};
+
+use super::{Explanation, Lit, Model, Part, Place, Seen, Setting, Spot, angle};
+use crate::{light::Factor, optics::Terms, parameter, text::number as finite};
+
+/// A number; JSON has none for values that are not finite, which are texts: `"NaN"`, `"Infinity"`, `"-Infinity"`.
+fn number(v: f32) -> Json {
+    match v {
+        v if v.is_finite() => finite(v),
+        v if v.is_nan() => "NaN".into(),
+        v if v > 0.0 => "Infinity".into(),
+        _ => "-Infinity".into(),
+    }
+}
+
+fn triple(v: Vec3) -> Json {
+    v.to_array().into_iter().map(number).collect()
+}
+
+fn part(part: &Part) -> Json {
+    json!({ "index": part.index, "name": part.name, "type": part.id })
+}
+
+impl Explanation {
+    /// The explanation as JSON, every number of it. Numbers that are not finite are the texts `"NaN"`, `"Infinity"` and
+    /// `"-Infinity"`.
+    #[must_use]
+    pub fn to_json(&self) -> Json {
+        let steps = &self.steps;
+        json!({
+            "pixel": self.pixel,
+            "size": self.size,
+            "terms": self.terms.id(),
+            "code": self.code(),
+            "background": self.seen.is_none(),
+            "seen": self.seen.as_ref().map(Seen::to_json),
+            "display": {
+                "light": triple(steps.light),
+                "coverage": number(steps.coverage),
+                "exposure": number(self.display.exposure),
+                "exposure_factor": number(steps.exposure),
+                "exposed": triple(steps.exposed),
+                "encoding": self.display.encoding.id(),
+                "curve_input": triple(steps.input),
+                "tone_mapping": self.display.tone_mapping.id(),
+                "mapped": triple(steps.mapped),
+                "encoded": triple(steps.encoded),
+                "code": steps.codes,
+            },
+        })
+    }
+}
+
+impl Seen {
+    fn to_json(&self) -> Json {
+        let corner = |corner: &super::Corner| {
+            json!({
+                "vertex": corner.vertex,
+                "position": triple(corner.position),
+                "weight": number(corner.weight),
+                "colour": triple(corner.colour),
+            })
+        };
+        let spot = |spot: &Spot| spot.to_json(&self.model);
+        json!({
+            "object": part(&self.object),
+            "polygon": self.polygon,
+            "position": triple(self.position),
+            "face_normal": triple(self.face_normal),
+            "interpolated_normal": triple(self.interpolated_normal),
+            "reflection_model": self.model.to_json(),
+            "shading_model": { "id": self.shading.id, "name": self.shading.name, "stage": self.shading.stage.phrase() },
+            "corners": self.corners.iter().map(corner).collect::<Json>(),
+            "spots": self.spots.iter().map(spot).collect::<Json>(),
+            "light": triple(self.light),
+            "per_pixel": self.per_pixel.as_ref().map(spot),
+        })
+    }
+}
+
+impl Model {
+    fn to_json(&self) -> Json {
+        let setting = |setting: &Setting| {
+            json!({
+                "name": setting.parameter.name,
+                "symbol": setting.parameter.symbol,
+                "value": parameter::json(&setting.value),
+                "linear": setting.linear.map(triple),
+            })
+        };
+        let equation = self.declaration.equation.iter().map(|part| part.text);
+        json!({
+            "id": self.id,
+            "name": self.declaration.name,
+            "equation": equation.collect::<Json>(),
+            "parameters": self.settings.iter().map(setting).collect::<Json>(),
+            "interpreted": self.interpreted,
+            "trouble": self.trouble,
+        })
+    }
+}
+
+impl Spot {
+    fn to_json(&self, model: &Model) -> Json {
+        let (place, vertex, weight) = match self.place {
+            Place::Polygon => ("polygon", None, None),
+            Place::Vertex { vertex, weight } => ("vertex", Some(vertex), Some(number(weight))),
+            Place::Pixel => ("pixel", None, None),
+        };
+        json!({
+            "place": place,
+            "vertex": vertex,
+            "weight": weight,
+            "position": triple(self.position),
+            "N": triple(self.normal),
+            "eye": triple(self.eye),
+            "V": triple(self.view),
+            "distance": number(self.distance),
+            "lights": self.brightest().into_iter().map(|lit| lit.to_json(model)).collect::<Json>(),
+            "sum": triple(self.sum),
+            "colour": triple(self.colour),
+        })
+    }
+}
+
+impl Lit {
+    fn to_json(&self, model: &Model) -> Json {
+        let cosines = self.geometry.map(|geometry| {
+            let cosines = geometry.cosines.into_iter();
+            cosines.map(|(name, c)| (name.to_owned(), number(c))).collect::<serde_json::Map<_, _>>()
+        });
+        let angles = self.geometry.map(|geometry| {
+            let cosines = geometry.cosines.into_iter();
+            cosines.map(|(name, c)| (name.to_owned(), number(angle(c)))).collect::<serde_json::Map<_, _>>()
+        });
+        let factor = |factor: &Factor| {
+            let from = factor.from.iter().map(
+                |(symbol, value, unit)| json!({ "symbol": symbol, "value": number(*value), "unit": unit }),
+            );
+            json!({
+                "symbol": factor.symbol,
+                "meaning": factor.meaning,
+                "value": triple(factor.value),
+                "unit": factor.unit,
+                "from": from.collect::<Json>(),
+            })
+        };
+        let lines = self.lines(model);
+        let line = |line: &super::Line| {
+            json!({
+                "term": line.symbol(),
+                "text": line.text,
+                "numbers": line.numbers,
+                "value": line.value.map(triple),
+            })
+        };
+        let Terms { ambient, diffuse, specular } = self.response;
+        json!({
+            "light": part(&self.light),
+            "position": self.position.map(triple),
+            "distance": self.distance.map(number),
+            "L": self.geometry.map(|g| triple(g.l)),
+            "H": self.geometry.map(|g| triple(g.h)),
+            "R": self.geometry.map(|g| triple(g.r)),
+            "cosines": cosines,
+            "angles": angles,
+            "equation": self.equation,
+            "factors": self.factors.iter().map(factor).collect::<Json>(),
+            "intensity": triple(self.intensity),
+            "colour": triple(self.colour),
+            "arriving": triple(self.arriving),
+            "response": { "ambient": triple(ambient), "diffuse": triple(diffuse), "specular": triple(specular) },
+            "lines": lines.iter().map(line).collect::<Json>(),
+            "contribution": triple(self.contribution),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_are_not_finite_are_not_hidden() {
+        assert_eq!(
+            triple(Vec3::new(f32::NAN, f32::INFINITY, f32::NEG_INFINITY)),
+            json!(["NaN", "Infinity", "-Infinity"])
+        );
+        assert_eq!(triple(Vec3::new(0.1, 1.0, -2.5)), json!([0.1, 1, -2.5]));
+    }
+}

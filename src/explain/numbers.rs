@@ -1,0 +1,80 @@
+//! Numbers as explanations write them.
+
+use glam::Vec3;
+
+/// Digits that tell: codes have eight bits.
+const DIGITS: i32 = 4;
+
+/// A number with four significant digits, and none at its end that say nothing; `NaN` and `∞` are written as such.
+#[must_use]
+pub fn number(v: f32) -> String {
+    if v.is_nan() {
+        return "NaN".to_owned();
+    }
+    let sign = if v < 0.0 { "−" } else { "" };
+    let size = v.abs();
+    if size.is_infinite() {
+        return format!("{sign}∞");
+    }
+    let whole = size.log10().floor() as i32;
+    let text = match whole {
+        _ if size == 0.0 => "0".to_owned(),
+        -4..=5 => trimmed(&format!("{size:.*}", (DIGITS - 1 - whole).max(0) as usize)),
+        _ => {
+            let text = format!("{size:.*e}", DIGITS as usize - 1);
+            let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+            format!("{}·10^{}", trimmed(digits), power.replace('-', "−"))
+        }
+    };
+    format!("{sign}{text}")
+}
+
+/// A decimal fraction without zeros at its end.
+fn trimmed(text: &str) -> String {
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    }
+}
+
+/// A colour or a vector: `(0.5, 0.25, 0)`.
+#[must_use]
+pub fn triple(v: Vec3) -> String {
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A number if red, green and blue are the same, and otherwise the three.
+pub(super) fn number_or_triple(v: Vec3) -> String {
+    if v.x == v.y && v.y == v.z { number(v.x) } else { triple(v) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits_and_no_idle_zeros() {
+        for (v, expected) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.25, "−0.25"),
+            (0.123_456, "0.1235"),
+            (12.345_6, "12.35"),
+            (9.999_96, "10"),
+            (123_456.0, "123456"),
+            (0.000_5, "0.0005"),
+            (1.5e-7, "1.5·10^−7"),
+            (-2e30, "−2·10^30"),
+            (100.0, "100"),
+        ] {
+            assert_eq!(number(v), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_says_so() {
+        assert_eq!(triple(Vec3::new(f32::NAN, f32::INFINITY, -f32::INFINITY)), "(NaN, ∞, −∞)");
+        assert_eq!(number_or_triple(Vec3::splat(f32::NAN)), "(NaN, NaN, NaN)");
+        assert_eq!(number_or_triple(Vec3::splat(2.0)), "2");
+    }
+}

@@ -1,0 +1,37 @@
+//! The factors of a microfacet lobe, each alone.
+
+use glam::Vec3;
+
+/// One factor of the lobe `D F G / (4 (N·L)(N·V))`, with the directions or the angle at which it is asked for. All
+/// vectors are unit vectors in the local frame (normal +z, tangent +x), above the surface.
+///
+/// K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular Reflection from Roughened Surfaces*; R. L. Cook,
+/// K. E. Torrance (1982), *A Reflectance Model for Computer Graphics*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factor {
+    /// `F`: the fraction of light that a facet reflects, 0 to 1, in red, green and blue.
+    Fresnel {
+        /// The cosine of the angle θ_d between the light and the normal of the facet, 0 to 1.
+        cos_d: f32,
+    },
+    /// `D` in sr⁻¹: the distribution of the normals of facets, with `∫ D cos θ_h dω = 1`. Equal in all three channels.
+    Distribution {
+        /// The normal of the facet.
+        h: Vec3,
+    },
+    /// `G`: the fraction of the facets that the light reaches and the viewer sees, 0 to 1. Equal in all three channels.
+    Masking {
+        /// To the light.
+        l: Vec3,
+        /// To the viewer.
+        v: Vec3,
+    },
+}
+
+impl Factor {
+    /// `G` from the quotient `G / (4 (N·L)(N·V))` that models calculate with.
+    #[must_use]
+    pub fn of_visibility(visibility: f32, l: Vec3, v: Vec3) -> Vec3 {
+        Vec3::splat(4.0 * l.z * v.z * visibility)
+    }
+}
