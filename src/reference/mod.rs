@@ -18,6 +18,11 @@
 //! A shading model of [`Stage::Vertex`] or [`Stage::Pixel`] runs once per vertex, which polygons share: the face
 //! normal, tangent and centre of its [`Corner`] are then the vertex's. A shading model of [`Stage::Polygon`] runs once
 //! per polygon, at its centre.
+//!
+//! [`Corner`]: crate::shading::Corner
+//! [`Stage::Vertex`]: crate::shading::Stage::Vertex
+//! [`Stage::Pixel`]: crate::shading::Stage::Pixel
+//! [`Stage::Polygon`]: crate::shading::Stage::Polygon
 
 use std::time::Instant;
 
