@@ -31,8 +31,9 @@ use crate::{
 };
 
 mod display;
+mod edits;
 mod lighting;
-mod meshes;
+pub(crate) mod meshes;
 mod object;
 pub(crate) mod probe;
 mod raster;
@@ -40,6 +41,7 @@ mod raster;
 pub use crate::optics::colour::BACKGROUND;
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
+pub use edits::ignored_edits;
 use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
