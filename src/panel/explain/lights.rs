@@ -20,7 +20,7 @@ const MOST: usize = 32;
 
 /// The point that is shown, and its lights, the brightest first.
 pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice: Choice) {
-    ui.spacing_mut().item_spacing.y = 3.0;
+    rows::close(ui);
     let spots = probe::spots(seen);
     let shown = probe::shown_spot(seen, choice);
     let Some(spot) = spots.get(shown) else {
@@ -96,8 +96,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     if spot.position != seen.position {
         rows::named_triple(ui, "position", spot.position, " m");
     }
-    rows::vector(ui, "N", spot.normal);
-    rows::vector(ui, "V", spot.view);
+    rows::vectors(ui, &[("N", spot.normal), ("V", spot.view)]);
     if spot.is_mirrored() {
         rows::note(
             ui,
@@ -110,9 +109,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// All about one light.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if let Some(geometry) = &lit.geometry {
-        for (symbol, v) in [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)] {
-            rows::vector(ui, symbol, v);
-        }
+        rows::vectors(ui, &[("L", geometry.l), ("H", geometry.h), ("R", geometry.r)]);
         let all: &[usize] =
             if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
         ui.horizontal_wrapped(|ui| {

@@ -84,7 +84,7 @@ impl Panel for Explain {
 /// The pixel, its code, and the buttons.
 fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut Vec<Action>) {
     let Explanation { pixel, size, .. } = explained.explanation;
-    let pinned = session.view.pinned.is_some();
+    let (pinned, fov) = (session.view.pinned.is_some(), session.document.observer.field_of_view);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let code = explained.explanation.code();
@@ -97,7 +97,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
             if let Some(value) = field.value {
                 let mut other = pixel;
                 other[i] = value as u32;
-                let pin = Pin::of_pixel(explained.view, other, size);
+                let pin = Pin::of_pixel(explained.view, other, size, fov);
                 actions.push(Action::View(ViewChange::Pin(Some(pin))));
             }
         }
@@ -118,7 +118,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 "Keep this pixel explained wherever the pointer is. At the pointer: X, or Alt and a click"
             });
             if pin.clicked() {
-                let this = Pin::of_pixel(explained.view, pixel, size);
+                let this = Pin::of_pixel(explained.view, pixel, size, fov);
                 actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
         });

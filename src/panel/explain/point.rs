@@ -8,7 +8,7 @@ use crate::{explain::Seen, panel::theme, shading::Stage};
 
 /// The point of the pixel, and what its shading model makes of it.
 pub(super) fn point(ui: &mut Ui, seen: &Seen) {
-    ui.spacing_mut().item_spacing.y = 3.0;
+    rows::close(ui);
     rows::named_triple(ui, "point at the pixel's centre", seen.position, " m");
     rows::named_triple(ui, &format!("normal of polygon {}", seen.polygon), seen.face_normal, "");
     if seen.shading.stage == Stage::Pixel {

@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use bevy_egui::egui::{Context, Id, Pos2, Rect, pos2};
+use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 use glam::{Quat, Vec3};
 
 use crate::{
@@ -125,6 +125,10 @@ fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
     Some(cell.map_or(area.rect, |cell| cell.rect)).filter(|rect| rect.is_finite() && rect.is_positive())
 }
 
+fn field_of_view(session: &Session) -> f32 {
+    session.document.observer.field_of_view
+}
+
 /// The size of a picture in pixels, as the window draws it, and the place of its corner.
 fn pixels(ctx: &Context, rect: Rect) -> ([u32; 2], Pos2) {
     let pixel = |points: f32| (points * ctx.pixels_per_point()).round().max(0.0);
@@ -134,7 +138,7 @@ fn pixels(ctx: &Context, rect: Rect) -> ([u32; 2], Pos2) {
 }
 
 /// The pixel under the pointer, if it is over a picture with nothing between.
-fn pointed(ctx: &Context, area: &PictureArea) -> Option<Pin> {
+fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> {
     let at = ctx.input(|i| i.pointer.latest_pos()).filter(|at| is_in_sight(ctx, area.frame, *at))?;
     if area.written.iter().any(|place| place.contains(at)) {
         return None;
@@ -147,19 +151,19 @@ fn pointed(ctx: &Context, area: &PictureArea) -> Option<Pin> {
     let place = (at.to_vec2() * ctx.pixels_per_point() - corner.to_vec2()).floor();
     let inside = |v: f32, side: u32| v >= 0.0 && v < side as f32;
     (inside(place.x, size[0]) && inside(place.y, size[1]))
-        .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size))
+        .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, field_of_view(session)))
 }
 
 /// The place of a pixel in the rectangle of its picture.
 pub(super) fn place(rect: Rect, explanation: &Explanation) -> Pos2 {
     let part = |i: usize| (explanation.pixel[i] as f32 + 0.5) / explanation.size[i] as f32;
-    rect.lerp_inside(bevy_egui::egui::vec2(part(0), part(1)))
+    rect.lerp_inside(vec2(part(0), part(1)))
 }
 
 /// An action with the pixel that it is about: that under the pointer, if there is one.
 pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Action) -> Action {
     let lets_go = session.view.pinned.is_some();
-    match pointed(ctx, area).filter(|_| action == Action::Pin && !lets_go) {
+    match pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go) {
         Some(pin) => Action::View(ViewChange::Pin(Some(pin))),
         None => action,
     }
@@ -168,11 +172,12 @@ pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Actio
 /// Pins the pixel that was clicked with Alt held, or lets go of it.
 pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let click = ctx.input(|i| i.modifiers.alt && i.pointer.primary_clicked());
-    let pin = pointed(ctx, area).filter(|_| click && !session.view.presenting)?;
+    let pin = pointed(ctx, session, area).filter(|_| click && !session.view.presenting)?;
     let near = |pinned: &Pin| {
-        let rect = rect_of(area, pin.view).unwrap_or(Rect::NOTHING);
-        let place = |pin: &Pin| rect.lerp_inside(bevy_egui::egui::vec2(pin.at[0], pin.at[1]));
-        pinned.view == pin.view && place(pinned).distance(place(&pin)) <= NEAR
+        let Some(rect) = rect_of(area, pin.view) else { return false };
+        let (size, _) = pixels(ctx, rect);
+        let pixel = |pin: &Pin| Vec2::from(pin.pixel(size, field_of_view(session)).map(|c| c as f32));
+        pinned.view == pin.view && (pixel(pinned) - pixel(&pin)).length() <= NEAR * ctx.pixels_per_point()
     };
     let same = session.view.pinned.as_ref().is_some_and(near) && session.explains();
     Some(Action::View(ViewChange::Pin(Some(pin).filter(|_| !same))))
@@ -194,7 +199,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
         (probe.hovered, probe.asked, probe.answer) = (false, None, None);
         return;
     }
-    let pointed = pointed(ctx, area);
+    let pointed = pointed(ctx, session, area);
     let mut probe = lock(&shared);
     let probe = &mut *probe;
     probe.hovered = pointed.is_some();
@@ -209,7 +214,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     let question = Question {
         revision: session.document.revision(),
         view: pin.view,
-        pixel: pin.pixel(size),
+        pixel: pin.pixel(size, field_of_view(session)),
         size,
         eye: session.facts.eye,
         camera: session.facts.camera,

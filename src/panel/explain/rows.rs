@@ -21,6 +21,8 @@ pub(super) const DIGITS: usize = 3;
 const ALL: usize = 8;
 /// Size of the letters of a symbol in a row.
 const SYMBOL: f32 = 14.0;
+/// Width of a vector with its symbol, points.
+const VECTOR: f32 = 192.0;
 /// By so much a line is set in that follows from the one above.
 pub(super) const INDENT: f32 = 14.0;
 
@@ -139,16 +141,29 @@ pub(super) fn value(ui: &mut Ui, symbol: &str, shown: &str, all: &str) -> Respon
     row.response.on_hover_text(format!("{all}{help}"))
 }
 
-/// A vector by its symbol.
-pub(super) fn vector(ui: &mut Ui, symbol: &str, v: Vec3) -> Response {
-    value(ui, symbol, &short_triple(v), &rounded_triple(v, ALL))
+/// Vectors by their symbols, as many in a line as fit.
+pub(super) fn vectors(ui: &mut Ui, all: &[(&str, Vec3)]) {
+    let width = VECTOR * theme::scale_here(ui);
+    let in_line = ((ui.available_width() / width) as usize).max(1);
+    for line in all.chunks(in_line) {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            for (symbol, v) in line {
+                let left = ui.cursor().left();
+                value(ui, symbol, &short_triple(*v), &rounded_triple(*v, ALL));
+                ui.add_space((left + width - ui.cursor().left()).max(8.0));
+            }
+        });
+    }
 }
 
 /// Words and a value behind them.
 pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        ui.label(theme::small(ui, name));
+        if !name.is_empty() {
+            ui.label(theme::small(ui, name));
+        }
         let shown = text(ui, shown);
         ui.add(Label::new(shown).selectable(true));
     });
@@ -158,6 +173,24 @@ pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response
 /// Words and three numbers.
 pub(super) fn named_triple(ui: &mut Ui, name: &str, v: Vec3, unit: &str) -> Response {
     named(ui, name, &format!("{}{unit}", short_triple(v)), &rounded_triple(v, ALL))
+}
+
+/// A step on the way to the display, and its result.
+pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3) {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.label(theme::small(ui, format!("{what}:")));
+        sample(ui, v);
+        let shown = text(ui, short_triple(v));
+        ui.add(Label::new(shown).selectable(true));
+    });
+    row.response.on_hover_text(rounded_triple(v, ALL));
+}
+
+/// Lines that stand closer than widgets do.
+pub(super) fn close(ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    ui.spacing_mut().interact_size.y = 16.0 * theme::scale_here(ui);
 }
 
 /// A colour behind words: its sample and its numbers.
@@ -201,7 +234,7 @@ pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
         ui.spacing_mut().item_spacing.x = 0.0;
         ui.add_space(INDENT);
         ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing = vec2(8.0, 4.0);
+            ui.spacing_mut().item_spacing.x = 8.0;
             add(ui);
         });
     });

@@ -29,6 +29,8 @@ const LINE: f32 = 2.25;
 const LETTER: f32 = 13.0;
 /// A vector that is seen shorter than this points at the eye, or away from it, points.
 const END_ON: f32 = 7.0;
+/// The sides of a triangle whose corners have room for their weights, points.
+const ROOMY: f32 = 48.0;
 /// In a smaller picture there is no room for them, points.
 const SMALLEST: f32 = 120.0;
 
@@ -122,17 +124,26 @@ impl Drawing {
             return;
         }
         let places = triangle.map(|p| lens.project(p));
+        // Beside a small triangle there is no room; the panel has them too.
+        let apart = |i: usize| match (places[i], places[(i + 1) % 3]) {
+            (Some(a), Some(b)) => a.distance(b) >= ROOMY,
+            _ => false,
+        };
+        let roomy = (0..3).all(apart);
         let middle = places.iter().flatten().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / 3.0;
         for (corner, at) in seen.corners.iter().zip(places) {
             let Some(at) = at else { continue };
+            let radius = if roomy { 5.0 } else { 3.0 };
             let this = matches!(spot.place, Place::Vertex { vertex, .. } if vertex == corner.vertex);
             self.ink.disc(
                 at,
-                if this { 5.0 } else { 3.5 },
+                if this { radius } else { 0.7 * radius },
                 theme::swatch(corner.colour.clamp(Vec3::ZERO, Vec3::ONE)),
             );
             let out = (at.to_vec2() - middle).normalized();
-            self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE));
+            if roomy {
+                self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE));
+            }
         }
     }
 
