@@ -9,9 +9,15 @@ use super::{
     render::{Size, cpu_can_draw, term},
     scenes::Source,
     views::{Plan, find},
-    workshop::{Workshop, drawable, not_followed_on_cpu},
+    workshop::{Workshop, drawable},
 };
-use crate::{explain, failure::Failure, optics::TermSelection, reference::Settings, text::listed};
+use crate::{
+    explain,
+    failure::Failure,
+    optics::TermSelection,
+    reference::{Settings, ignored_edits},
+    text::listed,
+};
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -61,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     for part in &plan.parts {
         drawable(registry, &part.scene)?;
         cpu_can_draw(&part.scene, registry)?;
-        let passed = not_followed_on_cpu(registry, &part.scene);
+        let passed = ignored_edits(registry, &part.scene);
         if !passed.is_empty() {
             let passed: Vec<_> = passed.iter().map(String::as_str).collect();
             options.tell(format_args!(

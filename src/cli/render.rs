@@ -16,7 +16,7 @@ use super::{
     progress,
     scenes::Source,
     views::{self, Part, Plan},
-    workshop::{Workshop, drawable, invalid, not_followed_on_cpu, not_on_cpu},
+    workshop::{Workshop, drawable, invalid, not_on_cpu},
 };
 use crate::{
     caption,
@@ -213,7 +213,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let by_cpu = plans.iter().filter(|plan| !painter.takes_gpu(plan, registry));
     let passed: BTreeSet<_> = by_cpu
         .flat_map(|plan| &plan.parts)
-        .flat_map(|part| not_followed_on_cpu(registry, &part.scene))
+        .flat_map(|part| reference::ignored_edits(registry, &part.scene))
         .collect();
     if !passed.is_empty() {
         let passed: Vec<_> = passed.iter().map(String::as_str).collect();

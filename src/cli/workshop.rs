@@ -14,12 +14,8 @@ use crate::{
     export::payload::{Payload, PayloadError},
     failure::Failure,
     library::assets::{self, Folders},
-    reflection::{Family, ModelEntry},
-    registry::{
-        Registry,
-        check::wgsl,
-        compose::{Part, compose, files},
-    },
+    reflection::ModelEntry,
+    registry::{Registry, check::wgsl, compose::compose},
     render::capture::gpu::GpuError,
     scene::{
         Scene,
@@ -335,27 +331,6 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     Ok(())
 }
 
-/// The edited shaders that a scene uses on the GPU and not on the CPU. There everything is Rust except custom models,
-/// with their imports and the functions that they share.
-pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
-    if registry.sources().edited().all(|path| path.starts_with("models/")) {
-        return BTreeSet::new();
-    }
-    let lights = &registry.lights_in(scene.light_types(registry));
-    let pairs: BTreeSet<_> =
-        scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
-    let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.shading_model(n)?)));
-    known
-        .flat_map(|(model, shading)| {
-            let own = model.declaration.family == Family::Custom;
-            files(registry.sources(), model, shading, lights)
-                .into_iter()
-                .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))
-                .map(|file| file.path)
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -369,18 +344,6 @@ mod tests {
         assert_eq!(flags(None, None), "");
         assert_eq!(flags(Some("assets"), None), " --assets assets");
         assert_eq!(flags(Some("../a b"), Some("Mira's")), r" --assets '../a b' --models 'Mira'\''s'");
-    }
-
-    #[test]
-    fn the_cpu_follows_no_edited_shader_of_what_is_built_in() {
-        let mut registry = Registry::builtin();
-        let scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
-        assert!(not_followed_on_cpu(&registry, &scene).is_empty());
-        for path in ["models/mine.wgsl", "reflection/lambert.wgsl", "reflection/phong.wgsl", "loop.wgsl"] {
-            registry.sources_mut().edit(path, "// mine");
-        }
-        let found = not_followed_on_cpu(&registry, &scene);
-        assert_eq!(found.into_iter().collect::<Vec<_>>(), ["loop.wgsl", "reflection/phong.wgsl"]);
     }
 
     #[test]

@@ -48,6 +48,7 @@ impl Explain<'_> {
             shading: shading.declaration,
             position: found.varying.position,
             polygon: found.polygon,
+            outline: found.outline,
             face_normal: found.face_normal,
             interpolated_normal: found.varying.normal,
             corners,

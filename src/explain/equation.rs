@@ -1,6 +1,10 @@
 //! Equations with numbers in the place of their symbols.
 
-use super::{Geometry, Lit, Model, Setting, angle, number, triple};
+use super::{
+    Geometry, Lit, Model, Setting, angle, number,
+    numbers::{DIGITS, rounded, rounded_triple},
+    triple,
+};
 use crate::{
     optics::TermSelection,
     parameter::{Parameter, ParameterKind, Value},
@@ -19,12 +23,21 @@ impl Symbols {
     /// The parameters of a model and, for light from a direction, cosines and angles.
     #[must_use]
     pub fn of(model: &Model, geometry: Option<&Geometry>) -> Self {
+        Self::rounded(model, geometry, DIGITS)
+    }
+
+    /// The same with so many significant digits.
+    #[must_use]
+    pub fn rounded(model: &Model, geometry: Option<&Geometry>, digits: usize) -> Self {
         let mut symbols = Self::default();
+        let number = |v: f32| rounded(v, digits);
         for Setting { parameter, value, linear } in &model.settings {
             match (value, linear) {
-                (_, Some(linear)) => symbols.put(parameter.symbol, triple(*linear)),
+                (_, Some(linear)) => symbols.put(parameter.symbol, rounded_triple(*linear, digits)),
                 // Equations take angles as angles: σ = 20°.
-                (Value::Number(v), _) if parameter.unit == "°" => symbols.put_angle(parameter.symbol, *v),
+                (Value::Number(v), _) if parameter.unit == "°" => {
+                    symbols.put_angle(parameter.symbol, number(*v))
+                }
                 (Value::Number(v), _) => symbols.put(parameter.symbol, number(*v)),
                 (Value::Integer(v), _) => symbols.put(parameter.symbol, v.to_string()),
                 _ => {}
@@ -35,7 +48,7 @@ impl Symbols {
                 symbols.put(name, number(cosine));
             }
             for (symbol, cosine) in [("θ_i", "N·L"), ("θ_r", "N·V"), ("θ_o", "N·V"), ("θ_h", "N·H")] {
-                symbols.put_angle(symbol, angle(geometry.cosine(cosine)));
+                symbols.put_angle(symbol, number(angle(geometry.cosine(cosine))));
             }
         }
         symbols
@@ -49,8 +62,8 @@ impl Symbols {
         }
     }
 
-    fn put_angle(&mut self, symbol: &str, degrees: f32) {
-        self.put(symbol, format!("{}°", number(degrees)));
+    fn put_angle(&mut self, symbol: &str, degrees: String) {
+        self.put(symbol, format!("{degrees}°"));
     }
 
     fn get(&self, symbol: &str) -> Option<&str> {
@@ -193,7 +206,13 @@ impl Lit {
     /// The equation of the model for this light, line by line. Every term that is not zero has a line with its value.
     #[must_use]
     pub fn lines(&self, model: &Model) -> Vec<Line> {
-        let symbols = Symbols::of(model, self.geometry.as_ref());
+        self.rounded_lines(model, DIGITS)
+    }
+
+    /// The same with so many significant digits.
+    #[must_use]
+    pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
+        let symbols = Symbols::rounded(model, self.geometry.as_ref(), digits);
         let mut lines = Vec::new();
         for (term, symbol, value) in [
             (Term::Ambient, "I_a", self.response.ambient),

@@ -22,7 +22,7 @@ use crate::{
     light::Factor,
     optics::{TermSelection, Terms, colour::luminance},
     parameter::{Parameter, Value},
-    reference::{DisplaySteps, Picture, Settings, probe::probe},
+    reference::{DisplaySteps, Picture, Settings, meshes::MeshStore, probe::probe},
     reflection::Declaration,
     registry::Registry,
     scene::{Display, Scene},
@@ -37,7 +37,7 @@ mod text;
 
 use collect::Explain;
 pub use equation::{Line, Symbols, put_in};
-pub use numbers::{number, triple};
+pub use numbers::{number, rounded, rounded_triple, triple};
 
 /// The reason why a pixel cannot be explained.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -106,6 +106,8 @@ pub struct Seen {
     pub position: Vec3,
     /// The number of the polygon in the mesh of the object.
     pub polygon: usize,
+    /// The corners of that polygon.
+    pub outline: Vec<Vec3>,
     /// The normal of the triangle, which is the polygon's unless the polygon is bent.
     pub face_normal: Vec3,
     /// The normal interpolated between the corners, as the shading model passes it on: not renormalised.
@@ -320,11 +322,49 @@ pub fn pixel(
     settings: &Settings,
     pixel: [u32; 2],
 ) -> Result<Explanation, ExplainError> {
+    Explainer::default().pixel(scene, registry, settings, pixel)
+}
+
+/// Explains pixel after pixel, and makes the meshes of the scene only once.
+#[derive(Default)]
+pub struct Explainer {
+    meshes: MeshStore,
+}
+
+impl std::fmt::Debug for Explainer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Explainer").finish_non_exhaustive()
+    }
+}
+
+impl Explainer {
+    /// See [`pixel`].
+    ///
+    /// # Errors
+    /// If the pixel is not in the picture.
+    pub fn pixel(
+        &mut self,
+        scene: &Scene,
+        registry: &Registry,
+        settings: &Settings,
+        pixel: [u32; 2],
+    ) -> Result<Explanation, ExplainError> {
+        explained(&mut self.meshes, scene, registry, settings, pixel)
+    }
+}
+
+fn explained(
+    meshes: &mut MeshStore,
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    pixel: [u32; 2],
+) -> Result<Explanation, ExplainError> {
     let size = [settings.width, settings.height];
     if pixel[0] >= size[0] || pixel[1] >= size[1] {
         return Err(ExplainError::Outside { pixel, size });
     }
-    let found = probe(scene, registry, settings, pixel);
+    let found = probe(meshes, scene, registry, settings, pixel);
     let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
     let explain = Explain { scene, registry, settings };
     Ok(Explanation {

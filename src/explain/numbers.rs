@@ -3,11 +3,18 @@
 use glam::Vec3;
 
 /// Digits that tell: codes have eight bits.
-const DIGITS: i32 = 4;
+pub(super) const DIGITS: usize = 4;
 
 /// A number with four significant digits, and none at its end that say nothing; `NaN` and `∞` are written as such.
 #[must_use]
 pub fn number(v: f32) -> String {
+    rounded(v, DIGITS)
+}
+
+/// The same with so many significant digits.
+#[must_use]
+pub fn rounded(v: f32, digits: usize) -> String {
+    let digits = digits.max(1);
     if v.is_nan() {
         return "NaN".to_owned();
     }
@@ -19,9 +26,9 @@ pub fn number(v: f32) -> String {
     let whole = size.log10().floor() as i32;
     let text = match whole {
         _ if size == 0.0 => "0".to_owned(),
-        -4..=5 => trimmed(&format!("{size:.*}", (DIGITS - 1 - whole).max(0) as usize)),
+        -4..=5 => trimmed(&format!("{size:.*}", (digits as i32 - 1 - whole).max(0) as usize)),
         _ => {
-            let text = format!("{size:.*e}", DIGITS as usize - 1);
+            let text = format!("{size:.*e}", digits - 1);
             let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
             format!("{}·10^{}", trimmed(digits), power.replace('-', "−"))
         }
@@ -40,7 +47,14 @@ fn trimmed(text: &str) -> String {
 /// A colour or a vector: `(0.5, 0.25, 0)`.
 #[must_use]
 pub fn triple(v: Vec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+    rounded_triple(v, DIGITS)
+}
+
+/// The same with so many significant digits.
+#[must_use]
+pub fn rounded_triple(v: Vec3, digits: usize) -> String {
+    let [x, y, z] = v.to_array().map(|v| rounded(v, digits));
+    format!("({x}, {y}, {z})")
 }
 
 /// A number if red, green and blue are the same, and otherwise the three.
@@ -69,6 +83,21 @@ mod tests {
         ] {
             assert_eq!(number(v), expected);
         }
+    }
+
+    #[test]
+    fn fewer_digits_are_rounded() {
+        for (v, expected) in [
+            (0.123_456, "0.123"),
+            (12.35, "12.4"),
+            (1234.5, "1234"),
+            (0.999_6, "1"),
+            (1.234e-7, "1.23·10^−7"),
+        ] {
+            assert_eq!(rounded(v, 3), expected);
+        }
+        assert_eq!(rounded_triple(Vec3::new(0.5, 1.0 / 3.0, 0.0), 3), "(0.5, 0.333, 0)");
+        assert_eq!(rounded(0.25, 0), rounded(0.25, 1));
     }
 
     #[test]

@@ -163,6 +163,14 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     }
     add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
     add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
+    add(
+        "Picture",
+        false,
+        false,
+        Key::X,
+        "Explain the pixel at the pointer; again: let go of it",
+        Action::Pin,
+    );
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
     add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
@@ -237,6 +245,7 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Mouse in the picture", "right drag", "Move sideways; Shift and left drag does it too"),
     ("Mouse in the picture", "wheel", "Nearer, farther"),
     ("Mouse in the picture", "click", "Select"),
+    ("Mouse in the picture", "Alt and click", "Explain the pixel; again: let go of it, as Esc does"),
     ("Mouse in the picture", "drag of a handle", "Move, turn, resize; with Ctrl in steps, Esc takes it back"),
 ];
 

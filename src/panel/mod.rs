@@ -44,6 +44,7 @@ pub mod compare;
 mod context;
 pub mod dialogs;
 pub mod effects;
+pub mod explain;
 pub mod export;
 pub mod files;
 mod focus;
@@ -95,6 +96,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add_own(messages::Messages);
     to.add_own(shader::Shader);
     to.add_own(history::History);
+    to.add_own(explain::Explain);
     to.add_own(tree::Tree);
     to.add_own(inspector::Inspector);
 }
@@ -149,8 +151,12 @@ pub fn show(
     let mut context = PanelContext::new(&session, registry, world);
     let actions = &mut context.actions;
     if !dialogs.is_open() {
-        actions.extend(keys::pressed(&ctx, &session, registry));
+        let pressed = keys::pressed(&ctx, &session, registry);
+        actions.extend(pressed.into_iter().map(|action| explain::aimed(&ctx, &session, area, action)));
     }
+    actions.extend(explain::clicked(&ctx, &session, area));
+    actions.extend(explain::left(&ctx, &session, area));
+    explain::look(&ctx, &session, area, registry);
     actions.extend(presentation::left(&ctx, &session, area));
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
@@ -309,10 +315,15 @@ struct Cover {
 #[must_use]
 pub fn is_over_picture(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
     let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
+    is_in_sight(ctx, frame, at) && !cover.places.iter().any(|place| place.contains(at))
+}
+
+/// The same, also where something over the picture can be clicked.
+fn is_in_sight(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
+    let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
     // Panels are no layers of their own; menus, popups, windows and dialogs are.
     frame.contains(at)
         && !cover.busy
-        && !cover.places.iter().any(|place| place.contains(at))
         && ctx.layer_id_at(at).is_none_or(|layer| layer.order == egui::Order::Background)
         && !ctx.egui_is_using_pointer()
 }

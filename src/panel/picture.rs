@@ -10,12 +10,13 @@ use super::{
     caption::{self, Lines, caption_text, models_shown},
     clipping,
     compare::Arrangement,
-    handles, icon, labels, marks,
+    explain, handles, icon, labels, marks,
     presentation::Stage,
     state::{Action, Badge, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
+    document::Selection,
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
@@ -58,6 +59,7 @@ pub fn overlays(
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
+    explain::vectors(ui, rect, session.active(), session);
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui, session));
         let (asked, covered) = stale(ui, free, session, registry);
@@ -83,7 +85,12 @@ fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &R
     if session.view.presenting {
         return;
     }
-    for paint in [marks::marks, handles::handles] {
+    // They would cover the vectors of what is pinned.
+    let covers = session.explains()
+        && session.view.pinned.is_some()
+        && matches!(session.selection, Selection::Object(_));
+    let paints = [marks::marks, handles::handles];
+    for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
         let (asked, places) = paint(ui, rect, written, session, registry);
         to.actions.extend(asked);
         to.places.extend(places);
@@ -107,6 +114,10 @@ pub fn views(
             marked(ui, cell.rect, written, session, registry, &mut all);
             all.written.extend(labels::labels(ui, cell.rect, cell.view, session, registry));
         });
+    }
+    for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
+        // Views that lie over each other have the same rectangle.
+        explain::vectors(ui, cell.rect, cell.view, session);
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
     if let Some(cell) = active.or(arrangement.cells.first()) {

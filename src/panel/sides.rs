@@ -11,7 +11,7 @@ use super::{
     glyphs,
     icon::{self, Icon},
     shares::shared,
-    state::{Action, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
+    state::{Action, EXPLAIN_TAB, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
     theme::{self, Palette},
 };
 
@@ -122,6 +122,8 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
 
 /// The least height of the strip with the shaders, points.
 const SHADER_STRIP: f32 = 184.0;
+/// The least height of the strip that explains a pixel, points, and of the window.
+const EXPLAIN_STRIP: (f32, f32) = (240.0, 0.37);
 
 /// The strip at the bottom. Tabs appear when there is more than one panel.
 pub(super) fn bottom(
@@ -135,10 +137,13 @@ pub(super) fn bottom(
 ) {
     let most = 0.6 * whole.height();
     // An error with its line of source is seen whole.
-    let shader = session.view.bottom_tab == SHADER_TAB;
-    let least = if shader { SHADER_STRIP } else { 72.0 };
+    let (kind, least) = match session.view.bottom_tab.as_str() {
+        SHADER_TAB => (1, SHADER_STRIP),
+        EXPLAIN_TAB => (2, EXPLAIN_STRIP.0.max(EXPLAIN_STRIP.1 * whole.height())),
+        _ => (0, 72.0),
+    };
     let zoom = super::zoom_percent(ui.ctx());
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, kind)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
         .default_size(height.max(least).min(most))

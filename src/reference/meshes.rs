@@ -23,7 +23,7 @@ const AT_ONCE: usize = 16;
 const AHEAD: usize = 1024;
 
 /// A mesh with its normals, shared by all objects with equal keys.
-pub(super) struct Prepared {
+pub(crate) struct Prepared {
     pub(super) mesh: PolygonMesh,
     pub(super) polygon_normals: Vec<Vec3>,
     pub(super) polygon_centres: Vec<Vec3>,
@@ -51,26 +51,42 @@ impl Prepared {
     }
 }
 
-/// The meshes of the objects that are being drawn.
-pub(super) struct Meshes<'a> {
-    registry: &'a Registry,
+/// Meshes that are kept from one picture to the next.
+#[derive(Default)]
+pub(crate) struct MeshStore {
     known: HashMap<MeshKey, Arc<Prepared>>,
     /// Polygons of all of them.
     polygons: usize,
 }
 
+/// The meshes of the objects that are being drawn.
+pub(super) struct Meshes<'a> {
+    registry: &'a Registry,
+    store: MeshStore,
+}
+
 impl<'a> Meshes<'a> {
     pub(super) fn new(registry: &'a Registry) -> Self {
-        Self { registry, known: HashMap::new(), polygons: 0 }
+        Self::with(registry, MeshStore::default())
+    }
+
+    /// With those that are known already.
+    pub(super) fn with(registry: &'a Registry, store: MeshStore) -> Self {
+        Self { registry, store }
+    }
+
+    /// What is known now.
+    pub(super) fn into_store(self) -> MeshStore {
+        self.store
     }
 
     /// The mesh of the first of some objects that are drawn one after the other; `None` if its type is unknown.
     pub(super) fn first(&mut self, objects: &[&Object]) -> Option<Arc<Prepared>> {
         let (_, key) = self.entry(objects.first()?)?;
-        if !self.known.contains_key(&key) {
+        if !self.store.known.contains_key(&key) {
             self.make(objects);
         }
-        self.known.get(&key).cloned()
+        self.store.known.get(&key).cloned()
     }
 
     fn entry(&self, object: &Object) -> Option<(&'a ShapeEntry, MeshKey)> {
@@ -80,14 +96,16 @@ impl<'a> Meshes<'a> {
 
     /// Makes missing meshes of the first objects, in parallel.
     fn make(&mut self, objects: &[&Object]) {
-        if self.polygons > POLYGONS_HELD {
+        if self.store.polygons > POLYGONS_HELD {
             // Those that are still needed are held by who needs them.
-            self.known.clear();
-            self.polygons = 0;
+            self.store.known.clear();
+            self.store.polygons = 0;
         }
         let mut missing = HashMap::new();
         for object in objects.iter().take(AHEAD) {
-            if let Some((entry, key)) = self.entry(object).filter(|(_, key)| !self.known.contains_key(key)) {
+            if let Some((entry, key)) =
+                self.entry(object).filter(|(_, key)| !self.store.known.contains_key(key))
+            {
                 missing.entry(key).or_insert((entry, *object));
             }
             if missing.len() == AT_ONCE {
@@ -101,8 +119,8 @@ impl<'a> Meshes<'a> {
                 (key, Arc::new(Prepared::new(mesh)))
             })
             .collect();
-        self.polygons += made.iter().map(|(_, prepared)| prepared.mesh.polygons.len()).sum::<usize>();
-        self.known.extend(made);
+        self.store.polygons += made.iter().map(|(_, prepared)| prepared.mesh.polygons.len()).sum::<usize>();
+        self.store.known.extend(made);
     }
 }
 
@@ -126,7 +144,7 @@ mod tests {
         let first: Vec<_> = (0..4).filter_map(|i| meshes.first(&alike[i..])).collect();
         assert!(Arc::ptr_eq(&first[0], &first[1]));
         assert!(!Arc::ptr_eq(&first[0], &first[2]) && !Arc::ptr_eq(&first[0], &first[3]));
-        assert_eq!(meshes.polygons, 2 * 8 * 16 + 9 * 18);
+        assert_eq!(meshes.store.polygons, 2 * 8 * 16 + 9 * 18);
 
         let different: Vec<_> = (0..200).map(|i| object(0.02 + 0.001 * i as f32, 64)).collect();
         let different: Vec<_> = different.iter().collect();
@@ -135,7 +153,7 @@ mod tests {
             let mesh = meshes.first(&different[i..]).expect("known");
             let thickness = mesh.mesh.positions.iter().map(|p| p.z).fold(0.0, f32::max);
             assert!((thickness - (0.02 + 0.001 * i as f32)).abs() < 1e-4, "{i}: {thickness}");
-            most = most.max(meshes.polygons);
+            most = most.max(meshes.store.polygons);
         }
         let one = 64 * 128;
         assert!(most > POLYGONS_HELD / 2 && most <= POLYGONS_HELD + AT_ONCE * one, "{most}");

@@ -36,8 +36,9 @@ use crate::{
 };
 
 mod display;
+mod edits;
 mod lighting;
-mod meshes;
+pub(crate) mod meshes;
 mod object;
 pub(crate) mod probe;
 mod raster;
@@ -45,6 +46,7 @@ mod raster;
 pub use crate::optics::colour::BACKGROUND;
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
+pub use edits::ignored_edits;
 use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};

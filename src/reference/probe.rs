@@ -10,7 +10,7 @@ use glam::{Mat4, Vec3, Vec4};
 use super::{
     Settings,
     lighting::{Lights, LightsOn, light_by_light},
-    meshes::Meshes,
+    meshes::{MeshStore, Meshes},
     object::{Draw, Face, Posed, hidden},
     raster::{self, Screen, Tile},
 };
@@ -31,6 +31,8 @@ pub(crate) struct Probe {
     pub(crate) stage: Stage,
     /// The number of the polygon in the mesh.
     pub(crate) polygon: usize,
+    /// The corners of that polygon.
+    pub(crate) outline: Vec<Vec3>,
     /// The corners of the triangle that covers the pixel's centre.
     pub(crate) corners: [ProbeCorner; 3],
     /// The values interpolated between them.
@@ -61,6 +63,7 @@ pub(crate) struct ProbeCorner {
 
 /// The object at a pixel within the picture; none if there is only background.
 pub(crate) fn probe(
+    store: &mut MeshStore,
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
@@ -71,7 +74,7 @@ pub(crate) fn probe(
     let screen = Screen::of_pixel(width, height, pixel);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let beam = raster::frustum(&(narrowed([width, height], pixel) * clip_from_room));
-    let mut meshes = Meshes::new(registry);
+    let mut meshes = Meshes::with(registry, std::mem::take(store));
     let (indices, shown): (Vec<_>, Vec<_>) =
         scene.objects.iter().enumerate().filter(|(_, object)| object.visible).unzip();
 
@@ -104,6 +107,7 @@ pub(crate) fn probe(
             found = Some((indices[i], draw, posed, face, weights));
         }
     }
+    *store = meshes.into_store();
     let (object, draw, posed, face, weights) = found?;
     let lights = Lights::new(scene, registry, settings.terms);
     let lighting = Asked { lighting: lights.on(&*draw.surface), points: RefCell::default() };
@@ -182,6 +186,11 @@ fn shaded(
         object,
         stage: draw.stage,
         polygon: polygon as usize,
+        outline: draw.shape.mesh.polygons[polygon as usize]
+            .corners()
+            .iter()
+            .map(|i| posed.positions[*i as usize])
+            .collect(),
         corners: std::array::from_fn(|i| ProbeCorner {
             vertex: corners[i] as usize,
             position: posed.positions[corners[i] as usize],

@@ -109,7 +109,9 @@ pub(super) fn follow_cursor(
             WindowEvent::CursorLeft(_) if !pointer.held => pointer.place = None,
             WindowEvent::MouseButtonInput(button) if button.state.is_pressed() => {
                 pointer.held = true;
-                over.pressed = pointer.place.filter(|place| is_over(Some(*place)));
+                // With Alt held, the pixel is explained.
+                let explains = context.as_ref().is_some_and(|context| context.input(|i| i.modifiers.alt));
+                over.pressed = pointer.place.filter(|place| !explains && is_over(Some(*place)));
             }
             _ => {}
         }

@@ -63,6 +63,7 @@ mod plot;
 mod plugins;
 mod pointer;
 mod presentation;
+mod probe;
 mod reference_renderer;
 mod registration;
 mod reload;

@@ -8,7 +8,7 @@ use {light::light, object::object, observer::observer, room::room};
 
 mod light;
 mod measured;
-mod model;
+pub(super) mod model;
 mod object;
 mod observer;
 mod part;

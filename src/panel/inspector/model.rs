@@ -134,7 +134,7 @@ pub(super) fn terms(
 }
 
 /// The stage that evaluates the model: a picture and the words.
-pub(super) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
+pub(in crate::panel) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
     let d = shading.declaration;
     let palette = Palette::here(ui);
     ui.horizontal(|ui| {

@@ -29,6 +29,11 @@ impl Ink {
         Self { lens, below: Vec::new(), above: Vec::new() }
     }
 
+    /// The way from the room to the picture.
+    pub(in crate::panel) fn lens(&self) -> Lens {
+        self.lens
+    }
+
     pub(super) fn line(&mut self, points: Vec<Pos2>, colour: Color32) {
         self.stroke(points, LINE, colour);
     }

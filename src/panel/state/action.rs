@@ -80,6 +80,9 @@ pub enum Action {
     NextTerms,
     /// Change what is shown.
     View(ViewChange),
+    /// Pin the pixel under the pointer, or else the middle of the picture, so that it stays explained; let go of the one
+    /// that is pinned.
+    Pin,
     /// Put the camera where the observer is.
     HomeView,
     /// Let the camera look at what is selected.
@@ -312,6 +315,7 @@ impl Session {
             Action::Compare(command) => self.compare(command, registry),
             Action::Match(command) => return self.matching(command, registry),
             Action::View(change) => return self.change_view(change),
+            Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
             Action::ObserverFromView => return vec![Effect::ObserverFromView],

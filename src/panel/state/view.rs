@@ -1,6 +1,7 @@
 //! The choice of what is shown, and how.
 
-use super::{Effect, Place, Session};
+use super::probe::EXPLAIN_TAB;
+use super::{Effect, Pin, Place, Session};
 use crate::optics::TermSelection;
 
 /// Id of the panel that shows the messages.
@@ -144,6 +145,8 @@ pub struct View {
     pub left_open: bool,
     /// True if the inspector at the right is shown.
     pub right_open: bool,
+    /// The pixel that stays explained wherever the pointer is.
+    pub pinned: Option<Pin>,
     /// Width of the tree, points.
     pub left_width: f32,
     /// Width of the inspector, points.
@@ -187,6 +190,7 @@ impl Default for View {
             bottom_tab: MESSAGES_TAB.to_owned(),
             left_open: true,
             right_open: true,
+            pinned: None,
             left_width: 208.0,
             right_width: 344.0,
             bottom_height: 144.0,
@@ -239,6 +243,8 @@ pub enum ViewChange {
     Panel(String, bool),
     /// Folds a panel of others at a side, or unfolds it.
     Fold(String, bool),
+    /// See [`View::pinned`]; what is pinned is shown.
+    Pin(Option<Pin>),
     /// See [`View::left_open`].
     Left(bool),
     /// See [`View::right_open`].
@@ -321,6 +327,12 @@ impl View {
             }
             ViewChange::Panel(id, shown) => set(&mut self.hidden_panels, id, !shown),
             ViewChange::Fold(id, folded) => set(&mut self.folded_panels, id, folded),
+            ViewChange::Pin(pin) => {
+                self.pinned = pin;
+                if pin.is_some() {
+                    self.unfold(EXPLAIN_TAB);
+                }
+            }
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {

@@ -1,0 +1,42 @@
+//! The way from light to the code on the display.
+
+use bevy_egui::egui::Ui;
+
+use super::rows;
+use crate::{explain::Explanation, optics::colour::Encoding, panel::theme};
+
+/// The steps, one below the other, each with its result.
+pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
+    rows::close(ui);
+    let (steps, display) = (&explanation.steps, &explanation.display);
+    rows::heading(ui, "From light to the code on the display");
+    if explanation.seen.is_some() {
+        rows::step(ui, "light of the pixel", steps.light);
+        let (ev, factor) = (rows::short(display.exposure), rows::short(steps.exposure));
+        rows::step(ui, &format!("exposure {ev} EV, × {factor}"), steps.exposed);
+    } else {
+        rows::step(ui, "background, whatever the exposure", steps.exposed);
+    }
+    if display.encoding == Encoding::Off {
+        rows::note(
+            ui,
+            "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the last \
+             step encodes.",
+        );
+        rows::step(ui, "decoded", steps.input);
+    }
+    rows::step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), steps.mapped);
+    if steps.mapped.is_nan() {
+        rows::note(ui, "What is no number is shown as 0.");
+    } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
+        rows::note(ui, "What is beyond 0–1 is clipped.");
+    }
+    // Not light any more: the numbers of the display.
+    rows::named_triple(ui, "sRGB encoding:", steps.encoded, "");
+    let [r, g, b] = steps.codes;
+    ui.horizontal(|ui| {
+        ui.label(theme::small(ui, "× 255, rounded: the code"));
+        rows::chip(ui, steps.codes, bevy_egui::egui::vec2(28.0, 16.0));
+        ui.label(theme::strong(ui, format!("{r}, {g}, {b}")));
+    });
+}

@@ -1,0 +1,228 @@
+//! The equation at a point, light by light: as it is written, with numbers, and its result. One light is unfolded.
+
+use bevy_egui::egui::{Id, Ui};
+use glam::Vec3;
+
+use super::{
+    probe::{self, Choice, Unfolded},
+    rows,
+};
+use crate::{
+    explain::{Explanation, Lit, Place, Seen, Spot, angle},
+    optics::TermSelection,
+    panel::{maths, segmented::segmented},
+    reflection::Term,
+    text::plural,
+};
+
+/// More lights are not listed.
+const MOST: usize = 32;
+
+/// The point that is shown, and its lights, the brightest first.
+pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice: Choice) {
+    rows::close(ui);
+    let spots = probe::spots(seen);
+    let shown = probe::shown_spot(seen, choice);
+    let Some(spot) = spots.get(shown) else {
+        rows::heading(ui, "Light by light");
+        rows::note(ui, "The shading model did not evaluate the reflection model.");
+        return;
+    };
+    if spots.len() > 1 {
+        let names: Vec<_> = spots.iter().map(|spot| name_of(spot)).collect();
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.label(if i < seen.spots.len() {
+                "A point at which the equation was evaluated"
+            } else {
+                "What per-pixel shading would give here, which is not what is shown"
+            });
+        };
+        if let Some(i) = segmented(ui, "Point", &names, Some(shown), tip) {
+            probe::choose(ui.ctx(), Choice { spot: Some(i), ..choice });
+        }
+    } else {
+        rows::heading(ui, &format!("Light by light {}", at(seen, spot)));
+    }
+    place(ui, spot, seen);
+    if spot.lights.is_empty() {
+        rows::note(ui, "No light is switched on, so there is no light here.");
+    }
+    let unfolded = probe::shown_light(spot, choice).map(|lit| lit.light.index);
+    let lights = spot.brightest();
+    for lit in lights.iter().take(MOST) {
+        let open = unfolded == Some(lit.light.index);
+        let name = lit.light.name.clone().unwrap_or_else(|| format!("Light {}", lit.light.index + 1));
+        let id = Id::new(("light of an explanation", lit.light.index));
+        if rows::fold(ui, id, &name, lit.light.type_name, open, lit.contribution).clicked() {
+            let light = if open { Unfolded::None } else { Unfolded::Light(lit.light.index) };
+            probe::choose(ui.ctx(), Choice { light, ..choice });
+        }
+        if open {
+            rows::inset(ui, |ui| light(ui, explanation, seen, lit));
+        }
+    }
+    if lights.len() > MOST {
+        let rest: Vec3 = lights[MOST..].iter().map(|lit| lit.contribution).sum();
+        let count = plural(lights.len() - MOST, "more light");
+        rows::light(ui, &format!("{count}, none brighter:"), rest, false);
+    }
+    if spot.lights.len() > 1 {
+        rows::light(ui, &format!("sum over {}", plural(spot.lights.len(), "light")), spot.sum, true);
+    }
+    if spot.is_replaced() {
+        rows::light(ui, "what is no number counts as 0, and nothing beyond ±10³⁰:", spot.colour, true);
+    }
+}
+
+fn name_of(spot: &Spot) -> String {
+    match spot.place {
+        Place::Polygon => "polygon".to_owned(),
+        Place::Vertex { vertex, weight } => format!("vertex {vertex} · {}", rows::short(weight)),
+        Place::Pixel => "per pixel".to_owned(),
+    }
+}
+
+fn at(seen: &Seen, spot: &Spot) -> String {
+    match spot.place {
+        Place::Polygon => format!("at the centre of polygon {}", seen.polygon),
+        Place::Vertex { vertex, .. } => format!("at vertex {vertex}"),
+        Place::Pixel => "at this pixel".to_owned(),
+    }
+}
+
+/// Position, normal and observer.
+fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
+    if spot.position != seen.position {
+        rows::named_triple(ui, "position", spot.position, " m");
+    }
+    rows::vectors(ui, &[("N", spot.normal), ("V", spot.view)]);
+    if spot.is_mirrored() {
+        rows::note(
+            ui,
+            "The normal faces away from the observer, who sees the surface all the same: V is the direction to the \
+             observer, mirrored in the surface.",
+        );
+    }
+}
+
+/// All about one light.
+fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
+    if let Some(geometry) = &lit.geometry {
+        rows::vectors(ui, &[("L", geometry.l), ("H", geometry.h), ("R", geometry.r)]);
+        let all: &[usize] =
+            if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 14.0;
+            for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]) {
+                let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
+                ui.label(text).on_hover_text(rows::all(cosine));
+            }
+        });
+    }
+    arriving(ui, lit);
+    if lit.is_dark() {
+        rows::note(ui, "None of its light reaches the point.");
+        return;
+    }
+    if lit.is_behind() {
+        rows::note(ui, "N·L ≤ 0: the surface faces away from the light.");
+    }
+    if lit.geometry.is_none() {
+        rows::note(ui, "Light from everywhere: the model answers it as a whole, with its ambient term.");
+    }
+    let settings = &seen.model.settings;
+    let name = |symbol: &str| -> Option<String> {
+        let parameter = settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
+        parameter
+            .map(|s| format!("{}: {}", s.parameter.label, s.parameter.help))
+            .or_else(|| maths::meaning(symbol).map(str::to_owned))
+    };
+    for line in lit.rounded_lines(&seen.model, rows::DIGITS) {
+        let head = if line.text.is_empty() { format!("{} =", line.symbol()) } else { line.text.to_owned() };
+        let bare = line.text.is_empty();
+        if !bare {
+            rows::equation(ui, line.term, &head, false, name);
+        }
+        if let Some(numbers) = &line.numbers {
+            // What is defined stands on the left once.
+            let numbers = numbers.find(" = ").map_or(numbers.as_str(), |at| &numbers[at + 1..]);
+            rows::equation(ui, Term::Total, numbers, true, |_| None);
+        }
+        if let Some(value) = line.value {
+            let none = lit.is_behind() && line.term != Term::Ambient && value == Vec3::ZERO && !bare;
+            rows::inset(ui, |ui| {
+                rows::light(ui, if bare { &head } else { "=" }, value, false);
+                if none {
+                    rows::note(ui, "since N·L ≤ 0");
+                }
+            });
+        }
+    }
+    ui.add_space(2.0);
+    rows::note(ui, "light to the observer");
+    let sum = sum(explanation.terms, lit);
+    rows::equation(ui, Term::Total, &format!("{sum} × {}", rows::formula(lit.arriving)), true, name);
+    rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
+    if !lit.is_finite() {
+        rows::note(ui, "Some of these are not finite numbers.");
+    }
+}
+
+/// The terms that reach the observer: those that are shown, and are not 0.
+fn sum(terms: TermSelection, lit: &Lit) -> String {
+    let response = lit.response;
+    let all = [
+        (Term::Ambient, response.ambient, "I_a"),
+        (Term::Diffuse, response.diffuse, "I_d"),
+        (Term::Specular, response.specular, "I_s"),
+    ];
+    let shown = |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
+    let some: Vec<_> = all.iter().filter(|(term, v, _)| *v != Vec3::ZERO && shown(*term)).collect();
+    match some.as_slice() {
+        [] => "0".to_owned(),
+        [(.., one)] => (*one).to_owned(),
+        several => format!("({})", several.iter().map(|(.., s)| *s).collect::<Vec<_>>().join(" + ")),
+    }
+}
+
+/// The light that arrives at the point.
+fn arriving(ui: &mut Ui, lit: &Lit) {
+    if let (Some(position), Some(distance)) = (lit.position, lit.distance) {
+        let from = format!("{} m, at {} m", rows::short(distance), rows::short_triple(position));
+        rows::value(ui, "d", &from, &rows::all(distance));
+    }
+    let equation = if lit.equation.is_empty() { "I(p)" } else { lit.equation };
+    let name = |symbol: &str| {
+        let factor = lit.factors.iter().find(|f| maths::same_symbol(f.symbol, symbol));
+        factor.map(|f| f.meaning.to_owned()).or_else(|| maths::meaning(symbol).map(str::to_owned))
+    };
+    rows::equation(ui, Term::Total, equation, false, name);
+    for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
+        let from: Vec<_> = factor
+            .from
+            .iter()
+            .map(|(symbol, value, unit)| {
+                let space = if unit.is_empty() || *unit == "°" { "" } else { " " };
+                format!("{symbol} = {}{space}{unit}", rows::short(*value))
+            })
+            .collect();
+        rows::note(ui, &format!("{} for {}", factor.meaning, from.join(", ")));
+        let line = format!("{} = {}", factor.symbol, rows::formula(factor.value));
+        rows::equation(ui, Term::Total, &line, true, name);
+    }
+    let factors: Vec<_> = lit.factors.iter().map(|factor| rows::short_or_triple(factor.value)).collect();
+    let units = lit.factors.iter().filter(|f| !matches!(f.unit, "" | "×")).map(|f| f.unit);
+    let units = units.collect::<Vec<_>>().join(" · ");
+    let numbers = match factors.len() {
+        0 | 1 => format!("= {}", rows::short_or_triple(lit.intensity)),
+        _ => format!("= {} = {}", factors.join(" × "), rows::short_or_triple(lit.intensity)),
+    };
+    rows::inset(ui, |ui| {
+        rows::named(ui, "", &numbers, &format!("{} {units}", rows::spoken(lit.intensity)));
+    });
+    if lit.colour != Vec3::ONE && lit.intensity != Vec3::ZERO {
+        rows::light(ui, "times the colour of the light", lit.colour, false);
+        rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.arriving, false)));
+    }
+}

@@ -1,0 +1,50 @@
+//! Where the equation was evaluated: the polygon, the vertices with their weights, or the point of the pixel.
+
+use bevy_egui::egui::{Grid, Ui};
+use glam::Vec3;
+
+use super::rows;
+use crate::{explain::Seen, panel::theme, shading::Stage};
+
+/// The point of the pixel, and what its shading model makes of it.
+pub(super) fn point(ui: &mut Ui, seen: &Seen) {
+    rows::close(ui);
+    rows::named_triple(ui, "point at the pixel's centre", seen.position, " m");
+    rows::named_triple(ui, &format!("normal of polygon {}", seen.polygon), seen.face_normal, "");
+    if seen.shading.stage == Stage::Pixel {
+        let n = seen.interpolated_normal;
+        let length = n.length();
+        rows::named_triple(ui, "interpolated normal", n, "");
+        rows::named(ui, "its length", &rows::short(length), &rows::all(length));
+        if n != Vec3::ZERO {
+            rows::named_triple(ui, "renormalised", n.normalize_or_zero(), "");
+        }
+    }
+    if seen.shading.stage == Stage::Vertex {
+        ui.add_space(6.0);
+        vertices(ui, seen);
+    }
+    if let Some(per_pixel) = &seen.per_pixel {
+        ui.add_space(6.0);
+        rows::light(ui, "per-pixel shading would give", per_pixel.colour, false);
+        rows::light(ui, "instead of", seen.light, false);
+    }
+}
+
+/// The colours of the vertices, weighted.
+fn vertices(ui: &mut Ui, seen: &Seen) {
+    rows::heading(ui, "Interpolated between the vertices");
+    let id = ui.id().with("weights");
+    Grid::new(id).num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
+        for corner in &seen.corners {
+            ui.label(theme::small(ui, format!("vertex {}", corner.vertex)));
+            ui.label(format!("{} ×", rows::short(corner.weight))).on_hover_text(rows::all(corner.weight));
+            rows::light(ui, "", corner.colour, false);
+            ui.end_row();
+        }
+        ui.label("");
+        ui.label("=");
+        rows::light(ui, "", seen.light, true);
+        ui.end_row();
+    });
+}

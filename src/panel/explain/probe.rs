@@ -1,0 +1,277 @@
+//! The pixel that is explained: which one it is, and the explanation, calculated when something has changed and only
+//! while it is in sight.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
+use glam::{Quat, Vec3};
+
+use crate::{
+    document::Revision,
+    explain::{Explainer, Explanation, Lit, Place, Seen, Spot},
+    library::status::Reloaded,
+    optics::TermSelection,
+    panel::{
+        is_in_sight, keys,
+        state::{Action, PictureArea, Pin, Session, ViewChange},
+    },
+    reference::{Settings, ignored_edits},
+    registry::Registry,
+    scene::{Observer, Scene, observer::vertical_field_of_view},
+};
+
+/// A click this near to what is pinned lets go of it, points.
+const NEAR: f32 = 6.0;
+
+/// The explanation of a pixel of the window.
+#[derive(Debug)]
+pub struct Explained {
+    /// The view: 0 is the scene itself, 1 view B.
+    pub view: usize,
+    /// The explanation.
+    pub explanation: Explanation,
+    /// The edited shaders that the picture follows and the explanation does not, by their paths.
+    pub ignored: Vec<String>,
+}
+
+/// The light whose block is unfolded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Unfolded {
+    /// That which gives the most.
+    #[default]
+    Brightest,
+    /// The one with this number in the scene.
+    Light(usize),
+    /// None.
+    None,
+}
+
+/// The choice of what is shown of an explanation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Choice {
+    /// The point, among those of [`spots`]; the one that counts most if none was chosen.
+    pub(super) spot: Option<usize>,
+    pub(super) light: Unfolded,
+}
+
+/// Everything that an explanation depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Question {
+    revision: Revision,
+    view: usize,
+    pixel: [u32; 2],
+    size: [u32; 2],
+    eye: Vec3,
+    camera: Quat,
+    terms: TermSelection,
+    /// The change of a shader that came through last.
+    reloaded: Option<Reloaded>,
+}
+
+#[derive(Default)]
+struct Probe {
+    /// The place that the pointer was at last.
+    pointed: Option<Pin>,
+    /// It is there now.
+    hovered: bool,
+    asked: Option<Question>,
+    answer: Option<Arc<Explained>>,
+    calculations: u64,
+    explainer: Explainer,
+    /// The scene of a view, without the camera of the window.
+    scene: Option<(Revision, usize, Scene)>,
+    choice: Choice,
+}
+
+type Shared = Arc<Mutex<Probe>>;
+
+fn shared(ctx: &Context) -> Shared {
+    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("explained pixel")).clone())
+}
+
+fn lock(probe: &Shared) -> MutexGuard<'_, Probe> {
+    probe.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The explanation in sight; none while there is none, or the panel is closed.
+#[must_use]
+pub fn explained(ctx: &Context) -> Option<Arc<Explained>> {
+    lock(&shared(ctx)).answer.clone()
+}
+
+/// The number of explanations calculated so far.
+#[must_use]
+pub fn calculations(ctx: &Context) -> u64 {
+    lock(&shared(ctx)).calculations
+}
+
+/// True while the pointer is at the pixel that is explained.
+pub(super) fn is_hovered(ctx: &Context) -> bool {
+    lock(&shared(ctx)).hovered
+}
+
+pub(super) fn choice(ctx: &Context) -> Choice {
+    lock(&shared(ctx)).choice
+}
+
+pub(super) fn choose(ctx: &Context, choice: Choice) {
+    lock(&shared(ctx)).choice = choice;
+    ctx.request_repaint();
+}
+
+/// The rectangle of a view, points.
+fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
+    let cell = area.cells.iter().find(|cell| cell.view == view).or(area.cells.first());
+    Some(cell.map_or(area.rect, |cell| cell.rect)).filter(|rect| rect.is_finite() && rect.is_positive())
+}
+
+fn field_of_view(session: &Session) -> f32 {
+    session.document.observer.field_of_view
+}
+
+/// The size of a picture in pixels, as the window draws it, and the place of its corner.
+fn pixels(ctx: &Context, rect: Rect) -> ([u32; 2], Pos2) {
+    let pixel = |points: f32| (points * ctx.pixels_per_point()).round().max(0.0);
+    let corner = pos2(pixel(rect.min.x), pixel(rect.min.y));
+    let size = [pixel(rect.max.x) - corner.x, pixel(rect.max.y) - corner.y];
+    (size.map(|side| (side as u32).max(1)), corner)
+}
+
+/// The pixel under the pointer, if it is over a picture with nothing between.
+fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> {
+    let at = ctx.input(|i| i.pointer.latest_pos()).filter(|at| is_in_sight(ctx, area.frame, *at))?;
+    if area.written.iter().any(|place| place.contains(at)) {
+        return None;
+    }
+    let view = match area.cells.as_slice() {
+        [] => 0,
+        _ => area.cell_at(at)?.view,
+    };
+    let (size, corner) = pixels(ctx, rect_of(area, view)?);
+    let place = (at.to_vec2() * ctx.pixels_per_point() - corner.to_vec2()).floor();
+    let inside = |v: f32, side: u32| v >= 0.0 && v < side as f32;
+    (inside(place.x, size[0]) && inside(place.y, size[1]))
+        .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, field_of_view(session)))
+}
+
+/// The place of a pixel in the rectangle of its picture.
+pub(super) fn place(rect: Rect, explanation: &Explanation) -> Pos2 {
+    let part = |i: usize| (explanation.pixel[i] as f32 + 0.5) / explanation.size[i] as f32;
+    rect.lerp_inside(vec2(part(0), part(1)))
+}
+
+/// An action with the pixel that it is about: that under the pointer, if there is one.
+pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Action) -> Action {
+    let lets_go = session.view.pinned.is_some();
+    match pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go) {
+        Some(pin) => Action::View(ViewChange::Pin(Some(pin))),
+        None => action,
+    }
+}
+
+/// Pins the pixel that was clicked with Alt held, or lets go of it.
+pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let click = ctx.input(|i| i.modifiers.alt && i.pointer.primary_clicked());
+    let pin = pointed(ctx, session, area).filter(|_| click && !session.view.presenting)?;
+    let near = |pinned: &Pin| {
+        let Some(rect) = rect_of(area, pin.view) else { return false };
+        let (size, _) = pixels(ctx, rect);
+        let pixel = |pin: &Pin| Vec2::from(pin.pixel(size, field_of_view(session)).map(|c| c as f32));
+        pinned.view == pin.view && (pixel(pinned) - pixel(&pin)).length() <= NEAR * ctx.pixels_per_point()
+    };
+    let same = session.view.pinned.as_ref().is_some_and(near) && session.explains();
+    Some(Action::View(ViewChange::Pin(Some(pin).filter(|_| !same))))
+}
+
+/// Escape lets go of what is pinned, if nothing else takes it.
+pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let pinned = session.view.pinned.is_some() && session.explains() && !session.view.examples_open;
+    let left = pinned && ctx.dragged_id().is_none() && keys::escapes(ctx, session, area);
+    left.then_some(Action::View(ViewChange::Pin(None)))
+}
+
+/// Explains the pixel that is pinned, or else the one that the pointer was at last, if the panel is open and something
+/// has changed.
+pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) {
+    let shared = shared(ctx);
+    if !session.explains() {
+        let mut probe = lock(&shared);
+        (probe.hovered, probe.asked, probe.answer) = (false, None, None);
+        return;
+    }
+    let pointed = pointed(ctx, session, area);
+    let mut probe = lock(&shared);
+    let probe = &mut *probe;
+    probe.hovered = pointed.is_some();
+    probe.pointed = pointed.or(probe.pointed);
+    let pin = session.view.pinned.or(probe.pointed).filter(|pin| pin.view <= session.document.variants.len());
+    let Some((pin, rect)) = pin.and_then(|pin| Some((pin, rect_of(area, pin.view)?))) else {
+        (probe.asked, probe.answer) = (None, None);
+        return;
+    };
+    let (size, _) = pixels(ctx, rect);
+    let own = session.document.overrides(pin.view).and_then(|variant| variant.terms);
+    let question = Question {
+        revision: session.document.revision(),
+        view: pin.view,
+        pixel: pin.pixel(size, field_of_view(session)),
+        size,
+        eye: session.facts.eye,
+        camera: session.facts.camera,
+        terms: own.unwrap_or(session.view.terms),
+        reloaded: session.shaders.last.clone(),
+    };
+    if probe.asked.as_ref() == Some(&question) {
+        return;
+    }
+    probe.answer = probe.explain(&question, session, registry).map(Arc::new);
+    probe.asked = Some(question);
+    probe.calculations += 1;
+}
+
+impl Probe {
+    fn explain(&mut self, question: &Question, session: &Session, registry: &Registry) -> Option<Explained> {
+        let Question { revision, view, pixel, size, .. } = *question;
+        if !matches!(&self.scene, Some((known, of, _)) if (*known, *of) == (revision, view)) {
+            let (scene, _) = session.document.seen(view, registry)?;
+            self.scene = Some((revision, view, scene));
+        }
+        let (.., scene) = self.scene.as_mut()?;
+        let aspect = size[0] as f32 / size[1] as f32;
+        let fov = session.document.observer.field_of_view;
+        scene.observer = Observer {
+            position: question.eye,
+            direction: question.camera * Vec3::NEG_Z,
+            field_of_view: vertical_field_of_view(fov, aspect, true).to_degrees(),
+        };
+        let settings = Settings { width: size[0], height: size[1], samples: 1, terms: question.terms };
+        let explanation = self.explainer.pixel(scene, registry, &settings, pixel).ok()?;
+        let ignored = ignored_edits(registry, scene).into_iter().collect();
+        Some(Explained { view, explanation, ignored })
+    }
+}
+
+/// The points that can be shown: those that made the colour, and the one of per-pixel shading for comparison.
+pub(super) fn spots(seen: &Seen) -> Vec<&Spot> {
+    seen.spots.iter().chain(&seen.per_pixel).collect()
+}
+
+/// The number of the point that is shown: the one that was chosen, or the one that counts most.
+pub(super) fn shown_spot(seen: &Seen, choice: Choice) -> usize {
+    let weight = |spot: &Spot| match spot.place {
+        Place::Vertex { weight, .. } => weight,
+        Place::Polygon | Place::Pixel => 1.0,
+    };
+    let most =
+        (0..seen.spots.len()).max_by(|a, b| weight(&seen.spots[*a]).total_cmp(&weight(&seen.spots[*b])));
+    choice.spot.filter(|i| *i < spots(seen).len()).or(most).unwrap_or(0)
+}
+
+/// The light of a point whose block is unfolded.
+pub(super) fn shown_light(spot: &Spot, choice: Choice) -> Option<&Lit> {
+    match choice.light {
+        Unfolded::None => None,
+        Unfolded::Light(i) => spot.lights.iter().find(|lit| lit.light.index == i),
+        Unfolded::Brightest => spot.brightest().first().copied(),
+    }
+}

@@ -1,0 +1,303 @@
+//! The rows of an explanation: numbers of three digits, of which the pointer shows all, and colours with their samples.
+
+use bevy_egui::egui::{
+    self, Color32, Label, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
+    vec2,
+};
+use glam::Vec3;
+
+use crate::{
+    explain::{number, rounded, rounded_triple, triple},
+    panel::{
+        maths::{self, Sizes},
+        theme::{self, Palette},
+    },
+    reflection::Term,
+};
+
+/// Digits that are shown.
+pub(super) const DIGITS: usize = 3;
+/// Digits of the whole number.
+const ALL: usize = 8;
+/// Size of the letters of a symbol in a row.
+const SYMBOL: f32 = 14.0;
+/// Width of a vector with its symbol, points.
+const VECTOR: f32 = 192.0;
+/// By so much a line is set in that follows from the one above.
+pub(super) const INDENT: f32 = 14.0;
+
+/// A number of three digits.
+pub(super) fn short(v: f32) -> String {
+    raised(&rounded(v, DIGITS))
+}
+
+/// Three numbers of three digits.
+pub(super) fn short_triple(v: Vec3) -> String {
+    raised(&rounded_triple(v, DIGITS))
+}
+
+/// A number, or three if they differ.
+pub(super) fn short_or_triple(v: Vec3) -> String {
+    if v.x == v.y && v.y == v.z { short(v.x) } else { short_triple(v) }
+}
+
+/// Powers of ten in raised digits.
+fn raised(text: &str) -> String {
+    let mut power = false;
+    let raise = |c: char| match c {
+        '−' => '⁻',
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        '9' => '⁹',
+        c => c,
+    };
+    text.chars()
+        .filter_map(|c| match c {
+            '^' => {
+                power = true;
+                None
+            }
+            ',' | ')' | ' ' => {
+                power = false;
+                Some(c)
+            }
+            c => Some(if power { raise(c) } else { c }),
+        })
+        .collect()
+}
+
+/// A number, or three if they differ, as equations are written.
+pub(super) fn formula(v: Vec3) -> String {
+    if v.x == v.y && v.y == v.z { rounded(v.x, DIGITS) } else { rounded_triple(v, DIGITS) }
+}
+
+/// The same with braces around powers that begin with a minus sign.
+fn braced(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find("^−") {
+        let end = rest[at + "^−".len()..]
+            .find(|c: char| !c.is_ascii_digit())
+            .map_or(rest.len(), |n| at + "^−".len() + n);
+        out += &format!("{}^{{{}}}", &rest[..at], &rest[at + 1..end]);
+        rest = &rest[end..];
+    }
+    out + rest
+}
+
+/// The title of a column or a block.
+pub(super) fn heading(ui: &mut Ui, text: &str) {
+    ui.add(Label::new(theme::strong(ui, text)).wrap());
+}
+
+/// A remark in small type.
+pub(super) fn note(ui: &mut Ui, text: &str) -> Response {
+    ui.add(Label::new(theme::small(ui, text)).wrap())
+}
+
+/// A sample of a colour as the display shows these codes.
+pub(super) fn chip(ui: &mut Ui, [r, g, b]: [u8; 3], size: Vec2) -> Response {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let stroke = Stroke::new(1.0, palette.weak);
+    ui.painter().rect(rect, 3.0, Color32::from_rgb(r, g, b), stroke, StrokeKind::Inside);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("colour {r}, {g}, {b}")));
+    response
+}
+
+/// A sample of linear light, beyond the display's range cut off; crossed out where it is no number.
+pub(super) fn sample(ui: &mut Ui, light: Vec3) {
+    let side = SYMBOL * theme::scale_here(ui);
+    let colour = theme::swatch(light.clamp(Vec3::ZERO, Vec3::ONE));
+    let [r, g, b, _] = colour.to_array();
+    let rect = chip(ui, [r, g, b], vec2(side, side)).rect.shrink(3.0);
+    if !light.is_finite() {
+        let stroke = Stroke::new(1.5, Palette::here(ui).error);
+        ui.painter().line_segment([rect.left_top(), rect.right_bottom()], stroke);
+        ui.painter().line_segment([rect.right_top(), rect.left_bottom()], stroke);
+    }
+}
+
+fn text(ui: &Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).color(Palette::here(ui).text)
+}
+
+/// A symbol, an equals sign and a value, with all digits under the pointer.
+pub(super) fn value(ui: &mut Ui, symbol: &str, shown: &str, all: &str) -> Response {
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        maths::symbol(ui, symbol, SYMBOL * theme::scale_here(ui));
+        let shown = text(ui, format!("= {shown}"));
+        ui.add(Label::new(shown).selectable(true));
+    });
+    let help = maths::meaning(symbol).map_or_else(String::new, |meaning| format!("\n{symbol}: {meaning}"));
+    row.response.on_hover_text(format!("{all}{help}"))
+}
+
+/// Vectors by their symbols, as many in a line as fit.
+pub(super) fn vectors(ui: &mut Ui, all: &[(&str, Vec3)]) {
+    let width = VECTOR * theme::scale_here(ui);
+    let in_line = ((ui.available_width() / width) as usize).max(1);
+    for line in all.chunks(in_line) {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            for (symbol, v) in line {
+                let left = ui.cursor().left();
+                value(ui, symbol, &short_triple(*v), &rounded_triple(*v, ALL));
+                ui.add_space((left + width - ui.cursor().left()).max(8.0));
+            }
+        });
+    }
+}
+
+/// Words and a value behind them.
+pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        if !name.is_empty() {
+            ui.label(theme::small(ui, name));
+        }
+        let shown = text(ui, shown);
+        ui.add(Label::new(shown).selectable(true));
+    });
+    row.response.on_hover_text(all)
+}
+
+/// Words and three numbers.
+pub(super) fn named_triple(ui: &mut Ui, name: &str, v: Vec3, unit: &str) -> Response {
+    named(ui, name, &format!("{}{unit}", short_triple(v)), &rounded_triple(v, ALL))
+}
+
+/// A step on the way to the display, and its result.
+pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3) {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.label(theme::small(ui, format!("{what}:")));
+        sample(ui, v);
+        let shown = text(ui, short_triple(v));
+        ui.add(Label::new(shown).selectable(true));
+    });
+    row.response.on_hover_text(rounded_triple(v, ALL));
+}
+
+/// Lines that stand closer than widgets do.
+pub(super) fn close(ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    ui.spacing_mut().interact_size.y = 16.0 * theme::scale_here(ui);
+}
+
+/// A colour behind words: its sample and its numbers.
+pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        if !before.is_empty() {
+            let before = text(ui, before);
+            ui.label(before);
+        }
+        sample(ui, v);
+        let shown = short_triple(v);
+        let shown = if bold { theme::strong(ui, shown) } else { text(ui, shown) };
+        ui.add(Label::new(shown).selectable(true));
+    });
+    row.response.on_hover_text(rounded_triple(v, ALL))
+}
+
+/// An equation, or what it becomes with numbers, over the width that is left.
+pub(super) fn equation(
+    ui: &mut Ui,
+    term: Term,
+    line: &str,
+    indent: bool,
+    name: impl Fn(&str) -> Option<String>,
+) {
+    let sizes = Sizes { column: true, even: true };
+    let line = &braced(line);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        if indent {
+            ui.add_space(INDENT);
+        }
+        ui.vertical(|ui| maths::equation_of(ui, &[(term, line)], sizes, name));
+    });
+}
+
+/// Sets in what follows from the line above.
+pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.add_space(INDENT);
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.x = 8.0;
+            add(ui);
+        });
+    });
+}
+
+/// All digits of a number.
+pub(super) fn all(v: f32) -> String {
+    rounded(v, ALL)
+}
+
+/// As text for people who listen: four digits are enough.
+pub(super) fn spoken(v: Vec3) -> String {
+    if v.x == v.y && v.y == v.z { number(v.x) } else { triple(v) }
+}
+
+/// A row that can be clicked, with a triangle that says if it is unfolded.
+pub(super) fn fold(ui: &mut Ui, id: egui::Id, name: &str, kind: &str, open: bool, v: Vec3) -> Response {
+    let palette = Palette::here(ui);
+    let height = 24.0 * theme::scale_here(ui).max(1.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let response = ui.interact(rect, id, Sense::click());
+    response.widget_info(|| {
+        WidgetInfo::selected(WidgetType::CollapsingHeader, true, open, format!("{name}: {}", spoken(v)))
+    });
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 3.0, palette.hovered);
+    }
+    let sign = egui::Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
+    let openness = if open { 1.0 } else { 0.0 };
+    egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
+    let mut inner = ui.new_child(
+        egui::UiBuilder::new()
+            .max_rect(rect.with_min_x(rect.left() + 20.0))
+            .layout(egui::Layout::right_to_left(egui::Align::Center)),
+    );
+    inner.spacing_mut().item_spacing.x = 6.0;
+    let shown = theme::strong(&inner, short_triple(v));
+    inner.label(shown);
+    sample(&mut inner, v);
+    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let room = (inner.available_width() - 4.0).max(0.0);
+    let title = theme::elided(ui, name, font, palette.text, room);
+    let at = egui::pos2(rect.left() + 20.0, rect.center().y - 0.5 * title.size().y);
+    let end = at.x + title.size().x + 6.0;
+    ui.painter().galley(at, title, palette.text);
+    let kind = theme::elided(ui, kind, egui::TextStyle::Small, palette.weak, rect.left() + 20.0 + room - end);
+    let at = egui::pos2(end, rect.center().y - 0.5 * kind.size().y);
+    ui.painter().galley(at, kind, palette.weak);
+    response.on_hover_text(rounded_triple(v, ALL))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_raised() {
+        assert_eq!(short(1.234e-7), "1.23·10⁻⁷");
+        assert_eq!(short_triple(Vec3::new(2e30, -1e-9, 0.5)), "(2·10³⁰, −1·10⁻⁹, 0.5)");
+        assert_eq!(short_or_triple(Vec3::splat(0.333_333)), "0.333");
+        assert_eq!(short(f32::NAN), "NaN");
+        assert_eq!(braced("a^2 × (1·10^−7, 2·10^−12) b^α"), "a^2 × (1·10^{−7}, 2·10^{−12}) b^α");
+        assert_eq!(braced("x^−"), "x^{−}");
+        assert_eq!(formula(Vec3::splat(1e-7)), "1·10^−7");
+    }
+}

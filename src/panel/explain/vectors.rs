@@ -1,0 +1,304 @@
+//! The vectors of the explained point in the picture, and the polygon or the vertices in question.
+
+use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
+use glam::Vec3;
+
+use super::{probe, rows};
+use crate::{
+    explain::{Explanation, Lit, Place, Seen, Spot},
+    panel::{
+        marks::{Ink, Lens, OUTLINE},
+        state::Session,
+        theme,
+    },
+    shading::Stage,
+};
+
+const WHITE: Color32 = Color32::from_rgb(0xf6, 0xf6, 0xf6);
+/// Okabe–Ito yellow.
+const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
+/// Okabe–Ito blue, bluish green and vermilion, lightened.
+const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
+const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
+const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
+/// Length of a vector that lies in the plane of the picture, points.
+const LENGTH: f32 = 96.0;
+/// Width of a line, points.
+const LINE: f32 = 2.25;
+/// Height of letters, points.
+const LETTER: f32 = 13.0;
+/// A vector that is seen shorter than this points at the eye, or away from it, points.
+const END_ON: f32 = 7.0;
+/// The sides of a triangle whose corners have room for their weights, points.
+const ROOMY: f32 = 48.0;
+/// In a smaller picture there is no room for them, points.
+const SMALLEST: f32 = 120.0;
+
+/// Lengths of dashes and of what is left out between them, points; none for a line without.
+type Dashes = &'static [f32];
+
+/// A vector in the picture: its letter, its direction, its colour and its dashes.
+struct Arrow {
+    letter: &'static str,
+    way: Vec3,
+    colour: Color32,
+    dashes: Dashes,
+}
+
+fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
+    let arrow = |letter, way, colour, dashes| Arrow { letter, way, colour, dashes };
+    let geometry = lit.and_then(|lit| lit.geometry);
+    let mut all = Vec::new();
+    if let Some(geometry) = geometry {
+        all.push(arrow("R", geometry.r, VERMILION, &[4.0, 5.0]));
+        all.push(arrow("H", geometry.h, GREEN, &[10.0, 4.0, 2.0, 4.0]));
+        all.push(arrow("L", geometry.l, YELLOW, &[12.0, 6.0]));
+    }
+    all.push(arrow("V", spot.view, BLUE, &[1.5, 5.0]));
+    all.push(arrow("N", spot.normal, WHITE, &[]));
+    all
+}
+
+/// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
+pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
+    let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
+    let Some(explained) = probe::explained(ui.ctx())
+        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)
+    else {
+        return;
+    };
+    let mut drawing = Drawing { ink: Ink::new(Lens::of(session, rect)), words: Vec::new(), rect };
+    if let Some(seen) = &explained.explanation.seen {
+        drawing.seen(ui, seen);
+    }
+    drawing.cross(&explained.explanation, session.view.pinned.is_some());
+    drawing.paint(ui);
+}
+
+struct Drawing {
+    ink: Ink,
+    /// Letters and degrees, each with its place.
+    words: Vec<(Pos2, String, Color32)>,
+    rect: Rect,
+}
+
+impl Drawing {
+    fn seen(&mut self, ui: &Ui, seen: &Seen) {
+        let choice = probe::choice(ui.ctx());
+        let spots = probe::spots(seen);
+        let Some(spot) = spots.get(probe::shown_spot(seen, choice)) else { return };
+        self.polygon(seen, spot);
+        let lit = probe::shown_light(spot, choice);
+        let lens = self.ink.lens();
+        let Some(origin) = lens.project(spot.position) else { return };
+        let reach = lens.metres(spot.position, LENGTH);
+        let all = arrows(spot, lit);
+        self.angles(&lens, spot, lit, reach);
+        for arrow in &all {
+            self.arrow(&lens, spot.position, origin, arrow, reach);
+        }
+        if all.len() > 1 {
+            self.ink.disc(origin, 2.5, WHITE);
+        }
+    }
+
+    /// The polygon, or the triangle between the vertices, whose weights stand beside them.
+    fn polygon(&mut self, seen: &Seen, spot: &Spot) {
+        let lens = self.ink.lens();
+        let corners = |points: &[Vec3]| {
+            let mut line = points.to_vec();
+            line.extend(points.first());
+            line
+        };
+        let triangle = seen.corners.map(|corner| corner.position);
+        let (line, faint) = match seen.shading.stage {
+            Stage::Polygon => (corners(&seen.outline), false),
+            Stage::Vertex => (corners(&triangle), false),
+            Stage::Pixel => (corners(&seen.outline), true),
+        };
+        let colour = if faint { WHITE.gamma_multiply(0.45) } else { WHITE };
+        for run in lens.path(&line) {
+            self.ink.stroke(run, if faint { 1.0 } else { 1.5 }, colour);
+        }
+        if seen.shading.stage != Stage::Vertex {
+            return;
+        }
+        let places = triangle.map(|p| lens.project(p));
+        // Beside a small triangle there is no room; the panel has them too.
+        let apart = |i: usize| match (places[i], places[(i + 1) % 3]) {
+            (Some(a), Some(b)) => a.distance(b) >= ROOMY,
+            _ => false,
+        };
+        let roomy = (0..3).all(apart);
+        let middle = places.iter().flatten().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / 3.0;
+        for (corner, at) in seen.corners.iter().zip(places) {
+            let Some(at) = at else { continue };
+            let radius = if roomy { 5.0 } else { 3.0 };
+            let this = matches!(spot.place, Place::Vertex { vertex, .. } if vertex == corner.vertex);
+            self.ink.disc(
+                at,
+                if this { radius } else { 0.7 * radius },
+                theme::swatch(corner.colour.clamp(Vec3::ZERO, Vec3::ONE)),
+            );
+            let out = (at.to_vec2() - middle).normalized();
+            if roomy {
+                self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE));
+            }
+        }
+    }
+
+    fn arrow(&mut self, lens: &Lens, from: Vec3, origin: Pos2, arrow: &Arrow, reach: f32) {
+        let to = from + arrow.way * reach;
+        let Some(tip) = lens.project(to).filter(|_| arrow.way.is_finite() && arrow.way != Vec3::ZERO) else {
+            return;
+        };
+        let along = tip - origin;
+        if along.length() < END_ON {
+            // As in textbooks: a dot is the point of an arrow, a cross its feathers.
+            let ahead = lens.metres(to, 1.0) < lens.metres(from, 1.0);
+            let ring: Vec<Pos2> = (0..=24)
+                .map(|k| origin + 9.0 * Vec2::angled(k as f32 / 24.0 * std::f32::consts::TAU))
+                .collect();
+            self.ink.stroke(ring, LINE, arrow.colour);
+            if !ahead {
+                for turn in [1.0, 3.0] {
+                    let arm = 6.0 * Vec2::angled(turn * std::f32::consts::FRAC_PI_4);
+                    self.ink.stroke(vec![origin - arm, origin + arm], LINE, arrow.colour);
+                }
+            }
+            self.words.push((origin + vec2(-15.0, 15.0), arrow.letter.to_owned(), arrow.colour));
+            return;
+        }
+        let ahead = along.normalized();
+        let head = 8.0f32.min(0.6 * along.length());
+        for dash in dashes(origin, tip - 0.6 * head * ahead, arrow.dashes) {
+            self.ink.stroke(dash.to_vec(), LINE, arrow.colour);
+        }
+        let back = tip - head * ahead;
+        let side = ahead.rot90() * (0.5 * head);
+        self.ink.fill(vec![tip, back + side, back - side], arrow.colour);
+        self.words.push((tip + 12.0 * ahead, arrow.letter.to_owned(), arrow.colour));
+    }
+
+    /// Arcs between the vectors, where they are seen apart.
+    fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32) {
+        let Some(geometry) = lit.and_then(|lit| lit.geometry) else { return };
+        let n = spot.normal;
+        let pairs =
+            [(n, geometry.l, YELLOW, 0.62), (n, geometry.h, GREEN, 0.4), (geometry.r, spot.view, BLUE, 0.8)];
+        for (a, b, colour, part) in pairs {
+            let angle = a.angle_between(b);
+            let ends = [a, b].map(|way| lens.project(spot.position + way * reach));
+            let origin = lens.project(spot.position);
+            let apart = match (origin, ends) {
+                (Some(o), [Some(a), Some(b)]) => {
+                    (a - o).length() > 2.0 * END_ON && (b - o).length() > 2.0 * END_ON
+                }
+                _ => false,
+            };
+            if !apart || !angle.is_finite() || !(0.03..3.1).contains(&angle) {
+                continue;
+            }
+            let count = 2 + (angle.to_degrees() / 4.0) as usize;
+            let between = |t: f32| {
+                let turned = a * ((1.0 - t) * angle).sin() + b * (t * angle).sin();
+                spot.position + turned / angle.sin() * (part * reach)
+            };
+            let arc: Vec<Vec3> = (0..=count).map(|k| between(k as f32 / count as f32)).collect();
+            for run in lens.path(&arc) {
+                self.ink.stroke(run, 1.25, colour);
+            }
+            if let Some(middle) = lens.project(between(0.5)) {
+                self.words.push((middle, format!("{:.0}°", angle.to_degrees()), colour));
+            }
+        }
+    }
+
+    /// The pixel itself: the arms of a cross around it, closed to a ring where it is pinned.
+    fn cross(&mut self, explanation: &Explanation, pinned: bool) {
+        let at = probe::place(self.rect, explanation);
+        for k in 0..4 {
+            let arm = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_2);
+            self.ink.stroke(vec![at + 4.0 * arm, at + 9.0 * arm], 1.25, WHITE);
+        }
+        if pinned {
+            let ring = (0..=24).map(|k| at + 5.5 * Vec2::angled(k as f32 / 24.0 * std::f32::consts::TAU));
+            self.ink.stroke(ring.collect(), 1.25, WHITE);
+        }
+    }
+
+    fn paint(self, ui: &Ui) {
+        let painter = ui.painter_at(self.rect);
+        self.ink.paint(&painter);
+        let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
+        let mut taken: Vec<Rect> = Vec::new();
+        for (at, word, colour) in self.words {
+            let text = painter.layout_no_wrap(word, font.clone(), colour);
+            let place = |at: Pos2| Align2::CENTER_CENTER.anchor_size(at, text.size() + vec2(8.0, 2.0));
+            // Beside others, and within the picture.
+            let turns = (0..16).map(|k| {
+                let way = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_4);
+                place(at + way * (18.0 * (k as f32 / 8.0).ceil()))
+            });
+            let free =
+                |plate: &Rect| self.rect.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(*plate));
+            let plate = turns.into_iter().find(free).unwrap_or(place(at));
+            painter.rect_filled(plate, 4.0, OUTLINE.gamma_multiply(0.78));
+            painter.galley(plate.center() - 0.5 * text.size(), text, colour);
+            taken.push(plate);
+        }
+    }
+}
+
+/// A line in dashes.
+fn dashes(from: Pos2, to: Pos2, pattern: Dashes) -> Vec<[Pos2; 2]> {
+    let (length, way) = ((to - from).length(), (to - from).normalized());
+    if pattern.is_empty() {
+        return vec![[from, to]];
+    }
+    let (mut all, mut at) = (Vec::new(), 0.0);
+    for (k, step) in pattern.iter().cycle().enumerate() {
+        if at >= length {
+            break;
+        }
+        if k % 2 == 0 {
+            all.push([from + way * at, from + way * (at + step).min(length)]);
+        }
+        at += step;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn dashes_end_with_their_line() {
+        let (from, to) = (pos2(0.0, 0.0), pos2(30.0, 0.0));
+        assert_eq!(dashes(from, to, &[]), [[from, to]]);
+        let all = dashes(from, to, &[12.0, 6.0]);
+        assert_eq!(all, [[from, pos2(12.0, 0.0)], [pos2(18.0, 0.0), to]]);
+        assert!(dashes(from, from, &[4.0, 5.0]).is_empty());
+    }
+
+    #[test]
+    fn every_vector_has_a_colour_and_dashes_of_its_own() {
+        let explanation = crate::explain::pixel(
+            &crate::scene::Scene::default(),
+            &crate::registry::Registry::builtin(),
+            &crate::reference::Settings { width: 64, height: 36, ..Default::default() },
+            [32, 18],
+        );
+        let seen = explanation.expect("in the picture").seen.expect("the sphere");
+        let all = arrows(&seen.spots[0], seen.spots[0].lights.first());
+        assert_eq!(all.iter().map(|a| a.letter).collect::<String>(), "RHLVN");
+        for (i, a) in all.iter().enumerate() {
+            for b in &all[..i] {
+                assert!(a.colour != b.colour && a.dashes != b.dashes, "{} and {}", a.letter, b.letter);
+            }
+        }
+    }
+}
