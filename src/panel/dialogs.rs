@@ -13,7 +13,7 @@ use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
     preview::{self, Preview, Source},
-    state::{Action, Effect, ExportCommand, ModelCommand, Session},
+    state::{Action, Effect, ExportCommand, ModelCommand, PlotCommand, Session},
     theme::{self, Palette},
 };
 use crate::{
@@ -46,8 +46,8 @@ pub struct Dialogs {
     file: FileDialog,
     /// Chooses places for exports.
     export: FileDialog,
-    /// The form for which a place is chosen.
-    exporting: Option<&'static str>,
+    /// What a place is chosen for.
+    exporting: Option<Exported>,
     /// The part and the parameter for which a file is chosen.
     wanted: Option<(Selection, &'static Parameter)>,
     /// The field of a dialog that had the focus at the end of the frame before.
@@ -56,6 +56,13 @@ pub struct Dialogs {
     again: Option<Key>,
     /// For so many frames the list has been empty.
     blank: u8,
+}
+
+/// An export in a form, by its id, or the plot.
+#[derive(Clone, Copy, Debug)]
+enum Exported {
+    Form(&'static str),
+    Plot,
 }
 
 /// The fields of a dialog of which keys go through.
@@ -137,23 +144,32 @@ fn file_dialog(format: &FileFormat) -> FileDialog {
     dialog
 }
 
-/// The dialog that chooses a place for an export.
-fn export_dialog(id: &'static str, session: &Session, folder: Option<&Path>) -> FileDialog {
-    let form = form(id);
-    let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
-    let stem = session.stem();
-    let name =
-        form.and_then(|form| Some(form.default_path(&stem).file_name()?.to_string_lossy().into_owned()));
+/// The dialog that chooses a place for an export or a plot.
+fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> FileDialog {
+    let (title, button, name) = match what {
+        Exported::Form(id) => {
+            let form = form(id);
+            let stem = session.stem();
+            let name = form
+                .and_then(|form| Some(form.default_path(&stem).file_name()?.to_string_lossy().into_owned()));
+            let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
+            (title, "Export", name.unwrap_or(stem))
+        }
+        Exported::Plot => ("Export the plot".to_owned(), "Export", super::plots::file_name(session)),
+    };
     let mut dialog = FileDialog::new()
         .title(&title)
         .id("export dialog")
         .labels(FileDialogLabels {
-            save_button: "Export".to_owned(),
+            save_button: button.to_owned(),
             file_name: "Name:".to_owned(),
             ..FileDialogLabels::default()
         })
         .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
-        .default_file_name(&name.unwrap_or(stem));
+        .default_file_name(&name);
+    if matches!(what, Exported::Plot) {
+        super::plots::offer(&mut dialog);
+    }
     if let Some(folder) = folder {
         dialog.config_mut().initial_directory = folder.to_owned();
     }
@@ -178,6 +194,17 @@ impl Dialogs {
         registry: &Registry,
     ) -> bool {
         let folder = session.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
+        let exported = match effect {
+            Effect::PickExport(id) => Some(Exported::Form(id)),
+            Effect::PickPlot => Some(Exported::Plot),
+            _ => None,
+        };
+        if let Some(what) = exported {
+            self.exporting = exported;
+            self.export = export_dialog(what, session, folder);
+            self.export.save_file();
+            return true;
+        }
         let (dialog, save) = match effect {
             Effect::PickOpen => {
                 preview::forget_files(ctx);
@@ -190,12 +217,6 @@ impl Dialogs {
                     self.file = file_dialog(format);
                 }
                 (&mut self.file, false)
-            }
-            Effect::PickExport(id) => {
-                self.exporting = Some(id);
-                self.export = export_dialog(id, session, folder);
-                self.export.save_file();
-                return true;
             }
             Effect::PickShaderFolder => {
                 self.folder.pick_directory();
@@ -280,8 +301,11 @@ impl Dialogs {
             actions.extend(session.file_chosen(part, parameter, &path).map(Action::Edit));
         }
         self.export.update(ctx);
-        if let (Some(path), Some(form)) = (self.export.take_picked(), self.exporting) {
-            actions.push(Action::Export(ExportCommand::To { form, path }));
+        if let (Some(path), Some(what)) = (self.export.take_picked(), self.exporting) {
+            actions.push(match what {
+                Exported::Form(form) => Action::Export(ExportCommand::To { form, path }),
+                Exported::Plot => Action::Plot(PlotCommand::To(path)),
+            });
         }
         for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.export] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());

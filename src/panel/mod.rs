@@ -68,6 +68,7 @@ pub mod model_override;
 mod notice;
 pub mod picture;
 mod placing;
+pub mod plots;
 pub mod presentation;
 pub mod preview;
 pub mod question;
@@ -92,6 +93,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add_own(top::TopBar);
     to.add_own(status::StatusLine);
     to.add_own(messages::Messages);
+    to.add_own(plots::PlotPanel::default());
     to.add_own(shader::Shader);
     to.add_own(history::History);
     to.add_own(tree::Tree);

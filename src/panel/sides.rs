@@ -11,7 +11,7 @@ use super::{
     glyphs,
     icon::{self, Icon},
     shares::shared,
-    state::{Action, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
+    state::{Action, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
     theme::{self, Palette},
 };
 
@@ -123,6 +123,9 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
 /// The least height of the strip with the shaders, points.
 const SHADER_STRIP: f32 = 184.0;
 
+/// The same with the plots, points.
+const PLOT_STRIP: f32 = 312.0;
+
 /// The strip at the bottom. Tabs appear when there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
@@ -135,10 +138,13 @@ pub(super) fn bottom(
 ) {
     let most = 0.6 * whole.height();
     // An error with its line of source is seen whole.
-    let shader = session.view.bottom_tab == SHADER_TAB;
-    let least = if shader { SHADER_STRIP } else { 72.0 };
+    let least = match session.view.bottom_tab.as_str() {
+        SHADER_TAB => SHADER_STRIP,
+        PLOTS_TAB => PLOT_STRIP,
+        _ => 72.0,
+    };
     let zoom = super::zoom_percent(ui.ctx());
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, least as u32)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
         .default_size(height.max(least).min(most))

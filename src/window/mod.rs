@@ -28,6 +28,7 @@ mod order;
 mod pick;
 mod picture;
 mod place;
+mod plots;
 mod plugins;
 mod pointer;
 mod recovery;

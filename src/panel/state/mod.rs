@@ -21,6 +21,7 @@ pub use files::RECENT_FILES;
 pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use place::{PanelInfo, Place};
+pub use plots::{MOST_LIGHT, Of, Pin, PlotCommand, Plots, Slot};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;
 pub use severity::Severity;
@@ -28,8 +29,8 @@ pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
 pub use view::{
-    HandleChange, HandleMode, Labels, MESSAGES_TAB, SCALES, SHADER_TAB, ThemeChoice, View, ViewChange,
-    nearest_scale,
+    HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SCALES, SHADER_TAB, ThemeChoice, View,
+    ViewChange, nearest_scale,
 };
 
 use super::terms::KnownTerms;
@@ -54,6 +55,7 @@ mod messages;
 mod nudge;
 mod parts;
 mod place;
+mod plots;
 mod question;
 mod recovery;
 mod selection;
@@ -80,6 +82,8 @@ pub struct Session {
     pub renaming: Option<Selection>,
     /// The choice of what is shown, and how.
     pub view: View,
+    /// The choices of the plots.
+    pub plots: Plots,
     /// Messages to the user.
     pub messages: Messages,
     /// Questions to the user.
@@ -128,6 +132,7 @@ impl Session {
             selection: Selection::Room,
             renaming: None,
             view: View::default(),
+            plots: Plots::default(),
             messages: Messages::default(),
             questions: Questions::default(),
             recent_files: Vec::new(),
