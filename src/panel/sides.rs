@@ -143,11 +143,13 @@ pub(super) fn bottom(
         PLOTS_TAB => PLOT_STRIP,
         _ => 72.0,
     };
+    // A plot is large where there is room.
+    let share = if least == PLOT_STRIP { 0.36 * whole.height() } else { 0.0 };
     let zoom = super::zoom_percent(ui.ctx());
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom, least as u32)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
-        .default_size(height.max(least).min(most))
+        .default_size(height.max(least).max(share).min(most))
         .size_range(least.min(most)..=most);
     let response = strip.show(ui, |ui| {
         let mut tabs: Vec<_> = panels.at(Place::Bottom, session).collect();

@@ -36,16 +36,16 @@ pub(super) fn show(
             ui.painter().line_segment(line(-theta_i), Stroke::new(1.0, palette.accent));
             let font = TextStyle::Small.resolve(ui.style());
             let text = |angle: f64, text: String, align: Align2, right: f32| {
-                let at = screen.place([x(angle), *top]) + vec2(right, 6.0);
+                let at = screen.place([x(angle), *top]) + vec2(right, -2.0);
                 ui.painter().text(at, align, text, font.clone(), palette.weak);
             };
-            text(-theta_i, format!("light {}", degrees(theta_i)), Align2::LEFT_CENTER, 10.0);
+            text(-theta_i, format!("light {}", degrees(theta_i)), Align2::LEFT_BOTTOM, 14.0);
             // Where it would stand over the light's.
             if theta_i > 25.0 {
-                text(theta_i, "mirror".to_owned(), Align2::LEFT_CENTER, 5.0);
+                text(theta_i, "mirror".to_owned(), Align2::CENTER_BOTTOM, 0.0);
             }
             let (left, width) = (*left, right - left);
-            let at = screen.place([x(-theta_i), *top]) + vec2(0.0, 6.0);
+            let at = screen.place([x(-theta_i), *top]);
             (at, Box::new(move |[x, _]| 90.0 - 180.0 * (x - left) / width))
         }
         Ground::Polar { centre, radius } => {

@@ -1,8 +1,8 @@
 //! The plot itself, and what is read from it.
 
 use bevy_egui::egui::{
-    Align2, EventFilter, Key, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
+    Align2, EventFilter, Key, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{
@@ -42,14 +42,6 @@ impl PlotPanel {
             Figure::Plot(plot) => [plot.x.from, plot.x.to],
             _ => [-90.0, 90.0],
         };
-        if let Some(text) = empty {
-            let font = TextStyle::Body.resolve(ui.style());
-            let colour = Palette::here(ui).weak;
-            let galley = ui.painter().layout(text, font, colour, 0.7 * place.width());
-            let at = Align2::CENTER_CENTER.anchor_size(place.center(), galley.size());
-            ui.painter().rect_filled(at.expand(6.0), 4.0, Palette::here(ui).panel);
-            ui.painter().galley(at.min, galley, colour);
-        }
         let unit = |at: Pos2| {
             let at = (at - place.min) / SCALE;
             [f64::from(at.x), f64::from(at.y)]
@@ -60,9 +52,6 @@ impl PlotPanel {
             None if response.has_focus() => walked(ui, &response, self.reading, request, axis),
             None => None,
         };
-        if let Some(reading) = self.reading {
-            mark(ui, &screen, &ground, built, reading);
-        }
         let title = match &built.figure {
             Figure::Plot(plot) => &plot.title,
             Figure::Polar(polar) => &polar.title,
@@ -79,6 +68,11 @@ impl PlotPanel {
         if request.setup.kind.has_light() {
             handle::show(ui, &screen, &ground, theta_i, unit, actions);
         }
+        match (empty, self.reading) {
+            (Some(text), _) => says_instead(ui, place, text),
+            (None, Some(reading)) => mark(ui, &screen, &ground, built, reading),
+            (None, None) => {}
+        }
     }
 
     /// What stands in a plot without curves.
@@ -93,9 +87,20 @@ impl PlotPanel {
         Some(match () {
             () if shown.is_empty() => "No curve is shown. Show one in the list, or lay one over.".to_owned(),
             () if why.len() < shown.len() => "Calculating…".to_owned(),
-            () => why.iter().map(|why| format!("{why}.")).collect::<Vec<_>>().join("\n"),
+            () if why.len() > 1 => "None of the curves can be shown: the list says why.".to_owned(),
+            () => why.iter().map(|why| format!("{why}.")).collect(),
         })
     }
+}
+
+/// Says something in the middle of the plot.
+fn says_instead(ui: &Ui, place: Rect, text: String) {
+    let palette = Palette::here(ui);
+    let font = TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout(text, font, palette.text, 0.6 * place.width());
+    let at = Align2::CENTER_CENTER.anchor_size(place.center(), galley.size());
+    ui.painter().rect(at.expand(8.0), 4.0, palette.panel, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    ui.painter().galley(at.min, galley, palette.text);
 }
 
 /// Gives a figure the size of its place.
@@ -174,8 +179,11 @@ fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Readi
             let x = left + plot.x.place(angle) * (right - left);
             painter.line_segment([screen.place([x, *top]), screen.place([x, *bottom])], stroke);
             let label = reading::degrees(angle);
-            let at = screen.place([x, *top]) - vec2(0.0, 1.0);
-            painter.text(at, Align2::CENTER_BOTTOM, label, font, palette.text);
+            let label = painter.layout_no_wrap(label, font, palette.text);
+            let at = screen.place([x, *top]) - vec2(0.0, 2.0);
+            let at = Align2::CENTER_BOTTOM.anchor_size(at, label.size());
+            painter.rect_filled(at.expand2(vec2(4.0, 1.0)), 2.0, palette.panel);
+            painter.galley(at.min, label, palette.text);
             for (value, series) in values(&built.sheet, angle).iter().zip(&plot.series) {
                 let y = bottom - plot.y.place(*value) * (bottom - top);
                 if (*top - 0.5..=bottom + 0.5).contains(&y) {
@@ -189,12 +197,6 @@ fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Readi
                 screen.place([centre[0] + part * radius * sin, centre[1] - part * radius * cos])
             };
             painter.line_segment([at(0.0), at(1.0)], stroke);
-            let label = reading::degrees(angle);
-            let inwards = at(0.93);
-            let ground = painter.layout_no_wrap(label, font, palette.text);
-            let place = Align2::CENTER_CENTER.anchor_size(inwards, ground.size());
-            painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, palette.panel);
-            painter.galley(place.min, ground, palette.text);
             for (value, series) in values(&built.sheet, angle).iter().zip(&polar.series) {
                 let part = polar.radius.place(*value);
                 if (..=1.001).contains(&part) {

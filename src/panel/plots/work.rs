@@ -167,7 +167,9 @@ impl Shared {
         for item in job.items.iter().filter(|item| fine || !item.coarse) {
             let draw = || {
                 let progress = Progress { tell: &|_, _| {}, cancelled };
-                item.recipe.draw(&job.setup, detail, job.registry.as_ref(), &progress)
+                // Said once.
+                let registry = job.registry.as_ref().filter(|_| item.slot == Slot::Live);
+                item.recipe.draw(&job.setup, detail, registry, &progress)
             };
             let made = catch_unwind(AssertUnwindSafe(|| match &*POOL {
                 Some(pool) => pool.install(draw),
