@@ -23,6 +23,7 @@
 mod adaptive;
 pub mod data;
 pub mod draw;
+mod format;
 mod kind;
 mod sample;
 mod sheet;
@@ -34,9 +35,10 @@ use glam::Vec3;
 
 use crate::progress::Cancelled;
 
+pub use format::Format;
 pub use kind::{Channel, Kind};
 pub use sample::curve;
-pub use sheet::Sheet;
+pub use sheet::{Sheet, Style};
 pub use slice::{Slice, slice};
 pub use subject::{Subject, subjects_with};
 

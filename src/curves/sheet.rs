@@ -4,7 +4,7 @@ use std::io;
 
 use super::{
     Channel, Curve, Kind, Setup, Slice,
-    draw::{Axis, Figure, Line, Mark, Plot, Polar, Series, Slices, Tile},
+    draw::{Axis, COLOURS, Figure, Line, Mark, Plot, Polar, SIDE, Series, Slices, Tile},
     slice::LOG_RANGE,
 };
 use crate::render::capture::png::{About, encode};
@@ -22,6 +22,25 @@ pub struct Sheet {
     pub curves: Vec<Curve>,
     /// The slices, where [`Kind::Slice`] is shown.
     pub slices: Vec<Slice>,
+    /// The colour and the dash of each curve; where there are none, those of its place among the lines.
+    pub styles: Vec<Style>,
+}
+
+/// The colour and the dash of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// The colour, counted from 0 in [`COLOURS`].
+    pub colour: usize,
+    /// The dash.
+    pub line: Line,
+}
+
+impl Style {
+    /// The n-th style. With six colours and eight dashes there are 24 before the first comes back.
+    #[must_use]
+    pub fn nth(n: usize) -> Self {
+        Self { colour: n % COLOURS.len(), line: Line::ALL[n % Line::ALL.len()] }
+    }
 }
 
 /// The powers of ten of a logarithmic axis at most.
@@ -31,7 +50,7 @@ impl Sheet {
     /// A plot without curves.
     #[must_use]
     pub fn new(setup: Setup) -> Self {
-        Self { setup, channel: None, log: false, curves: Vec::new(), slices: Vec::new() }
+        Self { setup, channel: None, log: false, curves: Vec::new(), slices: Vec::new(), styles: Vec::new() }
     }
 
     /// The value of a point as it is shown.
@@ -121,6 +140,7 @@ impl Sheet {
                 series: self.series(),
                 light: self.setup.theta_i,
                 size: (960, 500),
+                legend: true,
                 notes: self.notes(),
             }),
             _ => {
@@ -170,7 +190,7 @@ impl Sheet {
     }
 
     fn tiles(&self, heading: String, title: String) -> Slices {
-        let tiles = self
+        let tiles: Vec<_> = self
             .slices
             .iter()
             .map(|s| Tile { name: s.name.clone(), side: s.side, rgb8: s.rgb8(self.channel, self.log) })
@@ -189,26 +209,28 @@ impl Sheet {
             }
         }];
         notes.extend(self.notes());
-        Slices { title, heading, tiles, notes }
+        let columns = Slices::columns_of(tiles.len());
+        Slices { title, heading, tiles, side: SIDE, columns, notes }
     }
 
     /// The series of the curves: each with a colour and a dash of its own, black for what was measured.
     fn series(&self) -> Vec<Series> {
         let marks = [Mark::Ring, Mark::Square, Mark::Triangle, Mark::Cross];
         let (mut lines, mut measured) = (0, 0);
-        let each = |curve: &Curve| {
+        let each = |(i, curve): (usize, &Curve)| {
             let points = curve.points.iter().map(|p| (p.angle, self.value(p.rgb))).collect();
             let (colour, line, mark) = if curve.measured {
                 measured += 1;
                 (6, Line::None, marks[(measured - 1) % marks.len()])
             } else {
                 lines += 1;
-                // Six colours and eight dashes: 24 pairs before the first comes back.
-                ((lines - 1) % 6, Line::ALL[(lines - 1) % Line::ALL.len()], Mark::None)
+                let Style { colour, line } =
+                    self.styles.get(i).copied().unwrap_or_else(|| Style::nth(lines - 1));
+                (colour, line, Mark::None)
             };
             Series { name: curve.name.clone(), points, colour, line, mark }
         };
-        self.curves.iter().map(each).collect()
+        self.curves.iter().enumerate().map(each).collect()
     }
 
     /// The largest angle whose values the axis must hold. Some models rise without limit towards grazing angles, and the

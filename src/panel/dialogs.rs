@@ -13,7 +13,7 @@ use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
     preview::{self, Preview, Source},
-    state::{Action, Effect, ExportCommand, ModelCommand, PictureCommand, Session},
+    state::{Action, Effect, ExportCommand, ModelCommand, PictureCommand, PlotCommand, Session},
     theme::{self, Palette},
 };
 use crate::{
@@ -58,11 +58,12 @@ pub struct Dialogs {
     blank: u8,
 }
 
-/// An export in a form, by its id, or the picture of a view alone or of all.
+/// An export in a form, by its id, the picture of a view alone or of all, or the plot.
 #[derive(Clone, Copy, Debug)]
 enum Exported {
     Form(&'static str),
     Picture(Option<usize>),
+    Plot,
 }
 
 /// The fields of a dialog of which keys go through.
@@ -144,7 +145,7 @@ fn file_dialog(format: &FileFormat) -> FileDialog {
     dialog
 }
 
-/// The dialog that chooses a place for an export or a picture.
+/// The dialog that chooses a place for an export, a picture or a plot.
 fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> FileDialog {
     let (title, button, name) = match what {
         Exported::Form(id) => {
@@ -158,6 +159,7 @@ fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> Fi
         Exported::Picture(view) => {
             ("Save the picture".to_owned(), "Save", format!("{}.png", session.picture_stem(view)))
         }
+        Exported::Plot => ("Export the plot".to_owned(), "Export", super::plots::file_name(session)),
     };
     let mut dialog = FileDialog::new()
         .title(&title)
@@ -169,6 +171,9 @@ fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> Fi
         })
         .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
         .default_file_name(&name);
+    if matches!(what, Exported::Plot) {
+        super::plots::offer(&mut dialog);
+    }
     if let Some(folder) = folder {
         dialog.config_mut().initial_directory = folder.to_owned();
     }
@@ -196,6 +201,7 @@ impl Dialogs {
         let exported = match effect {
             Effect::PickExport(id) => Some(Exported::Form(id)),
             Effect::PickPicture(view) => Some(Exported::Picture(*view)),
+            Effect::PickPlot => Some(Exported::Plot),
             _ => None,
         };
         if let Some(what) = exported {
@@ -304,6 +310,7 @@ impl Dialogs {
             actions.push(match what {
                 Exported::Form(form) => Action::Export(ExportCommand::To { form, path }),
                 Exported::Picture(view) => Action::Picture(PictureCommand::To { view, path }),
+                Exported::Plot => Action::Plot(PlotCommand::To(path)),
             });
         }
         for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.export] {

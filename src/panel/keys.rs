@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::{
     focus,
     state::{
-        Action, CompareCommand, HandleChange, ModelCommand, PictureArea, PictureCommand, SHADER_TAB, Session,
-        Steer, ViewChange,
+        Action, CompareCommand, HandleChange, ModelCommand, PLOTS_TAB, PictureArea, PictureCommand, SHADER_TAB,
+        Session, Steer, ViewChange,
     },
 };
 use crate::{registry::Registry, scene::Comparison};
@@ -223,12 +223,12 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         Action::View(ViewChange::Keys(!session.view.keys_open)),
     );
     add("Window", false, false, Key::F8, "Messages", Action::View(session.strip_change()));
-    let shader = if session.view.bottom_open && session.view.bottom_tab == SHADER_TAB {
-        ViewChange::Bottom(false)
-    } else {
-        ViewChange::BottomTab(SHADER_TAB.to_owned())
+    let tab = |id: &str| {
+        let open = session.view.bottom_open && session.view.bottom_tab == id;
+        Action::View(if open { ViewChange::Bottom(false) } else { ViewChange::BottomTab(id.to_owned()) })
     };
-    add("Window", false, false, Key::F9, "Shader: files and errors", Action::View(shader));
+    add("Window", false, false, Key::F7, "Plots: curves of the model", tab(PLOTS_TAB));
+    add("Window", false, false, Key::F9, "Shader: files and errors", tab(SHADER_TAB));
     all
 }
 

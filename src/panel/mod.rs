@@ -70,6 +70,7 @@ mod notice;
 pub mod picture;
 mod pictures;
 mod placing;
+pub mod plots;
 pub mod presentation;
 pub mod preview;
 pub mod question;
@@ -94,6 +95,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add_own(top::TopBar);
     to.add_own(status::StatusLine);
     to.add_own(messages::Messages);
+    to.add_own(plots::PlotPanel::default());
     to.add_own(shader::Shader);
     to.add_own(history::History);
     to.add_own(explain::Explain);

@@ -11,7 +11,7 @@ use super::{
     glyphs,
     icon::{self, Icon},
     shares::shared,
-    state::{Action, EXPLAIN_TAB, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
+    state::{Action, EXPLAIN_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
     theme::{self, Palette},
 };
 
@@ -125,6 +125,9 @@ const SHADER_STRIP: f32 = 184.0;
 /// The least height of the strip that explains a pixel, points, and of the window.
 const EXPLAIN_STRIP: (f32, f32) = (240.0, 0.37);
 
+/// The same with the plots, points.
+const PLOT_STRIP: f32 = 312.0;
+
 /// The strip at the bottom. Tabs appear when there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
@@ -137,16 +140,19 @@ pub(super) fn bottom(
 ) {
     let most = 0.6 * whole.height();
     // An error with its line of source is seen whole.
-    let (kind, least) = match session.view.bottom_tab.as_str() {
-        SHADER_TAB => (1, SHADER_STRIP),
-        EXPLAIN_TAB => (2, EXPLAIN_STRIP.0.max(EXPLAIN_STRIP.1 * whole.height())),
-        _ => (0, 72.0),
+    let share = |(least, part): (f32, f32)| least.max(part * whole.height());
+    let (kind, least, start) = match session.view.bottom_tab.as_str() {
+        SHADER_TAB => (1, SHADER_STRIP, 0.0),
+        EXPLAIN_TAB => (2, share(EXPLAIN_STRIP), 0.0),
+        // A plot is large where there is room.
+        PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
+        _ => (0, 72.0, 0.0),
     };
     let zoom = super::zoom_percent(ui.ctx());
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom, kind)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
-        .default_size(height.max(least).min(most))
+        .default_size(height.max(least).max(start).min(most))
         .size_range(least.min(most)..=most);
     let response = strip.show(ui, |ui| {
         let mut tabs: Vec<_> = panels.at(Place::Bottom, session).collect();

@@ -9,8 +9,8 @@ use super::{
     labels, maths, menu, model_override, pictures,
     segmented::{segment_width, segmented},
     state::{
-        Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, SHADER_TAB, Session, ThemeChoice, View,
-        ViewChange,
+        Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, PLOTS_TAB, SHADER_TAB, Session,
+        ThemeChoice, View, ViewChange,
     },
     theme::{self, Palette},
     welcome,
@@ -341,6 +341,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                         };
                         let key = match panel.id {
                             MESSAGES_TAB => "F8",
+                            PLOTS_TAB => "F7",
                             SHADER_TAB => "F9",
                             _ => "",
                         };

@@ -17,6 +17,7 @@ use super::{
     laws::LawChecks,
     matching::Matches,
     order::Loading,
+    plots::PlotFiles,
     watching::{FilesChanged, complain},
 };
 use crate::{
@@ -78,6 +79,7 @@ impl Plugin for DocumentPlugin {
             .insert_resource(DiskFiles::new(options.file.clone(), options.stamp))
             .init_resource::<Exports>()
             .init_resource::<Matches>()
+            .init_resource::<PlotFiles>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
             .init_resource::<Editors>()
             .add_message::<LabEffect>()

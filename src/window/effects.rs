@@ -6,7 +6,7 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
-use super::{authoring, camera, editor, exports, files, laws, matching, recovery, shaders, watching};
+use super::{authoring, camera, editor, exports, files, laws, matching, plots, recovery, shaders, watching};
 use crate::{
     panel::{
         effects::run as run_files,
@@ -32,6 +32,7 @@ pub(super) fn carry_out(
     laws: Res<laws::LawChecks>,
     exports: Res<exports::Exports>,
     matches: Res<matching::Matches>,
+    plot_files: Res<plots::PlotFiles>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
     mut recovery: Option<ResMut<recovery::Recovery>>,
     unattended: Option<Res<Unattended>>,
@@ -49,6 +50,7 @@ pub(super) fn carry_out(
         exports::reveal(&path, &mut session);
     }
     matches.report(&mut session, &registry);
+    plot_files.report(&mut session);
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
@@ -88,6 +90,7 @@ pub(super) fn carry_out(
             | Effect::PickFile(..)
             | Effect::PickExport(_)
             | Effect::PickPicture(_)
+            | Effect::PickPlot
             | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }
@@ -118,6 +121,12 @@ pub(super) fn carry_out(
                 });
             }
             Effect::CancelMatch => matches.cancel(),
+            Effect::WritePlot(path) => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                plot_files.begin(path, &mut session, &registry, move || {
+                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
             Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
             Effect::CheckLaws(model) => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());

@@ -29,6 +29,7 @@ mod pick;
 mod picture;
 mod pictures;
 mod place;
+mod plots;
 mod plugins;
 mod pointer;
 mod readback;

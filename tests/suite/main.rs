@@ -60,6 +60,7 @@ mod photometric;
 mod pictures;
 mod placing;
 mod plot;
+mod plots;
 mod plugins;
 mod pointer;
 mod presentation;

@@ -33,7 +33,8 @@ impl Axis {
     }
 
     /// The place of a value, 0 at the start of the axis and 1 at its end.
-    pub(super) fn place(&self, v: f64) -> f64 {
+    #[must_use]
+    pub fn place(&self, v: f64) -> f64 {
         let at = |v: f64| match self.log {
             // Zero lies far outside, and no value stays none.
             true if v <= 0.0 => -30.0,

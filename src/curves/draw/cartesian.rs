@@ -1,14 +1,14 @@
 //! Plots with two axes.
 
 use super::{
-    Plot,
+    Ground, Plot,
     layout::{self, Around, FONT},
     pen::{Anchor, Ink, Pen},
     size,
 };
 
 /// Draws a plot.
-pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) {
+pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) -> Ground {
     let legend: &[_] = if plot.legend { &plot.series } else { &[] };
     let parts = Around { size: size(plot.size), heading: &plot.heading, notes: &plot.notes, legend };
     let [left, top, right, bottom] = layout::around(pen, &parts);
@@ -44,4 +44,5 @@ pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) {
         let points: Vec<_> = series.points.iter().map(|p| [x(p.0), y(p.1)]).collect();
         layout::curve(pen, &points, [left, top, right, bottom], series);
     }
+    Ground::Plot([left, top, right, bottom])
 }

@@ -14,11 +14,11 @@ mod slices;
 mod svg;
 
 pub use axis::Axis;
+pub use pen::{Anchor, COLOURS, Ink, Pen};
 pub use polar::Polar;
-pub use slices::{Slices, Tile};
+pub use slices::{GAP, SIDE, Slices, Tile};
 
 use bitmap::Bitmap;
-use pen::Pen;
 use svg::{Place, Svg};
 
 /// Text and axes of figures that stand alone.
@@ -176,11 +176,28 @@ pub enum Figure {
     Slices(Slices),
 }
 
+/// The place of the values in a figure that was drawn, in its units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ground {
+    /// Between two axes: left, top, right, bottom.
+    Plot([f64; 4]),
+    /// Around a point.
+    Polar {
+        /// The point of the surface.
+        centre: [f64; 2],
+        /// The radius at the end of the scale.
+        radius: f64,
+    },
+    /// The pictures: left, top, right, bottom of each.
+    Slices(Vec<[f64; 4]>),
+}
+
 /// Pixels per unit of a figure.
 const SCALE: f64 = 2.0;
 
 impl Figure {
-    fn draw(&self, pen: &mut impl Pen) {
+    /// Draws it; returns where its values are.
+    pub fn draw(&self, pen: &mut impl Pen) -> Ground {
         match self {
             Self::Plot(plot) => cartesian::draw(plot, pen),
             Self::Polar(polar) => polar::draw(polar, pen),
@@ -212,6 +229,12 @@ impl Figure {
         self.draw(&mut bitmap);
         Picture { size: bitmap.size, rgb8: bitmap.rgb8 }
     }
+}
+
+/// Draws the sample of a series as a legend has it: its line, from a point to the right, and its mark.
+pub fn sample(pen: &mut impl Pen, [x, y]: [f64; 2], length: f64, series: &Series) {
+    layout::line(pen, &[[x, y], [x + length, y]], series);
+    layout::mark(pen, [x + 0.5 * length, y], series);
 }
 
 fn size((width, height): (u32, u32)) -> [f64; 2] {

@@ -2,7 +2,7 @@
 
 /// A colour by its job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ink {
+pub enum Ink {
     /// Text and axes.
     Text,
     /// Thin lines behind the curves.
@@ -12,12 +12,13 @@ pub(super) enum Ink {
 }
 
 /// Okabe and Ito's colours except yellow, which is too light on white, and black, which is [`Ink::Text`].
-pub(super) const COLOURS: [[u8; 3]; 6] =
+pub const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 
 impl Ink {
     /// The colour of a curve; none for that of text.
-    pub(super) fn colour(self) -> Option<[u8; 3]> {
+    #[must_use]
+    pub fn colour(self) -> Option<[u8; 3]> {
         match self {
             Self::Curve(index) => COLOURS.get(index % (COLOURS.len() + 1)).copied(),
             Self::Text | Self::Grid => None,
@@ -27,14 +28,17 @@ impl Ink {
 
 /// The part of a line of text that stands at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub enum Anchor {
+    /// Its left end.
     Start,
+    /// Its middle.
     Middle,
+    /// Its right end.
     End,
 }
 
 /// Places are in units of the figure, x to the right and y down from the upper left corner.
-pub(super) trait Pen {
+pub trait Pen {
     /// A line through some points; `dash` has the lengths of dashes and gaps, none for a line without gaps.
     fn stroke(&mut self, path: &[[f64; 2]], ink: Ink, width: f64, dash: &[f64]);
     /// An area.

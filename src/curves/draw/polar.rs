@@ -1,7 +1,7 @@
 //! Polar plots: the length of the ray to each direction in a plane is the value there.
 
 use super::{
-    Axis, Series,
+    Axis, Ground, Series,
     layout::{self, Around, FONT},
     pen::{Anchor, Ink, Pen, arc, clipped},
     size,
@@ -22,14 +22,16 @@ pub struct Polar {
     pub light: f64,
     /// Width and height.
     pub size: (u32, u32),
+    /// True if it has a legend, at the right.
+    pub legend: bool,
     /// Remarks below it.
     pub notes: Vec<String>,
 }
 
 /// Draws a plot.
-pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
-    let parts =
-        Around { size: size(plot.size), heading: &plot.heading, notes: &plot.notes, legend: &plot.series };
+pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
+    let legend: &[_] = if plot.legend { &plot.series } else { &[] };
+    let parts = Around { size: size(plot.size), heading: &plot.heading, notes: &plot.notes, legend };
     let [left, top, right, bottom] = layout::around(pen, &parts);
     let bottom = bottom - 2.0 * FONT - 16.0;
     let [centre, floor] = [0.5 * (left + right), bottom];
@@ -101,6 +103,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
             layout::mark(pen, *point, series);
         }
     }
+    Ground::Polar { centre: [centre, floor], radius: full }
 }
 
 /// The labels of light and mirror direction with their angles; one where they would cover each other.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::{CompareCommand, Effect, MatchCommand, Session, Severity, Steer, ViewChange};
+use super::{CompareCommand, Effect, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,
@@ -103,6 +103,8 @@ pub enum Action {
     Compare(CompareCommand),
     /// Something about matching views.
     Match(MatchCommand),
+    /// Something about the plots.
+    Plot(PlotCommand),
     /// Say something.
     Say(Severity, String),
     /// Remove a message.
@@ -314,6 +316,7 @@ impl Session {
             }
             Action::Compare(command) => self.compare(command, registry),
             Action::Match(command) => return self.matching(command, registry),
+            Action::Plot(command) => return self.plot(command),
             Action::View(change) => return self.change_view(change),
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],

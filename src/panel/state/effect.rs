@@ -114,6 +114,10 @@ pub enum Effect {
         /// The names of the parameters that are free.
         parameters: Vec<&'static str>,
     },
+    /// Show the dialog that chooses a file for the plot.
+    PickPlot,
+    /// Write the plot to a file.
+    WritePlot(PathBuf),
     /// Stop the match that runs.
     CancelMatch,
     /// Stop the export that runs.

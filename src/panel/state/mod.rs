@@ -23,6 +23,7 @@ pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use pictures::PictureEnd;
 pub use place::{PanelInfo, Place};
 pub use probe::{EXPLAIN_TAB, Pin};
+pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;
 pub use severity::Severity;
@@ -30,8 +31,8 @@ pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
 pub use view::{
-    HandleChange, HandleMode, Labels, MESSAGES_TAB, SCALES, SHADER_TAB, ThemeChoice, View, ViewChange,
-    nearest_scale,
+    HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SCALES, SHADER_TAB, ThemeChoice, View,
+    ViewChange, nearest_scale,
 };
 
 use super::terms::KnownTerms;
@@ -58,6 +59,7 @@ mod parts;
 mod pictures;
 mod place;
 mod probe;
+mod plots;
 mod question;
 mod recovery;
 mod selection;
@@ -84,6 +86,8 @@ pub struct Session {
     pub renaming: Option<Selection>,
     /// The choice of what is shown, and how.
     pub view: View,
+    /// The choices of the plots.
+    pub plots: Plots,
     /// Messages to the user.
     pub messages: Messages,
     /// Questions to the user.
@@ -132,6 +136,7 @@ impl Session {
             selection: Selection::Room,
             renaming: None,
             view: View::default(),
+            plots: Plots::default(),
             messages: Messages::default(),
             questions: Questions::default(),
             recent_files: Vec::new(),

@@ -1,0 +1,88 @@
+//! The files that a plot can be written to.
+
+use std::{ffi::OsStr, io, path::Path};
+
+use super::Sheet;
+use crate::files::{self, Signature};
+
+/// The format of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Vector graphics.
+    Svg,
+    /// Pixels.
+    Png,
+    /// Numbers.
+    Csv,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Csv];
+
+    /// The format that the name of a file asks for.
+    ///
+    /// # Errors
+    /// If there is no such format.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        let extension = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+        let known = |format: &Self| extension.as_deref() == Some(format.extension());
+        match Self::ALL.into_iter().find(known) {
+            Some(format) => Ok(format),
+            // A device or a pipe has no format in its name.
+            None if extension.is_none() && files::is_stream(path) => Ok(Self::Csv),
+            None => Err(format!(
+                "a plot is written as .svg, .png or .csv; did you mean {}?",
+                path.with_extension("svg").display()
+            )),
+        }
+    }
+
+    /// Behind the point in the name of a file.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// How such a file begins: others are not replaced.
+    #[must_use]
+    pub fn signature(self) -> Signature {
+        match self {
+            Self::Svg => Signature { what: "an SVG file", begins: b"<svg" },
+            Self::Png => files::PNG,
+            Self::Csv => Signature { what: "a CSV file of lcm plot", begins: b"curve," },
+        }
+    }
+
+    /// The content of the file.
+    ///
+    /// # Errors
+    /// If the picture is too large to be encoded.
+    pub fn bytes(self, sheet: &Sheet) -> io::Result<Vec<u8>> {
+        Ok(match self {
+            Self::Svg => sheet.figure().svg().into_bytes(),
+            Self::Png => sheet.png()?,
+            Self::Csv => sheet.csv().into_bytes(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_the_file_says_its_format() {
+        for (name, format) in [("a.svg", Format::Svg), ("a.PNG", Format::Png), ("b/a.csv", Format::Csv)] {
+            assert_eq!(Format::of(Path::new(name)), Ok(format));
+        }
+        for name in ["a.jpg", "a", "svg"] {
+            let Err(said) = Format::of(Path::new(name)) else { panic!("{name}") };
+            assert!(said.contains(".svg, .png or .csv; did you mean"), "{said}");
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! The list of the curves: what is shown, its colour and dash, its value where the plot is read.
+
+use bevy_egui::egui::{
+    self, Align, Button, Label, Layout, Popup, PopupCloseBehavior, RichText, ScrollArea, Sense, Ui,
+    WidgetInfo, WidgetType,
+};
+
+use super::{
+    Entry, PlotPanel, Recipe, Request,
+    reading::{self, Reading},
+    request::Drawn,
+    surface::{right_end, sample, sample_size, small_lines},
+};
+use crate::{
+    curves::{
+        Kind, Style,
+        data::{PAINTS, Sgd},
+        draw::{COLOURS, Line, Mark, Series},
+    },
+    panel::{
+        chooser,
+        icon::{self, Icon},
+        knob, menu,
+        state::{Action, Of, PlotCommand, Session, Slot},
+        theme::{self, Palette},
+    },
+    parameter::Values,
+    registry::Registry,
+};
+
+/// The colours of curves, as they are called.
+const COLOUR_NAMES: [&str; COLOURS.len()] = ["blue", "vermilion", "green", "purple", "orange", "sky blue"];
+
+fn dash_name(line: Line) -> &'static str {
+    match line {
+        Line::Solid => "solid",
+        Line::Dashed => "dashed",
+        Line::Dotted => "dotted",
+        Line::DashDot => "dash and dot",
+        Line::LongDashed => "long dashes",
+        Line::DashDotDot => "dash and two dots",
+        Line::LongShort => "long and short dashes",
+        Line::ShortDashed => "short dashes",
+        Line::None => "none",
+    }
+}
+
+/// Shows the list in all the room that there is.
+pub(super) fn show(
+    ui: &mut Ui,
+    panel: &PlotPanel,
+    request: &Request,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    buttons(ui, session, registry, actions);
+    let quantity = request.setup.kind.quantity();
+    let heading = panel.reading.map_or_else(String::new, |at| format!("{quantity} {}", at.name()));
+    // The line is there before it says something: nothing moves under the pointer.
+    ui.label(theme::small(ui, if heading.is_empty() { " " } else { &heading }));
+    ScrollArea::vertical().id_salt("curves of the plot").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0);
+        ui.spacing_mut().item_spacing.y = 2.0;
+        for entry in &request.entries {
+            ui.push_id(entry.slot, |ui| {
+                row(ui, panel, entry, request.setup.kind, session, registry, actions)
+            });
+        }
+        let notes = panel.figure.as_ref().map_or(&[][..], |built| &built.notes);
+        if !notes.is_empty() {
+            ui.add_space(6.0);
+            notes.iter().for_each(|note| small_lines(ui, note));
+        }
+    });
+}
+
+fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let help = "Keep the curve of the selected object as it is now, to compare it with what it becomes";
+        let some = session.plotted().is_some();
+        if ui.add_enabled(some, Button::new("Pin")).on_hover_text(help).clicked() {
+            actions.push(Action::Plot(PlotCommand::Pin));
+        }
+        let more =
+            |text: &str| Button::new(text).right_text(RichText::new("▾").color(Palette::here(ui).weak));
+        let (model, data) = (more("Model"), more("Measured"));
+        let height = 0.45 * ui.ctx().content_rect().height();
+        let button = ui.add(model).on_hover_text("Lay another model over, with its defaults");
+        button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay a model over"));
+        let id = ui.make_persistent_id("model of the plot");
+        let picked = knob::drop_down(&button, id, |ui, id| {
+            chooser::models(ui, id, height, session, registry, None, None).flatten()
+        });
+        if let Some(entry) = picked {
+            Popup::close_id(ui.ctx(), id);
+            let id = entry.declaration.id.to_owned();
+            let encoding = session.scene().display.encoding;
+            let of = Of::Model { id, values: Values::default(), encoding };
+            actions.push(Action::Plot(PlotCommand::Add(of)));
+        }
+        let help =
+            "Lay measured data over: the Cornell paints, or fits to the materials of the MERL database";
+        let button = ui.add(data).on_hover_text(help);
+        button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay measured data over"));
+        let id = ui.make_persistent_id("data of the plot");
+        if let Some(name) = knob::drop_down(&button, id, |ui, id| measured(ui, id, height)) {
+            Popup::close_id(ui.ctx(), id);
+            actions.push(Action::Plot(PlotCommand::Add(Of::Measured(name))));
+        }
+        let help = "Write the plot to a file: vector graphics (SVG), a picture (PNG) or numbers (CSV)";
+        if ui.button("Export…").on_hover_text(help).clicked() {
+            actions.push(Action::Plot(PlotCommand::Dialog));
+        }
+    });
+}
+
+/// The list of measured data.
+fn measured(ui: &mut Ui, id: egui::Id, height: f32) -> Option<String> {
+    let words = chooser::Words {
+        label: "Search measured data",
+        hint: "Search materials",
+        none: "No material has that in its name.",
+        foot: "Paints were measured at light angles of about 30° to 75° only, in single directions. Materials of the MERL database are shown by the fits of M. Bagher et al. (2012).",
+    };
+    let paints = PAINTS.map(|(id, name)| (id.to_owned(), name.to_owned(), true));
+    let fits = Sgd::all().into_iter().map(|fit| (fit.name.to_owned(), fit.name.replace('-', " "), false));
+    let all: Vec<_> = paints.into_iter().chain(fits).collect();
+    let find = |search: &str| -> Vec<&(String, String, bool)> {
+        all.iter().filter(|(id, name, _)| chooser::matches(&[id.as_str(), name].join(" "), search)).collect()
+    };
+    fn entry<'e>((_, name, paint): &&'e (String, String, bool)) -> chooser::Entry<'e> {
+        let heading = if *paint { "Cornell paints, measured" } else { "MERL database, fitted" };
+        chooser::Entry { heading, name, ..chooser::Entry::default() }
+    }
+    let picked = chooser::list(ui, id, words, height, find, entry, |ui, (_, name, _)| {
+        ui.label(theme::strong(ui, name));
+    });
+    picked.map(|(id, ..)| id.clone())
+}
+
+fn row(
+    ui: &mut Ui,
+    panel: &PlotPanel,
+    entry: &Entry,
+    kind: Kind,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let known = panel.known(entry.slot, kind);
+    let drawn = known.and_then(|known| known.as_ref().ok());
+    let name = drawn.map_or_else(|| entry.recipe.name(), |drawn| drawn.name().to_owned());
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let (icon, way) = if entry.shown { (Icon::Eye, "Hide") } else { (Icon::EyeOff, "Show") };
+        if icon::button(ui, icon, &format!("{way} the curve of {name}")).clicked() {
+            actions.push(Action::Plot(PlotCommand::Show(entry.slot, !entry.shown)));
+        }
+        style(ui, panel, entry, &name, kind, actions);
+        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            match entry.slot {
+                Slot::Pin(number) => {
+                    if icon::button(ui, Icon::Cross, &format!("Remove the curve of {name}")).clicked() {
+                        actions.push(Action::Plot(PlotCommand::Remove(number)));
+                    }
+                }
+                Slot::Live => ui.add_space(icon::SIZE + 4.0),
+            }
+            if let Some(value) = value(panel, entry, drawn.map(|drawn| &**drawn)) {
+                ui.label(theme::strong(ui, value));
+            }
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let colour = if entry.shown { palette.text } else { palette.weak };
+                ui.add(Label::new(RichText::new(&name).color(colour)).wrap());
+                if entry.slot == Slot::Live
+                    && let Some((scene, object)) = session.plotted()
+                    && let Some(i) = scene.objects.iter().position(|o| std::ptr::eq(o, object))
+                {
+                    let of = session.name_of(crate::document::Selection::Object(i), registry);
+                    small_lines(ui, &format!("now: {of}"));
+                }
+                if let Some(Err(why)) = known.filter(|_| entry.shown) {
+                    let text = RichText::new(format!("{why}.")).small().color(palette.warning);
+                    ui.add(Label::new(text).wrap().selectable(true));
+                }
+            });
+        });
+    });
+}
+
+/// The value of a curve where the plot is read.
+fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<String> {
+    let sheet = &panel.figure.as_ref()?.sheet;
+    let value = match (panel.reading.filter(|_| entry.shown)?, drawn?) {
+        (Reading::Angle(angle), Drawn::Curve(curve)) => reading::of_curve(sheet, curve, angle),
+        (Reading::Angles(half, difference), Drawn::Slice(slice)) => {
+            reading::of_slice(sheet, slice, [half, difference])
+        }
+        _ => return None,
+    };
+    Some(value.map_or_else(|| "–".to_owned(), reading::text))
+}
+
+/// The sample of a curve, which opens the choice of its colour and its dash.
+fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, actions: &mut Vec<Action>) {
+    if kind == Kind::Slice {
+        return;
+    }
+    let built = panel.figure.as_ref().and_then(|built| built.series(entry.slot));
+    let data = matches!(&entry.recipe, Recipe::Measured(id) if PAINTS.iter().any(|(paint, _)| paint == id));
+    let plain = Series {
+        name: String::new(),
+        points: Vec::new(),
+        colour: if data { COLOURS.len() } else { entry.style.colour },
+        line: if data { Line::None } else { entry.style.line },
+        mark: if data { Mark::Ring } else { Mark::None },
+    };
+    let series = built.unwrap_or(&plain);
+    if data {
+        let (place, response) = ui.allocate_exact_size(sample_size(), Sense::hover());
+        sample(ui, place, series);
+        response.on_hover_text("Measured points");
+        return;
+    }
+    let (place, response) = ui.allocate_exact_size(sample_size(), Sense::click());
+    response.widget_info(|| {
+        let Style { colour, line } = entry.style;
+        let colour = COLOUR_NAMES.get(colour).copied().unwrap_or_default();
+        let says = format!("Colour and dash of {name}: {colour}, {}", dash_name(line));
+        WidgetInfo::labeled(WidgetType::ComboBox, true, says)
+    });
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(place, 4.0, Palette::here(ui).hovered);
+    }
+    sample(ui, place, series);
+    let response = response.on_hover_text("Colour and dash");
+    let mut by_key = false;
+    let popup = Popup::menu(&response).close_behavior(PopupCloseBehavior::CloseOnClick).width(190.0);
+    let picked = popup.show(|ui| {
+        ui.set_min_width(190.0);
+        let mut picked = None;
+        let mut offer = |ui: &mut Ui, chosen: bool, name: &str, style: Style| {
+            let text = format!("{name}{}", " ".repeat(16));
+            let response = menu::choice(ui, chosen, text, &mut by_key);
+            let series = Series { colour: style.colour, line: style.line, ..plain.clone() };
+            sample(ui, right_end(response.rect.with_max_x(ui.max_rect().right())), &series);
+            if response.clicked() {
+                picked = Some(style);
+            }
+        };
+        for (colour, name) in COLOUR_NAMES.into_iter().enumerate() {
+            offer(ui, entry.style.colour == colour, name, Style { colour, ..entry.style });
+        }
+        ui.separator();
+        for line in Line::ALL {
+            offer(ui, entry.style.line == line, dash_name(line), Style { line, ..entry.style });
+        }
+        picked
+    });
+    if by_key {
+        response.request_focus();
+    }
+    if let Some(style) = picked.and_then(|shown| shown.inner) {
+        actions.push(Action::Plot(PlotCommand::Style(entry.slot, style)));
+    }
+}

@@ -1,0 +1,195 @@
+//! The panel of the plots: curves of the selected object's model with its present parameters, and of what was pinned or
+//! laid over. Curves are calculated in a [thread of their own](work), and only while the panel is shown.
+//!
+//! The figure is that of [`curves`](crate::curves), drawn by another pen: what the window shows is what
+//! its files show.
+
+use std::sync::Arc;
+
+use bevy_egui::egui::{self, Align, Layout, Rect, Ui, UiBuilder, vec2};
+
+use super::{
+    Panel, PanelContext, Place,
+    state::{PLOTS_TAB, Slot},
+    theme::Palette,
+};
+use crate::{
+    curves::{
+        Channel, Kind, Setup, Sheet, Style,
+        draw::{Figure, Series},
+    },
+    registry::Registry,
+};
+use reading::Reading;
+use request::{Drawn, Key};
+use work::{Done, Item, Job, Worker};
+
+mod choices;
+mod file;
+mod handle;
+mod legend;
+mod pen;
+mod reading;
+mod request;
+mod surface;
+mod work;
+
+pub(super) use file::{file_name, offer};
+pub use file::{file_of, write};
+pub use request::{Entry, NoCurve, Recipe, Request};
+
+/// See the module.
+#[derive(Default)]
+pub struct PlotPanel {
+    worker: Worker,
+    /// The last curve of each place in the list.
+    known: Vec<Done>,
+    /// What was asked for last.
+    asked: Option<(Setup, Vec<(Slot, Key)>)>,
+    /// The number of curves that have come.
+    news: u64,
+    figure: Option<Built>,
+    textures: pen::Textures,
+    reading: Option<Reading>,
+}
+
+/// A figure, and what it was made from.
+struct Built {
+    of: (u64, Setup, Option<Channel>, bool, Vec<(Slot, Style)>),
+    sheet: Sheet,
+    figure: Figure,
+    /// Remarks on it.
+    notes: Vec<String>,
+    /// The place in the list of each curve of the sheet.
+    slots: Vec<Slot>,
+}
+
+impl Panel for PlotPanel {
+    fn id(&self) -> &'static str {
+        PLOTS_TAB
+    }
+
+    fn title(&self) -> &'static str {
+        "Plots"
+    }
+
+    fn place(&self) -> Place {
+        Place::Bottom
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let request = Request::of(session, registry);
+        self.follow(ui.ctx(), &request, registry);
+        self.build(&request);
+        choices::row(ui, session, actions);
+        let whole = ui.available_rect_before_wrap();
+        let width = (0.3 * whole.width()).clamp(230.0, 360.0);
+        let (plot, list) = whole.split_left_right_at_x(whole.right() - width);
+        let line = egui::Stroke::new(1.0, Palette::here(ui).line);
+        ui.painter().vline(list.left(), whole.y_range(), line);
+        let column = |ui: &mut Ui, rect: Rect, add: &mut dyn FnMut(&mut Ui)| {
+            let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
+            ui.scope_builder(builder, |ui| add(ui));
+        };
+        column(ui, plot.with_max_x(plot.right() - 8.0), &mut |ui| {
+            self.surface(ui, &request, session.plots.theta_i, actions);
+        });
+        let list = Rect::from_min_max(list.min + vec2(12.0, 0.0), list.max);
+        column(ui, list, &mut |ui| legend::show(ui, self, &request, session, registry, actions));
+    }
+}
+
+impl PlotPanel {
+    /// Takes what was calculated, and asks for what is missing.
+    fn follow(&mut self, ctx: &egui::Context, request: &Request, registry: &Registry) {
+        self.worker.shown(ctx);
+        let busy = self.worker.is_busy();
+        for done in self.worker.take() {
+            self.known.retain(|known| known.slot != done.slot);
+            self.known.push(done);
+            self.news += 1;
+        }
+        let setup = request.calculated();
+        self.known.retain(|known| request.entries.iter().any(|entry| entry.slot == known.slot));
+        let shown = || request.entries.iter().filter(|entry| entry.shown);
+        let known = |entry: &Entry| {
+            let is = |done: &&Done| done.slot == entry.slot && done.key == entry.key && done.setup == setup;
+            self.known.iter().find(is)
+        };
+        let missing: Vec<_> = shown().filter(|entry| !known(entry).is_some_and(|done| done.fine)).collect();
+        let asked = (setup, shown().map(|entry| (entry.slot, entry.key.clone())).collect());
+        if missing.is_empty() || busy && self.asked.as_ref() == Some(&asked) {
+            return;
+        }
+        let item = |entry: &Entry| Item {
+            slot: entry.slot,
+            key: entry.key.clone(),
+            recipe: entry.recipe.clone(),
+            coarse: known(entry).is_some(),
+        };
+        let items = missing.into_iter().map(item).collect();
+        let may_lack = matches!(setup.kind, Kind::Fresnel | Kind::Distribution | Kind::Masking);
+        self.worker.ask(ctx, Job { setup, items, registry: may_lack.then(|| registry.clone()) });
+        self.asked = Some(asked);
+    }
+
+    /// What is known of a place in the list for the quantity that is shown; while a knob is dragged it may be a moment
+    /// old.
+    fn known(&self, slot: Slot, kind: Kind) -> Option<&Result<Arc<Drawn>, String>> {
+        let done = self.known.iter().find(|done| done.slot == slot && done.setup.kind == kind)?;
+        Some(&done.outcome)
+    }
+
+    /// Makes the figure anew if anything is new.
+    fn build(&mut self, request: &Request) {
+        let kind = request.setup.kind;
+        let shown = request.entries.iter().filter(|entry| entry.shown);
+        let styles: Vec<_> = shown.map(|entry| (entry.slot, entry.style)).collect();
+        let of = (self.news, request.setup, request.channel, request.log, styles);
+        if self.figure.as_ref().is_some_and(|built| built.of == of) {
+            return;
+        }
+        let drawn: Vec<_> = (of.4.iter())
+            .filter_map(|(slot, style)| {
+                let drawn = self.known(*slot, kind)?.as_ref().ok()?;
+                Some((*slot, *style, drawn.clone()))
+            })
+            .collect();
+        let sheet = request.sheet(drawn.iter().map(|(_, style, drawn)| (*style, &**drawn)));
+        let (figure, notes) = bare(sheet.figure());
+        self.textures.stale = true;
+        let slots = drawn.iter().map(|(slot, ..)| *slot).collect();
+        self.figure = Some(Built { of, sheet, figure, notes, slots });
+    }
+}
+
+impl Built {
+    /// The line of a place in the list, as the figure has it.
+    fn series(&self, slot: Slot) -> Option<&Series> {
+        let i = self.slots.iter().position(|known| *known == slot)?;
+        match &self.figure {
+            Figure::Plot(plot) => plot.series.get(i),
+            Figure::Polar(polar) => polar.series.get(i),
+            Figure::Slices(_) => None,
+        }
+    }
+}
+
+/// A figure without what the panel shows beside it, and the remarks.
+fn bare(mut figure: Figure) -> (Figure, Vec<String>) {
+    let (heading, notes) = match &mut figure {
+        Figure::Plot(plot) => {
+            plot.legend = false;
+            (&mut plot.heading, &mut plot.notes)
+        }
+        Figure::Polar(polar) => {
+            polar.legend = false;
+            (&mut polar.heading, &mut polar.notes)
+        }
+        Figure::Slices(slices) => (&mut slices.heading, &mut slices.notes),
+    };
+    heading.clear();
+    let notes = std::mem::take(notes);
+    (figure, notes)
+}

@@ -1,0 +1,192 @@
+//! Curves are calculated in a thread of their own, the coarse ones at once, the fine ones when nothing has changed for a
+//! moment. It stops when the plots are no longer shown.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{
+        Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use bevy_egui::egui::Context;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::request::{Drawn, Key, NoCurve, Recipe};
+use crate::{
+    curves::{Detail, Kind, Setup},
+    panel::state::Slot,
+    progress::Progress,
+    registry::Registry,
+};
+
+/// Fine curves wait until nothing has changed for so long.
+const REST: Duration = Duration::from_millis(120);
+/// Passes of the window without the plots before they count as closed.
+const PASSES: u64 = 3;
+
+/// A few threads, so that the frames of the window have the others.
+static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    ThreadPoolBuilder::new().num_threads((cores / 4).clamp(1, 4)).build().ok()
+});
+
+/// Curves to be calculated.
+pub(super) struct Job {
+    pub(super) setup: Setup,
+    pub(super) items: Vec<Item>,
+    /// Knows the models that have the quantity, where some have not.
+    pub(super) registry: Option<Registry>,
+}
+
+pub(super) struct Item {
+    pub(super) slot: Slot,
+    pub(super) key: Key,
+    pub(super) recipe: Recipe,
+    /// The coarse curve is there.
+    pub(super) coarse: bool,
+}
+
+/// A curve that was calculated.
+#[derive(Clone, Debug)]
+pub(super) struct Done {
+    pub(super) slot: Slot,
+    pub(super) key: Key,
+    pub(super) setup: Setup,
+    pub(super) fine: bool,
+    pub(super) outcome: Result<Arc<Drawn>, String>,
+}
+
+#[derive(Default)]
+struct State {
+    /// The newest job, until it is begun.
+    job: Option<Job>,
+    /// The quantity of the newest job.
+    kind: Option<Kind>,
+    /// The number of jobs so far.
+    jobs: u64,
+    done: Vec<Done>,
+    working: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+    /// The last pass of the window in which the plots were shown.
+    pass: AtomicU64,
+}
+
+/// Calculates curves.
+#[derive(Clone, Default)]
+pub(super) struct Worker(Arc<Shared>);
+
+impl std::fmt::Debug for Worker {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Worker")
+    }
+}
+
+impl Worker {
+    /// The plots are shown in this pass.
+    pub(super) fn shown(&self, ctx: &Context) {
+        self.0.pass.store(ctx.cumulative_pass_nr(), Ordering::Relaxed);
+    }
+
+    /// True while something is calculated.
+    pub(super) fn is_busy(&self) -> bool {
+        self.0.lock().working
+    }
+
+    /// What was calculated since the last call.
+    pub(super) fn take(&self) -> Vec<Done> {
+        std::mem::take(&mut self.0.lock().done)
+    }
+
+    /// Calculates these curves instead of those that were asked for last.
+    pub(super) fn ask(&self, ctx: &Context, job: Job) {
+        let mut state = self.0.lock();
+        state.kind = Some(job.setup.kind);
+        state.job = Some(job);
+        state.jobs += 1;
+        self.0.changed.notify_all();
+        if !std::mem::replace(&mut state.working, true) {
+            let (ctx, shared) = (ctx.clone(), self.0.clone());
+            thread::spawn(move || shared.work(&ctx));
+        }
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_closed(&self, ctx: &Context) -> bool {
+        ctx.cumulative_pass_nr() > self.pass.load(Ordering::Relaxed) + PASSES
+    }
+
+    fn work(&self, ctx: &Context) {
+        loop {
+            let (job, number) = {
+                let mut state = self.lock();
+                let Some(job) = state.job.take().filter(|_| !self.is_closed(ctx)) else {
+                    state.working = false;
+                    break;
+                };
+                (job, state.jobs)
+            };
+            // A coarse curve that is old is better than none while a knob is dragged.
+            let other = || self.is_closed(ctx) || self.lock().kind != Some(job.setup.kind);
+            if !self.calculate(ctx, &job, Detail::Coarse, &other) {
+                continue;
+            }
+            let state = self.lock();
+            let rested = self.changed.wait_timeout_while(state, REST, |state| state.jobs == number);
+            drop(rested);
+            let newer = || self.is_closed(ctx) || self.lock().jobs != number;
+            if !newer() {
+                self.calculate(ctx, &job, Detail::Fine, &newer);
+            }
+        }
+        // What was cancelled is asked for again if the plots are shown.
+        ctx.request_repaint();
+    }
+
+    /// False if it was cancelled.
+    fn calculate(
+        &self,
+        ctx: &Context,
+        job: &Job,
+        detail: Detail,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
+        let fine = detail == Detail::Fine;
+        for item in job.items.iter().filter(|item| fine || !item.coarse) {
+            let draw = || {
+                let progress = Progress { tell: &|_, _| {}, cancelled };
+                // Said once.
+                let registry = job.registry.as_ref().filter(|_| item.slot == Slot::Live);
+                item.recipe.draw(&job.setup, detail, registry, &progress)
+            };
+            let made = catch_unwind(AssertUnwindSafe(|| match &*POOL {
+                Some(pool) => pool.install(draw),
+                None => draw(),
+            }));
+            let outcome = match made {
+                Ok(Err(NoCurve::Cancelled)) => return false,
+                Ok(Err(NoCurve::Because(why))) => Err(why),
+                Ok(Ok(drawn)) => Ok(Arc::new(drawn)),
+                Err(_) => Err(format!("{}: an error of this program", item.recipe.name())),
+            };
+            let (slot, key, setup) = (item.slot, item.key.clone(), job.setup);
+            // What failed will not do better with more points.
+            let fine = fine || outcome.is_err();
+            self.lock().done.push(Done { slot, key, setup, fine, outcome });
+            ctx.request_repaint();
+        }
+        true
+    }
+}
