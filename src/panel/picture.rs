@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::{
     caption::{self, Lines, caption_text, models_shown},
-    clipping,
+    channels, clipping,
     compare::Arrangement,
     handles, icon, labels, marks,
     presentation::Stage,
@@ -65,6 +65,7 @@ pub fn overlays(
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
+        let top = channels::legend(ui, free, top, session.active(), session, registry, &mut all);
         badges(ui, free, top, whole, session, registry, &mut all);
         all.places.push(covered);
         all.written.push(covered);
@@ -108,6 +109,7 @@ pub fn views(
         });
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
+    let mut stale_in = None;
     if let Some(cell) = active.or(arrangement.cells.first()) {
         ui.scope(|ui| {
             let (asked, covered) = stale(ui, cell.rect, session, registry);
@@ -115,8 +117,18 @@ pub fn views(
             all.places.push(covered);
             all.written.push(covered);
             hint(ui, cell.rect, session);
+            stale_in = Some((cell.view, covered)).filter(|_| covered.is_positive());
         });
     }
+    ui.scope(|ui| {
+        let mut next = None;
+        for cell in arrangement.cells.iter().filter(|cell| cell.part.is_positive()) {
+            let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
+            let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
+            let top = next.filter(|_| !apart).unwrap_or(first);
+            next = Some(channels::legend(ui, cell.rect, top, cell.view, session, registry, &mut all));
+        }
+    });
     all
 }
 
