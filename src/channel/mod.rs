@@ -143,7 +143,8 @@ impl DebugChannel {
             }
             Self::Depth => {
                 "The straight distance from the eye to the surface. The scale reaches from the nearest to the \
-                 farthest object of the scene."
+                 farthest object of the scene, apart from those around the eye, such as a floor; what is nearer or \
+                 farther has the colour of the end."
             }
             Self::Luminance => {
                 "Y = 0.2126 R + 0.7152 G + 0.0722 B of the light that leaves the surface, before exposure and tone \
@@ -295,16 +296,20 @@ fn two_digits(x: f32, round: fn(f64) -> f64) -> f32 {
     (round(x * 10f64.powi(digits)) / 10f64.powi(digits)) as f32
 }
 
-/// The distances from the eye between which all objects are, rounded outwards so that a moving eye changes them rarely.
+/// The distances from the eye between which the objects are, rounded outwards so that a moving eye changes them rarely.
+/// Objects that reach around the eye, such as a floor, count only if there are no others: they would leave those no colours.
 fn depths(scene: &Scene, registry: &Registry, eye: Vec3) -> [f32; 2] {
-    let (mut near, mut far) = (f32::INFINITY, 0.0f32);
+    let apart = |[low, high]: [f32; 2], [near, far]: [f32; 2]| [low.min(near), high.max(far)];
+    let (mut before, mut around) = ([f32::INFINITY, 0.0], [f32::INFINITY, 0.0]);
     for object in scene.shown() {
         let Some(shape) = registry.shape(&object.object_type) else { continue };
         let radius = shape.bounds(&object.shape).radius * object.size;
         let distance = eye.distance(object.position);
-        near = near.min(distance - radius);
-        far = far.max(distance + radius);
+        let reach = [distance - radius, distance + radius];
+        let of = if reach[0] > 0.0 { &mut before } else { &mut around };
+        *of = apart(*of, reach);
     }
+    let [near, far] = if before[1] > 0.0 { before } else { around };
     let (near, far) = (two_digits(near, f64::floor), two_digits(far, f64::ceil));
     if near < far { [near, far] } else { [0.0, 1.0] }
 }
@@ -372,6 +377,10 @@ mod tests {
         let of = |eye| Setting::new(DebugChannel::Depth, &scene, &Registry::builtin(), eye, None).range;
         assert_eq!(of(Vec3::Z * 5.0), [4.0, 6.0]);
         assert_eq!(of(Vec3::ZERO), [0.0, 1.0], "from within");
+        assert_eq!(of(Vec3::X * 0.5), [0.0, 1.5]);
+        scene.objects.push(Object { size: 100.0, ..scene.objects[0].clone() });
+        let of = |eye| Setting::new(DebugChannel::Depth, &scene, &Registry::builtin(), eye, None).range;
+        assert_eq!(of(Vec3::Z * 5.0), [4.0, 6.0], "what is around the eye does not count");
         assert_eq!(
             depths(&Scene { objects: Vec::new(), ..scene.clone() }, &Registry::builtin(), Vec3::Z),
             [0.0, 1.0]
