@@ -6,7 +6,6 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    picture::Overlaid,
     state::{Action, CompareCommand, Session, ViewChange},
     theme::{self, Palette},
 };
@@ -47,7 +46,7 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
 }
 
 /// Paints the legend of a view's channel from `top` on, if the view shows one; a click on it shows the picture again. Returns
-/// the place for what comes below.
+/// its place, and the actions asked for there.
 pub(super) fn legend(
     ui: &mut Ui,
     rect: Rect,
@@ -55,9 +54,8 @@ pub(super) fn legend(
     view: usize,
     session: &Session,
     registry: &Registry,
-    to: &mut Overlaid,
-) -> f32 {
-    let Some((channel, mut legend)) = shown(session, view, registry) else { return top };
+) -> Option<(Rect, Vec<Action>)> {
+    let (channel, mut legend) = shown(session, view, registry)?;
     if !session.document.variants.is_empty() {
         legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
     }
@@ -69,21 +67,21 @@ pub(super) fn legend(
     let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.accent };
     let stroke = Stroke::new(theme::scale_here(ui), rim);
     ui.painter_at(rect).rect_stroke(place, 4.0, stroke, StrokeKind::Inside);
-    to.places.push(place);
-    to.written.push(place);
+    let mut actions = Vec::new();
     if response.clicked() {
         if view != session.active() {
-            to.actions.push(Action::Compare(CompareCommand::Activate(view)));
+            actions.push(Action::Compare(CompareCommand::Activate(view)));
         }
-        to.actions.push(Action::View(ViewChange::Channel(None)));
+        actions.push(Action::View(ViewChange::Channel(None)));
     }
-    let help = format!("{}\n\nClick: the picture again. N: the next channel.", channel.explanation());
+    let help =
+        format!("{}\n\nClick, or Shift+X: the picture again. X: the next channel.", channel.explanation());
     // By key there is no other way to its help.
     if response.has_focus() {
         response.show_tooltip_text(&help);
     }
     response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(help);
-    place.bottom() + 4.0
+    Some((place, actions))
 }
 
 /// Paints a legend, and returns its place.

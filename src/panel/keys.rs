@@ -116,8 +116,8 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
     let channel = |channel| Action::View(ViewChange::Channel(channel));
     let next = DebugChannel::next(session.channel_of(session.active()));
-    add("Picture", false, false, Key::N, "Next debug channel: normals, N·L, depth, …", channel(next));
-    add("Picture", false, true, Key::N, "No debug channel: the picture", channel(None));
+    add("Picture", false, false, Key::X, "Next debug channel: normals, N·L, depth, …", channel(next));
+    add("Picture", false, true, Key::X, "No debug channel: the picture", channel(None));
     add("Custom models", true, true, Key::N, "New reflection model…", Action::Model(ModelCommand::New));
     add(
         "Custom models",

@@ -65,7 +65,7 @@ pub fn overlays(
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let top = channels::legend(ui, free, top, session.active(), session, registry, &mut all);
+        let top = channel(ui, free, top, session.active(), session, registry, &mut all);
         badges(ui, free, top, whole, session, registry, &mut all);
         all.places.push(covered);
         all.written.push(covered);
@@ -79,6 +79,23 @@ pub fn overlays(
         }
     }
     all
+}
+
+/// Paints the legend of the debug channel of a view from `top` on, if it shows one. Returns the place for what comes below.
+fn channel(
+    ui: &mut Ui,
+    rect: Rect,
+    top: f32,
+    view: usize,
+    session: &Session,
+    registry: &Registry,
+    to: &mut Overlaid,
+) -> f32 {
+    let Some((place, actions)) = channels::legend(ui, rect, top, view, session, registry) else { return top };
+    to.actions.extend(actions);
+    to.places.push(place);
+    to.written.push(place);
+    place.bottom() + 4.0
 }
 
 /// Paints the marks of a view, and over them the handles of what is selected.
@@ -126,7 +143,7 @@ pub fn views(
             let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
             let top = next.filter(|_| !apart).unwrap_or(first);
-            next = Some(channels::legend(ui, cell.rect, top, cell.view, session, registry, &mut all));
+            next = Some(channel(ui, cell.rect, top, cell.view, session, registry, &mut all));
         }
     });
     all

@@ -238,15 +238,15 @@ fn keys_menu_and_legend_show_a_channel_and_the_picture_again() {
             .map(|s| (s.label.clone(), s.rect.center()))
     };
     assert_eq!(legend(&bench), None);
-    bench.key(Key::N, Modifiers::NONE);
+    bench.key(Key::X, Modifiers::NONE);
     assert_eq!(bench.session.channel_of(0), Some(DebugChannel::ALL[0]));
     bench.settle();
     assert!(legend(&bench).is_some_and(|(text, _)| text.contains("Interpolated normals")));
     for _ in 1..DebugChannel::ALL.len() {
-        bench.key(Key::N, Modifiers::NONE);
+        bench.key(Key::X, Modifiers::NONE);
     }
     assert_eq!(bench.session.channel_of(0), Some(DebugChannel::Light));
-    bench.key(Key::N, Modifiers::NONE);
+    bench.key(Key::X, Modifiers::NONE);
     assert_eq!(bench.session.channel_of(0), None, "at the end comes the picture");
     bench.click("View");
     bench.click("Channel ⏵");
@@ -258,7 +258,7 @@ fn keys_menu_and_legend_show_a_channel_and_the_picture_again() {
     bench.click_at(at, bevy_egui::egui::PointerButton::Primary);
     assert_eq!(bench.session.channel_of(0), None, "a click on the legend");
     bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotL))));
-    bench.key(Key::N, Modifiers::SHIFT);
+    bench.key(Key::X, Modifiers::SHIFT);
     assert_eq!(bench.session.channel_of(0), None);
 }
 
@@ -269,7 +269,7 @@ fn every_view_has_a_channel_of_its_own() {
     bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
     bench.key(Key::K, Modifiers::COMMAND);
     assert_eq!((bench.session.view.active, bench.session.channel_of(1)), (1, None));
-    bench.key(Key::N, Modifiers::NONE);
+    bench.key(Key::X, Modifiers::NONE);
     let shown = [0, 1].map(|view| bench.session.channel_of(view));
     assert_eq!(shown, [Some(DebugChannel::NDotV), Some(DebugChannel::Normals)]);
     bench.session.opened(Path::new("other.json").to_owned(), Scene::default());
@@ -307,4 +307,26 @@ fn the_command_line_draws_channels_with_legends_and_says_what_is_wrong() {
         let run = run(arguments);
         assert!(run.status == Some(status) && run.err.contains(said), "{:?} {}", run.status, run.err);
     }
+}
+
+#[test]
+fn exported_shaders_have_no_trace_of_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut seen = 0;
+    for (form, to) in [("wgsl", "wgsl"), ("glsl", "glsl"), ("html", "page.html"), ("bevy", "bevy")] {
+        let run = lcm_in(folder.path(), &["export", "--as", form, "-o", to], b"");
+        assert_eq!(run.status, Some(0), "{form}: {}", run.err);
+        let mut folders = vec![folder.path().join(to)];
+        while let Some(at) = folders.pop() {
+            if at.is_dir() {
+                folders.extend(std::fs::read_dir(&at).unwrap().map(|entry| entry.unwrap().path()));
+            } else if let Ok(text) = std::fs::read_to_string(&at) {
+                seen += 1;
+                for trace in ["channel_", "CHANNEL_", "illumination.channel"] {
+                    assert!(!text.contains(trace), "{}: {trace}", at.display());
+                }
+            }
+        }
+    }
+    assert!(seen >= 3, "{seen} files");
 }
