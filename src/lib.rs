@@ -34,6 +34,7 @@
 //!
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
+//! - [`channel`]: debug channels: the values that lead to a pixel, and the legends of their pictures.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`explain`]: the colour of one pixel, with the equation and every number in it.
@@ -87,6 +88,8 @@ pub mod custom;
 pub mod scene;
 
 pub mod document;
+
+pub mod channel;
 
 pub mod caption;
 

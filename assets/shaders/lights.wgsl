@@ -20,12 +20,17 @@ struct Light {
     first_word: u32,
 }
 
-// All lights of the scene and the display settings, small enough for any uniform buffer: 12 304 of at least 16 384 bytes.
+// All lights of the scene and the display settings, small enough for any uniform buffer: 12 320 of at least 16 384 bytes.
 struct Illumination {
     count: u32,
     terms: u32,
     exposure: f32,
     gamma_naive: u32,
+    // The debug channel that is shown, 0 for none; its light; the ends of its scale.
+    channel: u32,
+    channel_light: u32,
+    channel_low: f32,
+    channel_high: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 

@@ -70,6 +70,10 @@ fn vertex(in: VertexIn) -> Stages {
     out.clip_position = position_world_to_clip(corner.position);
     out.position = passed.position;
     out.normal = passed.normal;
+    if illumination.channel >= CHANNEL_FACE_NORMALS {
+        // That of the vertex, whatever the shading model makes of it.
+        out.normal = corner.normal;
+    }
     out.tangent = passed.tangent;
     out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
@@ -82,7 +86,13 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
     object_row = in.row;
     parameters = parameter_table[object_row].parameters;
     let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
-    let light = shade_pixel(passed) * illumination.exposure;
+    let shaded = shade_pixel(passed);
+    if illumination.channel != 0u {
+        let normal = unit_or_zero(in.normal);
+        let face_normal = unit_or_zero(cross(dpdy(in.offset), dpdx(in.offset)));
+        return vec4(channel_colour(shaded, in.position, normal, face_normal, in.clip_position.xy), 1.0);
+    }
+    let light = shaded * illumination.exposure;
     // Values beyond the target's half floats would become infinite, and black in tone mapping.
     let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
 #ifdef GAMMA_NAIVE

@@ -20,7 +20,8 @@ use super::{
 };
 use crate::{
     caption,
-    compare::{Cell, Shown, compose},
+    channel::{DebugChannel, Setting},
+    compare::{Cell, Shown, compose, with_legend},
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
@@ -43,6 +44,8 @@ use crate::{
 
 /// From this many objects on, the model is tried on the CPU before the GPU draws it.
 const MOST_TRIED: usize = 64;
+/// More lights are not listed one by one.
+const MOST_LISTED: usize = 16;
 /// The default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
 
@@ -79,6 +82,17 @@ pub(super) struct Arguments {
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
+    #[arg(long, value_parser = channel, value_name = "NAME", help = format!(
+        "Show a debug channel with its legend instead of the picture: {}",
+        crate::text::listed(&DebugChannel::ALL.map(DebugChannel::id), "or")
+    ))]
+    channel: Option<DebugChannel>,
+    /// The light of the channel, by its name or its number in the scene; by default the brightest one
+    #[arg(long, value_name = "LIGHT", requires = "channel")]
+    light: Option<String>,
+    /// Leave the legend of the channel out
+    #[arg(long, requires = "channel")]
+    no_legend: bool,
     /// Add a strip below the picture that says what it shows; the height of the strip is added to that of --size
     #[arg(long)]
     caption: bool,
@@ -144,6 +158,39 @@ pub(super) fn term(text: &str) -> Result<TermSelection, String> {
     })
 }
 
+fn channel(text: &str) -> Result<DebugChannel, String> {
+    DebugChannel::from_id(text).ok_or_else(|| {
+        let known = DebugChannel::ALL.map(DebugChannel::id);
+        let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())
+            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
+        format!("it must be {}{hint}", crate::text::listed(&known, "or"))
+    })
+}
+
+/// The place of a light in a scene, by its name or its number there.
+fn light(scene: &Scene, name: &str) -> Result<usize, String> {
+    let named = scene.lights.iter().position(|light| light.name.as_deref() == Some(name));
+    let numbered =
+        || name.parse().ok().filter(|n| (1..=scene.lights.len()).contains(n)).map(|n: usize| n - 1);
+    let Some(place) = named.or_else(numbered) else {
+        let known = scene.lights.iter().enumerate().map(|(i, light)| match &light.name {
+            Some(name) => format!("{} ({})", i + 1, quoted(name)),
+            None => (i + 1).to_string(),
+        });
+        let known: Vec<_> = known.take(MOST_LISTED).collect();
+        let rule = match scene.lights.len() {
+            0 => "the scene has no lights".to_owned(),
+            count if count > MOST_LISTED => format!("it must be a name or a number from 1 to {count}"),
+            _ => format!("it must be {}", crate::text::listed(&known, "or")),
+        };
+        return Err(format!("there is no light {}; {rule}", quoted(name)));
+    };
+    if !scene.lights[place].enabled {
+        return Err(format!("the light {} is switched off", quoted(name)));
+    }
+    Ok(place)
+}
+
 /// One picture to render.
 struct Job<'a> {
     /// The scene that the picture is of.
@@ -157,6 +204,9 @@ struct Job<'a> {
     with_caption: bool,
     /// One view was asked for.
     alone: bool,
+    /// The channel that is shown instead of the picture.
+    channel: Option<Setting>,
+    with_legend: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
@@ -222,7 +272,19 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             crate::text::listed(&passed, "and")
         ));
     }
-    for (((scene, plan), source), file) in scenes.iter().zip(&plans).zip(&sources).zip(&files) {
+    let mut channels = Vec::with_capacity(scenes.len());
+    for ((scene, plan), source) in scenes.iter().zip(&plans).zip(&sources) {
+        match setting(scene, plan, arguments, registry) {
+            Ok(channel) => channels.push(channel),
+            Err(why) => problems.push(format!("{}: {why}", source.name())),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Failure::Invalid(problems.join("\n")));
+    }
+    for ((((scene, plan), channel), source), file) in
+        scenes.iter().zip(&plans).zip(channels).zip(&sources).zip(&files)
+    {
         bar.set_message(printable(&source.name()).into_owned());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
@@ -240,6 +302,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             with_scene: !arguments.no_scene,
             with_caption: arguments.caption,
             alone: arguments.view.is_some(),
+            channel,
+            with_legend: !arguments.no_legend,
         };
         painter.draw(&job, registry)?;
         bar.inc(1);
@@ -310,10 +374,18 @@ impl Painter {
                     .map_err(|error| Failure::Invalid(format!("{}: {error}", job.source.name())))?
             }
         };
+        let rgb8 = match job.channel.filter(|_| job.with_legend) {
+            Some(channel) => with_legend(rgb8, job.size, &channel.legend(job.scene, registry)),
+            None => rgb8,
+        };
         let renderer = if gpu { "GPU" } else { "CPU" };
         let about = About::scene(&pictured(job), registry)
             .with("Source", job.source.name())
             .with("Renderer", renderer);
+        let about = match job.channel {
+            Some(setting) => about.with("Channel", setting.channel.id()),
+            None => about,
+        };
         let about = if job.with_scene { about } else { about.without_scene() };
         let (rgb8, [width, height]) = captioned(job, registry, rgb8);
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
@@ -349,6 +421,7 @@ impl Painter {
         };
         renderer.set_scene(part.scene.clone());
         renderer.set_terms(part.terms);
+        renderer.set_channel(job.channel);
         renderer.settle().map_err(failed)?;
         if let Some(problem) = renderer.shader_problem() {
             return Err(invalid(registry, &problem));
@@ -382,7 +455,10 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure>
     cpu_can_draw(&part.scene, registry)?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
-    let shown = if job.plan.needs_light() {
+    let shown = if let Some(channel) = &job.channel {
+        let rgb8 = reference::render_channel(&part.scene, registry, &settings, channel);
+        Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
+    } else if job.plan.needs_light() {
         Shown::of_light(reference::render(&part.scene, registry, &settings), &part.scene.display)
     } else {
         let rgb8 = reference::render_rgb8(&part.scene, registry, &settings);
@@ -416,6 +492,37 @@ fn pictured(job: &Job) -> Scene {
         }
         _ => Scene { comparison: job.plan.comparison, ..job.scene.clone() },
     }
+}
+
+/// The channel that is shown instead of the picture of a scene.
+fn setting(
+    scene: &Scene,
+    plan: &Plan,
+    arguments: &Arguments,
+    registry: &Registry,
+) -> Result<Option<Setting>, String> {
+    let Some(channel) = arguments.channel else { return Ok(None) };
+    if plan.needs_light() {
+        return Err(
+            "the difference in linear light has no channels; --channel shows one with another --layout, or \
+                    with the comparison in codes"
+                .to_owned(),
+        );
+    }
+    let chosen = arguments.light.as_deref().map(|name| light(scene, name)).transpose()?;
+    let setting = Setting::new(channel, scene, registry, scene.observer.position, chosen);
+    let place = chosen.map(|chosen| scene.lights[..chosen].iter().filter(|light| light.enabled).count());
+    if place.is_some() && channel.has_light() && setting.light != place {
+        return Err(format!(
+            "--light is {}, which shines from no direction, and {} needs one",
+            quoted(arguments.light.as_deref().unwrap_or_default()),
+            channel.name()
+        ));
+    }
+    if place.is_some() && !channel.has_light() {
+        return Err(format!("--light is for channels of one light, and {} is not one", channel.id()));
+    }
+    Ok(Some(setting))
 }
 
 /// Fails if the CPU renderer is known to lack something that a scene's models need.

@@ -3,45 +3,7 @@
 
 use std::sync::LazyLock;
 
-use crate::scene::comparison::Sign;
-
-/// Colours of viridis at equal distances: S. van der Walt, N. Smith (2015), *mpl-colormaps*, CC0. Lightness grows evenly,
-/// which greyscale and every kind of colour vision show.
-const VIRIDIS: [[u8; 3]; 33] = [
-    [68, 1, 84],
-    [71, 13, 96],
-    [72, 24, 106],
-    [72, 35, 116],
-    [71, 45, 123],
-    [69, 54, 129],
-    [66, 64, 134],
-    [63, 73, 137],
-    [59, 82, 139],
-    [55, 90, 141],
-    [51, 99, 141],
-    [47, 106, 142],
-    [44, 114, 142],
-    [41, 122, 142],
-    [38, 129, 142],
-    [35, 137, 142],
-    [33, 144, 140],
-    [31, 152, 139],
-    [31, 159, 136],
-    [33, 166, 133],
-    [40, 174, 128],
-    [49, 181, 123],
-    [62, 188, 116],
-    [76, 194, 108],
-    [93, 201, 99],
-    [110, 206, 88],
-    [130, 211, 76],
-    [150, 216, 63],
-    [171, 220, 50],
-    [192, 223, 36],
-    [213, 226, 26],
-    [234, 229, 26],
-    [253, 231, 37],
-];
+use crate::{optics::viridis::VIRIDIS, scene::comparison::Sign};
 
 /// From the other view being darker over equal to brighter: blue and vermilion of M. Okabe, K. Ito (2008), *Color
 /// Universal Design*, towards black at the ends and a light grey in the middle.

@@ -19,6 +19,7 @@
 //! ```
 
 mod canvas;
+mod channel;
 mod colours;
 mod filter;
 mod flip;
@@ -31,6 +32,7 @@ mod power;
 mod shown;
 mod ssim;
 
+pub use channel::with_legend;
 pub use flip::PIXELS_PER_DEGREE;
 pub use layout::{Cell, cells, compose, edge, size_around};
 pub use legend::{fitting_amplification, short};

@@ -16,6 +16,7 @@ pub mod radiometry;
 pub mod table;
 pub mod temperature;
 pub mod tone;
+pub mod viridis;
 
 pub use geometry::Frame;
 

@@ -10,7 +10,7 @@ use super::{
         Session, Steer, ViewChange,
     },
 };
-use crate::{registry::Registry, scene::Comparison};
+use crate::{channel::DebugChannel, registry::Registry, scene::Comparison};
 
 /// The heading of the keys that steer the camera; with the focus in a panel they are the panel's.
 const CAMERA: &str = "Camera";
@@ -116,6 +116,10 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         add("Reflection and shading", false, false, key, &label, Action::RecentModel(slot));
     }
     add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
+    let channel = |channel| Action::View(ViewChange::Channel(channel));
+    let next = DebugChannel::next(session.channel_of(session.active()));
+    add("Picture", false, false, Key::X, "Next debug channel: normals, N·L, depth, …", channel(next));
+    add("Picture", false, true, Key::X, "No debug channel: the picture", channel(None));
     add("Custom models", true, true, Key::N, "New reflection model…", Action::Model(ModelCommand::New));
     add(
         "Custom models",

@@ -38,6 +38,7 @@ use widths::Widths;
 
 pub mod author;
 pub mod caption;
+pub mod channels;
 pub mod chooser;
 pub mod clipping;
 pub mod compare;

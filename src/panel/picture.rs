@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::{
     caption::{self, Lines, caption_text, models_shown},
-    clipping,
+    channels, clipping,
     compare::Arrangement,
     explain, handles, icon, labels, marks,
     presentation::Stage,
@@ -65,6 +65,7 @@ pub fn overlays(
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
+        let top = channel(ui, free, top, session.active(), session, registry, &mut all);
         badges(ui, free, top, whole, session, registry, &mut all);
         all.places.push(covered);
         all.written.push(covered);
@@ -78,6 +79,23 @@ pub fn overlays(
         }
     }
     all
+}
+
+/// Paints the legend of the debug channel of a view from `top` on, if it shows one. Returns the place for what comes below.
+fn channel(
+    ui: &mut Ui,
+    rect: Rect,
+    top: f32,
+    view: usize,
+    session: &Session,
+    registry: &Registry,
+    to: &mut Overlaid,
+) -> f32 {
+    let Some((place, actions)) = channels::legend(ui, rect, top, view, session, registry) else { return top };
+    to.actions.extend(actions);
+    to.places.push(place);
+    to.written.push(place);
+    place.bottom() + 4.0
 }
 
 /// Paints the marks of a view, and over them the handles of what is selected.
@@ -120,6 +138,7 @@ pub fn views(
         explain::vectors(ui, cell.rect, cell.view, session);
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
+    let mut stale_in = None;
     if let Some(cell) = active.or(arrangement.cells.first()) {
         ui.scope(|ui| {
             let (asked, covered) = stale(ui, cell.rect, session, registry);
@@ -127,8 +146,18 @@ pub fn views(
             all.places.push(covered);
             all.written.push(covered);
             hint(ui, cell.rect, session);
+            stale_in = Some((cell.view, covered)).filter(|_| covered.is_positive());
         });
     }
+    ui.scope(|ui| {
+        let mut next = None;
+        for cell in arrangement.cells.iter().filter(|cell| cell.part.is_positive()) {
+            let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
+            let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
+            let top = next.filter(|_| !apart).unwrap_or(first);
+            next = Some(channel(ui, cell.rect, top, cell.view, session, registry, &mut all));
+        }
+    });
     all
 }
 

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, PanelContext, PanelInfo, Place, chooser, compare, export, glyphs,
+    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare, export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
     labels, maths, menu, model_override, pictures,
@@ -278,6 +278,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                         }
                     }
                 });
+                menu::submenu(ui, "Channel", |ui| channels::entries(ui, session, actions));
                 menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
                 ui.separator();
                 let v = &session.view;

@@ -21,6 +21,8 @@ pub(super) struct Lights {
     groups: Vec<Box<dyn Emitters>>,
     observer: Vec3,
     terms: TermSelection,
+    /// True if values that are no numbers, or too bright, stay as they are.
+    raw: bool,
 }
 
 impl Lights {
@@ -37,7 +39,12 @@ impl Lights {
                 group(&lights, encoding)
             })
             .collect();
-        Self { groups, observer: scene.observer.position, terms }
+        Self { groups, observer: scene.observer.position, terms, raw: false }
+    }
+
+    /// The same, with values that are no numbers, or too bright, as they are.
+    pub(super) fn raw(self) -> Self {
+        Self { raw: true, ..self }
     }
 
     /// The lights as they shine on one surface.
@@ -86,6 +93,9 @@ impl Lighting for LightsOn<'_> {
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
         let [_, v] = self.view(position, normal);
         let sum = self.sum(position, v, &Frame::new(normal, tangent));
+        if self.lights.raw {
+            return sum;
+        }
         sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
     }
 }
@@ -148,6 +158,7 @@ pub(super) fn light_by_light(
             groups: vec![(entry.group)(&[(&light.parameters, record)], encoding)],
             observer: all.observer,
             terms,
+            raw: false,
         };
         let response = match incident {
             Incident::From { l, .. } => surface.response(l, v, &frame),

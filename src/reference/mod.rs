@@ -30,11 +30,13 @@ use glam::Vec4;
 use rayon::prelude::*;
 
 use crate::{
+    channel::Setting,
     optics::TermSelection,
     registry::Registry,
     scene::{Display, Scene, observer::clip_from_room},
 };
 
+mod channel;
 mod display;
 mod edits;
 mod lighting;
@@ -44,6 +46,7 @@ pub(crate) mod probe;
 mod raster;
 
 pub use crate::optics::colour::BACKGROUND;
+use channel::Sight;
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
 pub use edits::ignored_edits;
@@ -115,7 +118,7 @@ impl Picture {
 /// Renders a scene to light.
 #[must_use]
 pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Picture {
-    let pixels = draw(scene, registry, settings, None, Vec4::ZERO, |pixel| pixel);
+    let pixels = draw(scene, registry, settings, None, None, Vec4::ZERO, |pixel| pixel);
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
@@ -125,7 +128,7 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    draw(scene, registry, settings, None, background, |pixel| display.apply(pixel)).into_flattened()
+    draw(scene, registry, settings, None, None, background, |pixel| display.apply(pixel)).into_flattened()
 }
 
 /// The same, unless it is not finished by then.
@@ -138,8 +141,21 @@ pub fn render_rgb8_until(
 ) -> Option<Vec<u8>> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    let pixels = draw(scene, registry, settings, Some(end), background, |pixel| display.apply(pixel));
+    let pixels = draw(scene, registry, settings, None, Some(end), background, |pixel| display.apply(pixel));
     (Instant::now() < end).then(|| pixels.into_flattened())
+}
+
+/// Renders a debug channel of a scene: red, green and blue of each pixel, as its legend has them.
+#[must_use]
+pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, setting: &Setting) -> Vec<u8> {
+    if setting.channel.is_picture() {
+        return render_rgb8(&setting.lit(scene), registry, settings);
+    }
+    let display = DisplayTransform::new(&Display::default());
+    let background = display.apply(Vec4::ZERO);
+    let sight = Sight::new(scene, registry, settings, *setting);
+    let finish = |pixel| display.apply(pixel);
+    draw(scene, registry, settings, Some(&sight), None, background, finish).into_flattened()
 }
 
 /// Polygons held at a time: bounds the memory for scenes of any size.
@@ -150,14 +166,15 @@ fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
+    sight: Option<&Sight>,
     end: Option<Instant>,
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
     if settings.samples > 1 {
-        draw_sampled::<4, T>(scene, registry, settings, end, background, finish)
+        draw_sampled::<4, T>(scene, registry, settings, sight, end, background, finish)
     } else {
-        draw_sampled::<1, T>(scene, registry, settings, end, background, finish)
+        draw_sampled::<1, T>(scene, registry, settings, sight, end, background, finish)
     }
 }
 
@@ -165,6 +182,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
+    sight: Option<&Sight>,
     end: Option<Instant>,
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
@@ -177,6 +195,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     }
     let screen = Screen::new(width, height, S);
     let lights = Lights::new(scene, registry, settings.terms);
+    let lights = if sight.is_some() { lights.raw() } else { lights };
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
@@ -204,6 +223,10 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         let draws: Vec<Draw> = batch
             .into_par_iter()
             .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
+            .map(|draw| match sight {
+                Some(sight) => sight.seen(draw),
+                None => draw,
+            })
             .collect();
         let triangles: Vec<Vec<Triangle>> = draws
             .par_iter()

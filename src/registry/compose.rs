@@ -4,7 +4,7 @@
 //! A source for drawing holds, in this order: terms, the light record, the row of an object (generated
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
 //! types, the dispatch over light types (generated), the light loop, the shading model after its parameters (generated),
-//! and the wrapper with bindings and entry points.
+//! the debug channels, and the wrapper with bindings and entry points.
 
 use std::fmt::Write as _;
 
@@ -16,8 +16,8 @@ use crate::{
     shader::{
         Source,
         compose::{
-            ALBEDO, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING, Sources,
-            WRAPPER, parameter_struct,
+            ALBEDO, CHANNELS, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING,
+            Sources, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -154,7 +154,7 @@ fn incident(light: Light, p: vec3<f32>) -> Incident {
 }
 
 /// The files that every source for drawing needs beside the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 6] = [ALBEDO, LIGHTS, SHADING, LOOP, WRAPPER, EVALUATE];
+pub(crate) const SHARED: [Source; 7] = [ALBEDO, LIGHTS, SHADING, LOOP, CHANNELS, WRAPPER, EVALUATE];
 
 /// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -207,6 +207,7 @@ pub fn compose(
     c.push("(light types)", &light_dispatch(lights));
     c.source(&LOOP);
     push_shading(&mut c, shading);
+    c.source(&CHANNELS);
     c.source(&WRAPPER);
     c.composed
 }
@@ -230,6 +231,8 @@ pub enum Part {
     LightRecord,
     /// The input and output of a shading model.
     Stages,
+    /// The debug channels.
+    Channels,
     /// Bindings and entry points.
     Wrapper,
 }
@@ -264,6 +267,7 @@ pub fn files(
             (Part::Model, &model.declaration.wgsl),
             (Part::Loop, &LOOP),
             (Part::ShadingModel, &shading.declaration.wgsl),
+            (Part::Channels, &CHANNELS),
             (Part::Wrapper, &WRAPPER),
         ])
         .collect::<Vec<_>>();
@@ -348,7 +352,7 @@ mod tests {
         assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
         assert_eq!(of(Part::LightType).len(), registry.lights().len());
         assert_eq!(of(Part::Vocabulary).len(), OPTICS.len());
-        for part in [Part::LightRecord, Part::Stages, Part::Wrapper] {
+        for part in [Part::LightRecord, Part::Stages, Part::Channels, Part::Wrapper] {
             assert_eq!(of(part).len(), 1, "{part:?}");
         }
     }

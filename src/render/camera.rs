@@ -126,7 +126,7 @@ pub fn follow_scene(
             perspective.fov = fov;
         }
         let seen = hdr || display;
-        let display = overrides.map_or(scene.0.display, |o| o.display_of(&scene.0));
+        let display = overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0));
         let wanted = if seen { tonemapping(display.tone_mapping) } else { Tonemapping::None };
         if *tone != wanted {
             *tone = wanted;

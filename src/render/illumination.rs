@@ -16,6 +16,7 @@ use bevy::{
 use glam::Vec3;
 
 use crate::{
+    channel::Setting,
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
     parameter::Table,
@@ -23,8 +24,8 @@ use crate::{
     scene::{Display, Light, record},
 };
 
-/// Bytes before the lights: count, terms, exposure, gamma-naive.
-pub const HEADER_BYTES: usize = 16;
+/// Bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends of its scale.
+pub const HEADER_BYTES: usize = 32;
 /// Bytes of one light.
 pub const LIGHT_BYTES: usize = 48;
 /// Words for the parameters of all lights that a buffer has room for at first: four for each.
@@ -40,8 +41,17 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
     ("first_word", 44),
 ];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
-    [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
+pub const ILLUMINATION_LAYOUT: [(&str, usize); 9] = [
+    ("count", 0),
+    ("terms", 4),
+    ("exposure", 8),
+    ("gamma_naive", 12),
+    ("channel", 16),
+    ("channel_light", 20),
+    ("channel_low", 24),
+    ("channel_high", 28),
+    ("lights", HEADER_BYTES),
+];
 
 /// The terms of the equation that are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
@@ -59,7 +69,7 @@ pub struct LightBuffers {
 impl LightBuffers {
     /// Buffers that have no lights yet.
     fn new(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Self {
-        let (lights, _) = illumination_bytes(&[], TermSelection::All, &Display::default());
+        let (lights, _) = illumination_bytes(&[], TermSelection::All, &Display::default(), None);
         let mut lights = ShaderBuffer::new(&lights, RenderAssetUsages::default());
         lights.buffer_description.usage |= BufferUsages::UNIFORM;
         let words = ShaderBuffer::new(&vec![0; 4 * room], RenderAssetUsages::default());
@@ -181,7 +191,12 @@ pub fn word_count(lights: &[Lit]) -> usize {
 /// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use. Lights beyond
 /// [`MAX_LIGHTS`] are left out; the checker refuses such scenes.
 #[must_use]
-pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> (Vec<u8>, Vec<u8>) {
+pub fn illumination_bytes(
+    lights: &[Lit],
+    terms: TermSelection,
+    display: &Display,
+    channel: Option<&Setting>,
+) -> (Vec<u8>, Vec<u8>) {
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
     let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
@@ -190,6 +205,12 @@ pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Displa
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
+    if let Some(Setting { channel, light, range: [low, high] }) = channel {
+        put(16, channel.code().to_le_bytes());
+        put(20, light.map_or(u32::MAX, |light| light as u32).to_le_bytes());
+        put(24, low.to_le_bytes());
+        put(28, high.to_le_bytes());
+    }
     for (i, (Lit { record, .. }, first)) in lights.iter().zip(&places.lights).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {
@@ -214,7 +235,7 @@ mod tests {
     #[test]
     fn more_lights_than_fit_are_left_out() {
         let lights = vec![Lit { words: vec![7], ..Lit::default() }; MAX_LIGHTS + 5];
-        let (bytes, words) = illumination_bytes(&lights, TermSelection::All, &Display::default());
+        let (bytes, words) = illumination_bytes(&lights, TermSelection::All, &Display::default(), None);
         assert_eq!(bytes[..4], (MAX_LIGHTS as u32).to_le_bytes());
         assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES);
         assert_eq!(words.len(), 4 * MAX_LIGHTS);
@@ -224,7 +245,7 @@ mod tests {
     fn the_lights_fit_the_smallest_uniform_buffer_that_there_is() {
         let limits = [wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Limits::default()];
         let smallest = limits.into_iter().map(|l| l.max_uniform_buffer_binding_size).min();
-        let (bytes, _) = illumination_bytes(&[], TermSelection::All, &Display::default());
+        let (bytes, _) = illumination_bytes(&[], TermSelection::All, &Display::default(), None);
         assert!(smallest.is_some_and(|most| bytes.len() as u64 <= most), "{} of {smallest:?}", bytes.len());
     }
 }

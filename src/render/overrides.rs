@@ -3,6 +3,7 @@
 use bevy::ecs::component::Component;
 
 use crate::{
+    channel::Setting,
     optics::TermSelection,
     parameter::Values,
     registry::Registry,
@@ -24,6 +25,8 @@ pub struct Overrides {
     pub display: Option<Display>,
     /// The tessellation of every object, as far as the object's type allows it.
     pub tessellation: Option<u32>,
+    /// The debug channel that is shown instead of the picture.
+    pub channel: Option<Setting>,
 }
 
 impl Overrides {
@@ -39,6 +42,7 @@ impl Overrides {
             parameters: variant.material,
             terms: variant.terms,
             tessellation: variant.tessellation,
+            channel: None,
         })
     }
 
@@ -70,6 +74,15 @@ impl Overrides {
 
     pub(super) fn shading_model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
         self.shading_model.as_deref().unwrap_or_else(|| scene.shading_model_of(object))
+    }
+
+    /// The display settings that the picture goes through. A debug channel is drawn as its legend says.
+    #[must_use]
+    pub fn seen_through(&self, scene: &Scene) -> Display {
+        match &self.channel {
+            Some(setting) if !setting.channel.is_picture() => Display::default(),
+            _ => self.display_of(scene),
+        }
     }
 
     pub(super) fn display_of(&self, scene: &Scene) -> Display {

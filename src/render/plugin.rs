@@ -107,8 +107,12 @@ fn upload_lights(
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (known, overrides) in changed.then_some((&shared.buffers, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let lights: Vec<_> = shown.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
-        let (illumination, words) = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
+        let channel = overrides.channel.as_ref();
+        let shines = |i: usize| channel.is_none_or(|channel| channel.shines(i));
+        let lights = shown.shining().enumerate().filter(|(i, _)| shines(*i));
+        let lights: Vec<_> = lights.map(|(_, l)| Lit::new(l, &registry, display.encoding)).collect();
+        let terms = overrides.terms.unwrap_or(terms.0);
+        let (illumination, words) = illumination_bytes(&lights, terms, &display, channel);
         for (handle, mut bytes) in [(&known.lights, illumination), (&known.words, words)] {
             let Some(old) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
             // Materials would not notice a buffer of another size.

@@ -30,6 +30,8 @@ pub const LIGHTS: Source = wgsl!("lights.wgsl");
 pub const LOOP: Source = wgsl!("loop.wgsl");
 /// The inputs and outputs of a shading model.
 pub const SHADING: Source = wgsl!("shading.wgsl");
+/// The debug channels.
+pub const CHANNELS: Source = wgsl!("channels.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 

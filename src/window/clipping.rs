@@ -136,7 +136,7 @@ fn ask(
         *patience = PATIENCE;
         question.number = question.number.wrapping_add(1);
         question.open = true;
-        question.limit = limit(&overrides.and_then(|o| o.display).unwrap_or(scene.0.display));
+        question.limit = limit(&overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0)));
         if readback.is_none() {
             let asked = Readback::buffer(question.buffer.clone());
             *readback = Some(commands.spawn(asked).observe(answered).id());

@@ -18,6 +18,7 @@ use super::{
     matching::Matches,
     order::Loading,
     plots::PlotFiles,
+    views::ShownChannels,
     watching::{FilesChanged, complain},
 };
 use crate::{
@@ -78,6 +79,7 @@ impl Plugin for DocumentPlugin {
             .insert_resource(CurrentScene(options.scene.clone()))
             .insert_resource(DiskFiles::new(options.file.clone(), options.stamp))
             .init_resource::<Exports>()
+            .init_resource::<ShownChannels>()
             .init_resource::<Matches>()
             .init_resource::<PlotFiles>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
@@ -178,9 +180,12 @@ fn publish(
     scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
     mut terms: ResMut<ShownTerms>,
+    mut channels: ResMut<ShownChannels>,
 ) {
     entities.show(&session.document, scene);
     terms.set_if_neq(ShownTerms(session.view.terms));
+    let (by_view, light) = (session.view.channels, session.channel_light());
+    channels.set_if_neq(ShownChannels { by_view, light });
 }
 
 /// Submits changes of the entities to the document; those that it refuses go back.

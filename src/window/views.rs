@@ -9,14 +9,16 @@ use bevy::{
     window::{PrimaryWindow, Window},
 };
 use bevy_egui::{PrimaryEguiContext, egui::Rect};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
 use super::{
     WindowView,
     place::{PicturePlace, area_of},
 };
 use crate::{
+    channel::{DebugChannel, Setting},
     panel::state::{Cell, PictureArea},
+    registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
         entities::CurrentScene,
@@ -24,6 +26,7 @@ use crate::{
         show::{ShownPicture, Shows},
         view::{View, texture_of},
     },
+    scene::{Scene, variant::MAX_VARIANTS},
 };
 
 /// A view beside the one that the window always has: 0 is the scene itself, 1 view B.
@@ -34,6 +37,23 @@ pub(super) struct OtherView(pub(super) usize);
 #[derive(Resource, Clone, Debug, Default)]
 pub(super) struct DifferenceMap(pub(super) Option<(bevy::asset::Handle<bevy::image::Image>, UVec2)>);
 
+/// The debug channels that the views show, view A first, and the light that is chosen for them.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ShownChannels {
+    pub(super) by_view: [Option<DebugChannel>; MAX_VARIANTS + 1],
+    pub(super) light: Option<usize>,
+}
+
+impl ShownChannels {
+    /// The differences between a view, seen from an eye, and the scene.
+    fn overrides(&self, scene: &Scene, view: usize, registry: &Registry, eye: Vec3) -> Option<Overrides> {
+        let own = Overrides::of_view(scene, view);
+        let Some(channel) = self.by_view.get(view).copied().flatten() else { return own };
+        let setting = Setting::new(channel, scene, registry, eye, self.light);
+        Some(Overrides { channel: Some(setting), ..own.unwrap_or_default() })
+    }
+}
+
 /// The first cell is that of the view that the window always has.
 fn first(area: &PictureArea) -> usize {
     area.cells.first().map_or(0, |cell| cell.view)
@@ -43,6 +63,7 @@ fn first(area: &PictureArea) -> usize {
 pub(super) fn set_views(
     area: Option<Res<PictureArea>>,
     scene: Res<CurrentScene>,
+    (channels, registry): (Option<Res<ShownChannels>>, Res<Registry>),
     main: Query<(Entity, &View, &Transform, &Camera, &Msaa, Option<&Overrides>), With<WindowView>>,
     mut others: Query<
         (Entity, &OtherView, &mut View, &mut Transform, &mut Camera, Option<&mut Overrides>),
@@ -53,7 +74,9 @@ pub(super) fn set_views(
     let Ok((entity, view, place, lens, samples, overrides)) = main.single() else { return };
     let cells: &[Cell] = area.as_deref().map_or(&[], |area| &area.cells);
     let own = area.as_deref().map_or(0, first);
-    let wanted = Overrides::of_view(&scene.0, own);
+    let channels = channels.as_deref().copied().unwrap_or_default();
+    let overrides_of = |view| channels.overrides(&scene.0, view, &registry, place.translation);
+    let wanted = overrides_of(own);
     if overrides != wanted.as_ref() {
         match wanted {
             Some(wanted) => _ = commands.entity(entity).insert(wanted),
@@ -73,7 +96,7 @@ pub(super) fn set_views(
         if format!("{:?}", camera.clear_color) != format!("{:?}", lens.clear_color) {
             camera.clear_color = lens.clear_color;
         }
-        match (Overrides::of_view(&scene.0, *number), overrides) {
+        match (overrides_of(*number), overrides) {
             (Some(wanted), Some(mut overrides)) => _ = overrides.set_if_neq(wanted),
             (Some(wanted), None) => _ = commands.entity(entity).insert(wanted),
             (None, Some(_)) => _ = commands.entity(entity).remove::<Overrides>(),
@@ -91,7 +114,7 @@ pub(super) fn set_views(
         ));
         // Where the window's camera stands, whoever moves it.
         new.insert((PictureCamera { follows_observer: false, fits_width: true }, *place));
-        if let Some(overrides) = Overrides::of_view(&scene.0, number) {
+        if let Some(overrides) = overrides_of(number) {
             new.insert(overrides);
         }
     }

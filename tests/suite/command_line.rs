@@ -35,6 +35,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "--samples", "3"], "1 or 4"),
         (&["render", "--renderer", "x"], "auto, gpu, cpu"),
         (&["render", "--term", "specualr"], "did you mean specular?"),
+        (&["render", "--channel", "luminence"], "did you mean luminance?"),
         (&["render", "--reflection", "fong"], "--reflection is \"fong\", but the reflection model must be"),
         (&["render", "--shading", "x"], "--shading is \"x\", but the shading model must be"),
         (&["render", "--tone-mapping", "acess"], "did you mean \"aces\"?"),

@@ -5,6 +5,7 @@ use std::{fs, io};
 
 use glam::Vec3;
 use lights_camera_models::{
+    channel::DebugChannel,
     explain,
     matching::What,
     optics::{Frame, colour::Encoding},
@@ -111,6 +112,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("shapes", shapes(&registry)),
             ],
         ),
+        ("docs/window.md", vec![("channels", channels())]),
         (
             "docs/comparing.md",
             vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
@@ -394,6 +396,12 @@ fn limits() -> String {
         ("steps of a function, with all calls inlined", l.steps.to_string()),
     ];
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
+}
+
+/// The debug channels.
+fn channels() -> String {
+    let rows = DebugChannel::ALL.map(|c| vec![c.name().to_owned(), c.explanation().to_owned()]);
+    table(&["channel", "picture"], rows.into_iter())
 }
 
 /// The modules as `lib.rs` lists them.

@@ -5,6 +5,7 @@ mod albedo;
 mod animation;
 mod assets;
 mod browser;
+mod channels;
 mod clipping;
 mod command_line;
 mod compare;

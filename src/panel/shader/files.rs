@@ -55,6 +55,9 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
                         Their twins in Rust have the same names.";
             return (format!("vocabulary: {word}"), help);
         }
+        Part::Channels => {
+            ("the debug channels", "The values that lead to a pixel as colours: View › Channel shows them.")
+        }
         Part::Wrapper => {
             ("the wrapper", "Bindings and entry points for the GPU. The only file that knows the renderer.")
         }

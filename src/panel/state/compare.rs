@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::{Session, Severity};
 use crate::{
-    document::{Edit, Extent, ObjectField, Revision, VariantField},
+    channel::DebugChannel,
+    document::{Edit, Extent, ObjectField, Revision, Selection, VariantField},
     optics::TermSelection,
     parameter::{Value, Values},
     registry::Registry,
@@ -113,6 +114,21 @@ impl Session {
     pub fn terms_of(&self, view: usize) -> TermSelection {
         let own = self.document.overrides(view).and_then(|variant| variant.terms);
         own.unwrap_or(self.view.terms)
+    }
+
+    /// The debug channel that a view shows instead of its picture.
+    #[must_use]
+    pub fn channel_of(&self, view: usize) -> Option<DebugChannel> {
+        self.view.channels.get(view).copied().flatten()
+    }
+
+    /// The light that debug channels are about, if one is selected.
+    #[must_use]
+    pub fn channel_light(&self) -> Option<usize> {
+        match self.selection {
+            Selection::Light(light) => Some(light),
+            _ => None,
+        }
     }
 
     /// The edits that make in the active view what an edit of the scene would. Of what a variant cannot override, the

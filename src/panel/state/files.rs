@@ -178,6 +178,7 @@ impl Session {
         self.messages.another_document();
         self.disk_saved();
         self.view.terms = TermSelection::All;
+        self.view.channels = Default::default();
         self.select_first();
         self.model_slots.take(&self.document.reflection_model);
     }

@@ -1,8 +1,7 @@
 //! The choice of what is shown, and how.
 
-use super::probe::EXPLAIN_TAB;
-use super::{Effect, Pin, Place, Session};
-use crate::optics::TermSelection;
+use super::{Effect, Pin, Place, Session, probe::EXPLAIN_TAB};
+use crate::{channel::DebugChannel, optics::TermSelection, scene::variant::MAX_VARIANTS};
 
 /// Id of the panel that shows the messages.
 pub const MESSAGES_TAB: &str = "messages";
@@ -135,6 +134,8 @@ pub struct View {
     pub picture_caption: bool,
     /// The terms of the equation that the picture shows.
     pub terms: TermSelection,
+    /// The debug channels that the views show instead of their pictures, view A first.
+    pub channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
     /// The view that the panels show and change: 0 is the scene, 1 view B.
     pub active: usize,
     /// True while the other view is shown instead of view A.
@@ -186,6 +187,7 @@ impl Default for View {
             show_clipping: false,
             picture_caption: true,
             terms: TermSelection::All,
+            channels: [None; MAX_VARIANTS + 1],
             active: 0,
             blinking: false,
             bottom_open: false,
@@ -237,6 +239,8 @@ pub enum ViewChange {
     PictureCaption(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
+    /// The debug channel of the active view; see [`View::channels`].
+    Channel(Option<DebugChannel>),
     /// True if the strip at the bottom is unfolded.
     Bottom(bool),
     /// Shows a panel in the strip at the bottom, and unfolds it.
@@ -323,6 +327,11 @@ impl View {
             ViewChange::Clipping(on) => self.show_clipping = on,
             ViewChange::PictureCaption(on) => self.picture_caption = on,
             ViewChange::Terms(terms) => self.terms = terms,
+            ViewChange::Channel(channel) => {
+                if let Some(shown) = self.channels.get_mut(self.active) {
+                    *shown = channel;
+                }
+            }
             ViewChange::Bottom(open) => self.bottom_open = open,
             ViewChange::BottomTab(id) => {
                 self.unfold(&id);

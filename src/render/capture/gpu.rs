@@ -36,6 +36,7 @@ use thiserror::Error;
 use wgpu::PollError;
 
 use crate::{
+    channel::Setting,
     optics::TermSelection,
     reflection::ends::Endless,
     render::{
@@ -43,6 +44,7 @@ use crate::{
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
+        overrides::Overrides,
         plugin::ScenePlugin,
         schedule::run_on_one_thread,
         trial::Bench,
@@ -276,6 +278,23 @@ impl GpuRenderer {
     /// Shows only some terms from the next frame on.
     pub fn set_terms(&mut self, terms: TermSelection) {
         self.app.world_mut().resource_mut::<ShownTerms>().set_if_neq(ShownTerms(terms));
+    }
+
+    /// Shows a debug channel from the next frame on, or the picture.
+    pub fn set_channel(&mut self, channel: Option<Setting>) {
+        let world = self.app.world_mut();
+        let mut cameras = world.query_filtered::<(Entity, Option<&Overrides>), With<PictureCamera>>();
+        let cameras: Vec<_> = cameras.iter(world).map(|(camera, known)| (camera, known.cloned())).collect();
+        for (camera, known) in cameras {
+            let mut wanted = known.clone().unwrap_or_default();
+            wanted.channel = channel;
+            let wanted = Some(wanted).filter(|wanted| *wanted != Overrides::default());
+            match wanted {
+                same if same == known => {}
+                Some(wanted) => _ = world.entity_mut(camera).insert(wanted),
+                None => _ = world.entity_mut(camera).remove::<Overrides>(),
+            }
+        }
     }
 
     /// From now on frames draw only what changed, as those of the window do.

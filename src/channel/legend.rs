@@ -1,0 +1,118 @@
+//! Legends of channels: for the window and for pictures alike.
+
+use super::{
+    DebugChannel, Setting,
+    colours::{AWAY, BELOW, CLIPPED, INFINITE, NAN, NEGATIVE, TOWARDS},
+};
+use crate::{registry::Registry, scene::Scene};
+
+/// The meaning of the colours of a channel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Legend {
+    /// The values that are shown, with their unit.
+    pub title: String,
+    /// The numbers at the left, in the middle and at the right of a bar with the colours of
+    /// [viridis](crate::optics::viridis).
+    pub scale: Option<[String; 3]>,
+    /// Further colours, and what has them.
+    pub colours: Vec<([u8; 3], String)>,
+}
+
+impl Setting {
+    /// The legend of the channel in a picture of a scene.
+    #[must_use]
+    pub fn legend(&self, scene: &Scene, registry: &Registry) -> Legend {
+        let title = match self.channel {
+            DebugChannel::Normals => "Interpolated normals, as (1 + N)/2".to_owned(),
+            DebugChannel::FaceNormals => "Face normals, as (1 + N)/2".to_owned(),
+            DebugChannel::NDotL | DebugChannel::NDotH => {
+                let light = self.light_name(scene, registry);
+                let light = light.unwrap_or_else(|| "no light has a direction".to_owned());
+                format!("{}: {light}", self.channel.name())
+            }
+            DebugChannel::NDotV => "N·V: cosine towards the observer".to_owned(),
+            DebugChannel::Facing => "Facing, by the interpolated normal".to_owned(),
+            DebugChannel::Depth => "Depth: distance from the eye, m".to_owned(),
+            DebugChannel::Luminance => "Luminance, relative cd/m², before exposure".to_owned(),
+            DebugChannel::Clipped => "Clipped pixels, before tone mapping".to_owned(),
+            DebugChannel::NotANumber => "Light that is not a number".to_owned(),
+            DebugChannel::Light => match self.light_name(scene, registry) {
+                Some(light) => format!("One light alone: {light}"),
+                None => "One light alone: no light shines".to_owned(),
+            },
+        };
+        let scale = |numbers: [&str; 3]| Some(numbers.map(str::to_owned));
+        let [low, high] = self.range;
+        let scale = match self.channel {
+            DebugChannel::NDotL | DebugChannel::NDotH | DebugChannel::NDotV => scale(["0", "0.5", "1"]),
+            DebugChannel::Luminance => scale(["0.001", "0.1", "10"]),
+            DebugChannel::Depth => Some([low, rounded(0.5 * (low + high)), high].map(|x| x.to_string())),
+            _ => None,
+        };
+        let axes: &[_] =
+            &[([255, 128, 128], "right (+x)"), ([128, 255, 128], "up (+y)"), ([128, 128, 255], "out (+z)")];
+        let colours = match self.channel {
+            DebugChannel::Normals | DebugChannel::FaceNormals => axes,
+            DebugChannel::NDotL | DebugChannel::NDotH | DebugChannel::NDotV => &[(BELOW, "below 0")],
+            DebugChannel::Facing => &[(TOWARDS, "towards the observer"), (AWAY, "away")],
+            DebugChannel::Luminance => &[([0; 3], "none"), (NAN, "not a number")],
+            DebugChannel::Clipped => &[(CLIPPED, "striped: above 1"), (NAN, "not a number")],
+            DebugChannel::NotANumber => {
+                &[(NAN, "not a number"), (INFINITE, "infinite"), (NEGATIVE, "below 0")]
+            }
+            DebugChannel::Depth | DebugChannel::Light => &[],
+        };
+        let colours = colours.iter().map(|(colour, text)| (*colour, (*text).to_owned())).collect();
+        Legend { title, scale, colours }
+    }
+
+    /// Its light for people: its name, or its type and its place among the lights of the scene.
+    fn light_name(&self, scene: &Scene, registry: &Registry) -> Option<String> {
+        let mut shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
+        let (index, light) = shining.nth(self.light?)?;
+        Some(light.name.clone().unwrap_or_else(|| {
+            let kind = registry.light(&light.light_type).map_or("light", |entry| entry.declaration.name);
+            format!("{kind} (light {})", index + 1)
+        }))
+    }
+}
+
+/// A number with three digits.
+fn rounded(x: f32) -> f32 {
+    let digits = 2 - x.abs().max(1e-9).log10().floor() as i32;
+    ((f64::from(x) * 10f64.powi(digits)).round() / 10f64.powi(digits)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::scene::Light;
+
+    fn legend(channel: DebugChannel, scene: &Scene) -> Legend {
+        let registry = Registry::builtin();
+        Setting::new(channel, scene, &registry, Vec3::Z, None).legend(scene, &registry)
+    }
+
+    #[test]
+    fn legends_name_values_units_and_the_light() {
+        let mut scene = Scene { lights: vec![Light::default(), Light::default()], ..Scene::default() };
+        scene.lights[0].enabled = false;
+        scene.lights[1].name = Some("Key".to_owned());
+        assert_eq!(legend(DebugChannel::NDotL, &scene).title, "N·L: Key");
+        scene.lights[1].name = None;
+        assert!(legend(DebugChannel::NDotH, &scene).title.ends_with("(light 2)"));
+        scene.lights.clear();
+        assert_eq!(legend(DebugChannel::NDotL, &scene).title, "N·L: no light has a direction");
+        assert_eq!(legend(DebugChannel::Light, &scene).title, "One light alone: no light shines");
+        let depth = Setting { channel: DebugChannel::Depth, light: None, range: [0.12, 13.0] };
+        let depth = depth.legend(&scene, &Registry::builtin());
+        assert_eq!(depth.scale, Some(["0.12", "6.56", "13"].map(str::to_owned)));
+        assert!(depth.title.ends_with(", m"));
+        for channel in DebugChannel::ALL.into_iter().filter(|c| !c.is_picture()) {
+            let legend = legend(channel, &scene);
+            assert!(legend.scale.is_some() || !legend.colours.is_empty(), "{channel:?}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Debug channels: their menu, and the legend in the picture.
+
+use bevy_egui::egui::{
+    self, Align2, Color32, CornerRadius, CursorIcon, FontId, Id, Mesh, Rect, Sense, Stroke, StrokeKind,
+    TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+
+use super::{
+    state::{Action, CompareCommand, Session, ViewChange},
+    theme::{self, Palette},
+};
+use crate::{
+    channel::{DebugChannel, Legend, Setting},
+    optics::viridis::{VIRIDIS, viridis},
+    registry::Registry,
+    scene::variant::{LETTERS, MAX_VARIANTS},
+};
+
+/// The entries of the menu.
+pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let shown = session.channel_of(session.active());
+    let all = DebugChannel::ALL.map(Some);
+    for channel in [None].into_iter().chain(all) {
+        let name = channel.map_or("The picture", DebugChannel::name);
+        let mut entry = ui.radio(shown == channel, name);
+        if let Some(channel) = channel {
+            entry = entry.on_hover_text(channel.explanation());
+        }
+        if entry.clicked() {
+            actions.push(Action::View(ViewChange::Channel(channel)));
+            ui.close();
+        }
+        if channel.is_none() {
+            ui.separator();
+        }
+    }
+}
+
+/// The channel that a view shows, with its picture's legend.
+#[must_use]
+pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(DebugChannel, Legend)> {
+    let channel = session.channel_of(view)?;
+    let scene = &session.document;
+    let setting = Setting::new(channel, scene, registry, session.facts.eye, session.channel_light());
+    Some((channel, setting.legend(scene, registry)))
+}
+
+/// Paints the legend of a view's channel from `top` on, if the view shows one; a click on it shows the picture again. Returns
+/// its place, and the actions asked for there.
+pub(super) fn legend(
+    ui: &mut Ui,
+    rect: Rect,
+    top: f32,
+    view: usize,
+    session: &Session,
+    registry: &Registry,
+) -> Option<(Rect, Vec<Action>)> {
+    let (channel, mut legend) = shown(session, view, registry)?;
+    if !session.document.variants.is_empty() {
+        legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
+    }
+    let place = plate(ui, rect, top, &legend);
+    let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
+    let said = format!("Channel: {}. Show the picture", legend.title);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+    let palette = Palette::here(ui);
+    let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.accent };
+    let stroke = Stroke::new(theme::scale_here(ui), rim);
+    ui.painter_at(rect).rect_stroke(place, 4.0, stroke, StrokeKind::Inside);
+    let mut actions = Vec::new();
+    if response.clicked() {
+        if view != session.active() {
+            actions.push(Action::Compare(CompareCommand::Activate(view)));
+        }
+        actions.push(Action::View(ViewChange::Channel(None)));
+    }
+    let help =
+        format!("{}\n\nClick, or Shift+X: the picture again. X: the next channel.", channel.explanation());
+    // By key there is no other way to its help.
+    if response.has_focus() {
+        response.show_tooltip_text(&help);
+    }
+    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(help);
+    Some((place, actions))
+}
+
+/// Paints a legend, and returns its place.
+fn plate(ui: &Ui, rect: Rect, top: f32, legend: &Legend) -> Rect {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let padding = vec2(10.0, 6.0) * scale;
+    let room = (rect.width() - 16.0 - 2.0 * padding.x).max(64.0);
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = FontId::proportional(TextStyle::Small.resolve(ui.style()).size);
+    let painter = ui.painter_at(rect);
+    let title =
+        painter.layout(legend.title.clone(), FontId::new(body.size, theme::semibold()), palette.text, room);
+    let lay_out = |text: &String| painter.layout_no_wrap(text.clone(), small.clone(), palette.text);
+    let numbers = legend.scale.as_ref().map(|numbers| numbers.each_ref().map(lay_out));
+    let colours: Vec<_> = legend.colours.iter().map(|(c, text)| (*c, lay_out(text))).collect();
+    let swatch = 12.0 * scale;
+    let gap = 4.0 * scale;
+    let rows = colours.iter().map(|(_, text)| swatch + 2.0 * gap + text.size().x);
+    let bar = if numbers.is_some() { 180.0 * scale } else { 0.0 };
+    let width = rows.fold(title.size().x.max(bar.min(room)), f32::max);
+    let line = |text: &egui::Galley| text.size().y.max(swatch) + 0.5 * gap;
+    let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
+    let height = title.size().y + of_scale + colours.iter().map(|(_, text)| line(text)).sum::<f32>();
+    let place = Rect::from_min_size(pos2(rect.left() + 8.0, top), vec2(width, height) + 2.0 * padding);
+    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+    let mut at = place.min + padding;
+    let below = title.size().y;
+    painter.galley(at, title, palette.text);
+    at.y += below;
+    if let Some(numbers) = numbers {
+        at.y += gap;
+        let bar = Rect::from_min_size(at, vec2(width, swatch));
+        painter.add(gradient(bar));
+        painter.rect_stroke(bar, CornerRadius::ZERO, Stroke::new(1.0, palette.line), StrokeKind::Outside);
+        at.y = bar.bottom() + 0.5 * gap;
+        let below = numbers[0].size().y + 0.5 * gap;
+        for (number, part) in numbers.into_iter().zip([0.0, 0.5, 1.0]) {
+            let x = at.x + part * (width - number.size().x);
+            painter.galley(pos2(x, at.y), number, palette.text);
+        }
+        at.y += below;
+    }
+    for ([r, g, b], text) in colours {
+        let height = line(&text);
+        let square = Align2::LEFT_CENTER.anchor_size(pos2(at.x, at.y + 0.5 * height), vec2(swatch, swatch));
+        painter.rect(
+            square,
+            2.0,
+            Color32::from_rgb(r, g, b),
+            Stroke::new(1.0, palette.weak),
+            StrokeKind::Outside,
+        );
+        let y = at.y + 0.5 * (height - text.size().y);
+        painter.galley(pos2(square.right() + 2.0 * gap, y), text, palette.text);
+        at.y += height;
+    }
+    place
+}
+
+/// The colours of viridis from left to right.
+fn gradient(bar: Rect) -> Mesh {
+    let mut mesh = Mesh::default();
+    let columns = VIRIDIS.len() - 1;
+    for i in 0..=columns {
+        let part = i as f32 / columns as f32;
+        let [r, g, b] = (255.0 * viridis(part)).to_array().map(|c| c.round() as u8);
+        let x = egui::lerp(bar.x_range(), part);
+        mesh.colored_vertex(pos2(x, bar.top()), Color32::from_rgb(r, g, b));
+        mesh.colored_vertex(pos2(x, bar.bottom()), Color32::from_rgb(r, g, b));
+    }
+    for corner in (0..2 * columns as u32).step_by(2) {
+        mesh.add_triangle(corner, corner + 1, corner + 2);
+        mesh.add_triangle(corner + 1, corner + 2, corner + 3);
+    }
+    mesh
+}

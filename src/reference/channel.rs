@@ -1,0 +1,211 @@
+//! Debug channels in the CPU renderer: the twin of `assets/shaders/channels.wgsl`.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+
+use super::{Settings, object::Draw};
+use crate::{
+    channel::{
+        DebugChannel, Setting,
+        colours::{AWAY, BELOW, CLIPPED, INFINITE, NAN, NEGATIVE, TOWARDS, codes},
+    },
+    light::{Emitter, Incident, LightRecord},
+    optics::{
+        colour::{Encoding, luminance, srgb_decode},
+        tone::exposure_factor,
+        viridis::viridis,
+    },
+    registry::Registry,
+    scene::{Scene, observer::clip_from_room, record},
+    shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
+};
+
+/// Above this, a channel of the picture is cut off.
+const WHITE: f32 = 1.0005;
+/// The width of a stripe on the diagonal, pixels.
+const STRIPE: u32 = 4;
+
+/// Everything that a channel is calculated from, beside the point.
+#[derive(Clone)]
+pub(super) struct Sight(Arc<Parts>);
+
+struct Parts {
+    setting: Setting,
+    eye: Vec3,
+    light: Option<(Box<dyn Emitter>, LightRecord)>,
+    clip_from_room: Mat4,
+    size: [f32; 2],
+    exposure: f32,
+    encoding: Encoding,
+}
+
+impl Sight {
+    pub(super) fn new(scene: &Scene, registry: &Registry, settings: &Settings, setting: Setting) -> Self {
+        let encoding = scene.display.encoding;
+        let size = [settings.width as f32, settings.height as f32];
+        let light = setting.light.and_then(|i| scene.shining().nth(i)).and_then(|light| {
+            let entry = registry.light(&light.light_type)?;
+            Some(((entry.instantiate)(&light.parameters, encoding), record(light, registry, encoding)))
+        });
+        Self(Arc::new(Parts {
+            setting,
+            eye: scene.observer.position,
+            light,
+            clip_from_room: clip_from_room(&scene.observer, size[0] / size[1]),
+            size,
+            exposure: exposure_factor(scene.display.exposure),
+            encoding,
+        }))
+    }
+
+    /// An object as the channel shows it.
+    pub(super) fn seen<'a>(&self, draw: Draw<'a>) -> Draw<'a> {
+        let of_light = self.0.setting.channel.is_of_light();
+        // The geometry is that of the mesh, whatever the shading model makes of it.
+        let (stage, inner) = if of_light {
+            (draw.stage, draw.shading)
+        } else {
+            (Stage::Pixel, Box::new(PhongShading::default()) as Box<dyn Shading>)
+        };
+        Draw { stage, shading: Box::new(Channelled { inner, of_light, parts: self.0.clone() }), ..draw }
+    }
+}
+
+/// A shading model, and what a channel shows of it.
+struct Channelled {
+    inner: Box<dyn Shading>,
+    of_light: bool,
+    parts: Arc<Parts>,
+}
+
+impl Shading for Channelled {
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        self.inner.vertex(lighting, corner)
+    }
+
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
+        if self.of_light {
+            let light = self.inner.pixel(lighting, varying, face_normal);
+            return self.parts.of_light(light, varying.position);
+        }
+        let normal = varying.normal.normalize_or_zero();
+        self.parts.of_geometry(varying.position, normal, face_normal).map(srgb_decode)
+    }
+}
+
+/// A cosine as a colour, in display codes.
+fn cosine(cosine: f32) -> Vec3 {
+    if cosine < 0.0 { codes(BELOW) } else { viridis(cosine) }
+}
+
+impl Parts {
+    /// The colour of the light that leaves a point, linear.
+    fn of_light(&self, light: Vec3, position: Vec3) -> Vec3 {
+        let shown = |colour| codes(colour).map(srgb_decode);
+        if light.is_nan() {
+            return shown(NAN);
+        }
+        let bright = luminance(light.clamp(Vec3::splat(-1e30), Vec3::splat(1e30)));
+        let exposed = light * self.exposure;
+        match self.setting.channel {
+            DebugChannel::Luminance if bright <= 0.0 => Vec3::ZERO,
+            DebugChannel::Luminance => viridis((bright.log10() + 3.0) / 4.0).map(srgb_decode),
+            DebugChannel::Clipped if exposed.max_element() > WHITE => {
+                let [x, y] = self.pixel(position);
+                shown(if (x + y) / STRIPE % 2 == 1 { [0; 3] } else { CLIPPED })
+            }
+            DebugChannel::Clipped => {
+                let c = exposed.clamp(Vec3::ZERO, Vec3::ONE);
+                if self.encoding == Encoding::Off { c.map(srgb_decode) } else { c }
+            }
+            _ if !light.is_finite() => shown(INFINITE),
+            _ if light.min_element() < 0.0 => shown(NEGATIVE),
+            _ => Vec3::splat(0.25 * (bright * self.exposure).clamp(0.0, 1.0)),
+        }
+    }
+
+    /// The pixel in which a point is seen.
+    fn pixel(&self, position: Vec3) -> [u32; 2] {
+        let at = self.clip_from_room.project_point3(position);
+        [0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y].map({
+            let mut sides = self.size.into_iter();
+            move |part| (part * sides.next().unwrap_or_default()) as u32
+        })
+    }
+
+    /// The colour for the geometry at a point, in display codes.
+    fn of_geometry(&self, position: Vec3, normal: Vec3, face_normal: Vec3) -> Vec3 {
+        let to_eye = self.eye - position;
+        let v = to_eye.normalize_or_zero();
+        let l = || {
+            let (emitter, record) = self.light.as_ref()?;
+            match emitter.incident(record, position) {
+                Incident::From { l, .. } => Some(l),
+                Incident::Uniform { .. } => None,
+            }
+        };
+        let lit = |of: &dyn Fn(Vec3) -> f32| l().map_or(codes(BELOW), |l| cosine(of(l)));
+        let [low, high] = self.setting.range;
+        match self.setting.channel {
+            DebugChannel::FaceNormals => 0.5 + 0.5 * face_normal,
+            DebugChannel::NDotL => lit(&|l| normal.dot(l)),
+            DebugChannel::NDotH => lit(&|l| normal.dot((l + v).normalize_or_zero())),
+            DebugChannel::NDotV => cosine(normal.dot(v)),
+            DebugChannel::Facing => {
+                let facing = normal.dot(v);
+                (0.5 + 0.5 * facing.abs()) * codes(if facing < 0.0 { AWAY } else { TOWARDS })
+            }
+            DebugChannel::Depth => viridis((to_eye.length() - low) / (high - low)),
+            _ => 0.5 + 0.5 * normal,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(channel: DebugChannel, exposure: f32) -> Parts {
+        let (mut scene, registry) = (Scene::default(), Registry::builtin());
+        scene.display.exposure = exposure;
+        let setting = Setting::new(channel, &scene, &registry, scene.observer.position, None);
+        let sight = Sight::new(&scene, &registry, &Settings::default(), setting);
+        Arc::into_inner(sight.0).expect("no one else has it")
+    }
+
+    #[test]
+    fn light_that_is_no_light_has_a_colour_of_its_own() {
+        let parts = parts(DebugChannel::NotANumber, 1.0);
+        let shown = |light: [f32; 3]| parts.of_light(light.into(), Vec3::ZERO);
+        let colour = |c| codes(c).map(srgb_decode);
+        assert_eq!(shown([0.5, f32::NAN, f32::INFINITY]), colour(NAN));
+        assert_eq!(shown([0.5, f32::INFINITY, -1.0]), colour(INFINITE));
+        assert_eq!(shown([0.5, f32::NEG_INFINITY, 0.0]), colour(INFINITE));
+        assert_eq!(shown([0.5, -1e-6, 0.0]), colour(NEGATIVE));
+        assert_eq!(shown([0.25, 0.25, 0.25]), Vec3::splat(0.125));
+    }
+
+    #[test]
+    fn luminance_is_logarithmic_and_knows_no_exposure() {
+        for exposure in [0.0, 3.0] {
+            let parts = parts(DebugChannel::Luminance, exposure);
+            let shown = |light: f32| parts.of_light(Vec3::splat(light), Vec3::ZERO);
+            for (light, place) in [(0.001, 0.0), (0.1, 0.5), (1.0, 0.75), (10.0, 1.0), (1e9, 1.0)] {
+                let right = viridis(place).map(srgb_decode);
+                assert!((shown(light) - right).abs().max_element() < 1e-3, "{light}");
+            }
+            assert_eq!(shown(0.0), Vec3::ZERO);
+        }
+    }
+
+    #[test]
+    fn light_is_cut_off_after_exposure() {
+        let at = |exposure, light: f32| {
+            parts(DebugChannel::Clipped, exposure).of_light(Vec3::splat(light), Vec3::ZERO)
+        };
+        assert_eq!(at(0.0, 0.5), Vec3::splat(0.5));
+        assert_eq!(at(1.0, 0.5), Vec3::ONE, "white is not cut off");
+        assert!([Vec3::ZERO, codes(CLIPPED).map(srgb_decode)].contains(&at(1.0, 0.51)));
+    }
+}
