@@ -171,7 +171,7 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         "Picture",
         false,
         false,
-        Key::X,
+        Key::E,
         "Explain the pixel at the pointer; again: let go of it",
         Action::Pin,
     );

@@ -149,7 +149,7 @@ fn the_code_is_that_of_the_picture_in_every_shading_model() {
 fn what_is_copied_is_what_the_command_line_says() {
     let mut bench = bench(Scene::default());
     point_at_sphere(&mut bench);
-    bench.key(Key::X, Modifiers::NONE);
+    bench.key(Key::E, Modifiers::NONE);
     let Explanation { pixel: [x, y], size: [width, height], .. } = shown(&bench);
     bench.click("Copy");
     let (at, size) = (format!("{x},{y}"), format!("{width}x{height}"));
@@ -179,7 +179,7 @@ fn the_pointer_is_followed_unless_a_pixel_is_pinned() {
         let toggle = |bench: &mut Bench| match by_key {
             true => {
                 point(bench, at);
-                bench.letter(Key::X, "x");
+                bench.letter(Key::E, "e");
             }
             false => alt_click(bench, at),
         };
@@ -213,7 +213,7 @@ fn it_works_by_keyboard_alone() {
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
     assert!(!bench.session.view.bottom_open);
-    bench.letter(Key::X, "x");
+    bench.letter(Key::E, "e");
     assert!(bench.session.view.bottom_open && bench.session.view.bottom_tab == EXPLAIN_TAB);
     let Explanation { pixel, size, .. } = shown(&bench);
     assert_eq!(pixel, size.map(|side| side / 2));
@@ -222,13 +222,13 @@ fn it_works_by_keyboard_alone() {
     assert_eq!(shown(&bench).pixel, [17, size[1] / 2]);
     // Folded away, it is shown again before it is let go of.
     bench.apply(Action::View(ViewChange::Bottom(false)));
-    bench.letter(Key::X, "x");
+    bench.letter(Key::E, "e");
     assert!(bench.session.view.pinned.is_some() && bench.session.view.bottom_open);
-    bench.letter(Key::X, "x");
+    bench.letter(Key::E, "e");
     assert_eq!(bench.session.view.pinned, None);
 
     let table = bindings(&bench.session, &bench.registry);
-    assert!(table.iter().any(|b| b.keys() == "X" && b.action == Action::Pin && b.label.contains("Explain")));
+    assert!(table.iter().any(|b| b.keys() == "E" && b.action == Action::Pin && b.label.contains("Explain")));
     assert!(ELSEWHERE.iter().any(|(_, keys, what)| *keys == "Alt and click" && what.contains("Explain")));
     bench.key(Key::F1, Modifiers::NONE);
     assert!(bench.says("Explain the pixel at the pointer"));
@@ -290,7 +290,7 @@ fn of_several_views_the_one_under_the_pointer_is_explained() {
         let words = words(&mut bench);
         assert_eq!(words.iter().filter(|word| *word == "N").count(), 1, "only in its view");
     }
-    bench.key(Key::X, Modifiers::NONE);
+    bench.key(Key::E, Modifiers::NONE);
     assert_eq!(bench.session.view.pinned.map(|pin| pin.view), Some(1));
     bench.apply(Action::Compare(CompareCommand::Remove(1)));
     bench.settle();
@@ -301,7 +301,7 @@ fn of_several_views_the_one_under_the_pointer_is_explained() {
 fn vertices_can_be_chosen_and_per_pixel_shading_compared() {
     let mut bench = bench(scene("phong", "gouraud"));
     point_at_sphere(&mut bench);
-    bench.key(Key::X, Modifiers::NONE);
+    bench.key(Key::E, Modifiers::NONE);
     let seen = shown(&bench).seen.expect("the sphere");
     for corner in &seen.corners {
         assert!(bench.says(&format!("Point: vertex {}", corner.vertex)));

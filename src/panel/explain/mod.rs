@@ -63,7 +63,7 @@ impl Panel for Explain {
             ui.add(
                 egui::Label::new(
                     RichText::new(
-                        "Point at the picture: this panel says why the pixel has its colour, number by number. X pins \
+                        "Point at the picture: this panel says why the pixel has its colour, number by number. E pins \
                          the pixel under the pointer, or the middle of the picture.",
                     )
                     .color(Palette::here(ui).weak),

@@ -91,7 +91,7 @@ fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Ve
         let button = ui.add(model).on_hover_text("Lay another model over, with its defaults");
         button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay a model over"));
         let id = ui.make_persistent_id("model of the plot");
-        let picked = knob::drop_down(&button, id, |ui, id| {
+        let picked = knob::drop_down(&button, id, knob::WIDE, |ui, id| {
             chooser::models(ui, id, height, session, registry, None, None).flatten()
         });
         if let Some(entry) = picked {
@@ -106,7 +106,7 @@ fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Ve
         let button = ui.add(data).on_hover_text(help);
         button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay measured data over"));
         let id = ui.make_persistent_id("data of the plot");
-        if let Some(name) = knob::drop_down(&button, id, |ui, id| measured(ui, id, height)) {
+        if let Some(name) = knob::drop_down(&button, id, 320.0, |ui, id| measured(ui, id, height)) {
             Popup::close_id(ui.ctx(), id);
             actions.push(Action::Plot(PlotCommand::Add(Of::Measured(name))));
         }
