@@ -123,7 +123,7 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
 /// The least height of the strip with the shaders, points.
 const SHADER_STRIP: f32 = 184.0;
 /// The least height of the strip that explains a pixel, points, and of the window.
-const EXPLAIN_STRIP: (f32, f32) = (240.0, 0.37);
+const EXPLAIN_STRIP: (f32, f32) = (200.0, 0.37);
 
 /// The same with the plots, points.
 const PLOT_STRIP: f32 = 312.0;

@@ -11,7 +11,7 @@ use lights_camera_models::{
     panel::{
         explain::{calculations, explained},
         keys::{ELSEWHERE, bindings},
-        state::{Action, CompareCommand, EXPLAIN_TAB, Session, ViewChange},
+        state::{Action, CompareCommand, EXPLAIN_TAB, Session, ThemeChoice, ViewChange},
     },
     parameter::Value,
     parameters,
@@ -356,6 +356,12 @@ fn what_is_no_number_and_what_the_picture_does_not_show_is_said() {
     assert!(bench.says("ignores the edited reflection/phong.wgsl"));
 
     let mut bench = self::bench(scene("phong", "phong"));
+    let at = corner(&bench);
+    point(&mut bench, at);
+    bench.settle();
+    assert!(bench.says("Background") && !bench.says("light surround"));
+    bench.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+    assert!(bench.says("light surround"), "the background of the window is not that of the picture");
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
     point_at_sphere(&mut bench);
     assert!(bench.says("Only the diffuse term is shown"));

@@ -1,6 +1,6 @@
 //! The equation at a point, light by light: as it is written, with numbers, and its result. One light is unfolded.
 
-use bevy_egui::egui::{Id, Ui};
+use bevy_egui::egui::{Id, Label, Ui};
 use glam::Vec3;
 
 use super::{
@@ -116,7 +116,7 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
             ui.spacing_mut().item_spacing.x = 14.0;
             for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]) {
                 let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
-                ui.label(text).on_hover_text(rows::all(cosine));
+                ui.add(Label::new(text).extend()).on_hover_text(rows::all(cosine));
             }
         });
     }

@@ -12,7 +12,7 @@ use bevy_egui::egui::{
 
 use super::{
     Panel, PanelContext, Place, icon, knob,
-    state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ViewChange},
+    state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ThemeChoice, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
@@ -73,7 +73,7 @@ impl Panel for Explain {
             return;
         };
         header(ui, session, &explained, actions);
-        for (severity, text) in remarks(&explained) {
+        for (severity, text) in remarks(&explained, session) {
             remark(ui, severity, &text);
         }
         ui.add_space(2.0);
@@ -126,7 +126,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
 }
 
 /// What is to be said before the numbers.
-fn remarks(explained: &Explained) -> Vec<(Severity, String)> {
+fn remarks(explained: &Explained, session: &Session) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let mut all = Vec::new();
     if !explained.ignored.is_empty() {
@@ -147,6 +147,13 @@ fn remarks(explained: &Explained) -> Vec<(Severity, String)> {
                 "This is not the explanation of the picture: the CPU cannot run this model, so the numbers are not its \
                  own: {trouble}."
             ),
+        ));
+    }
+    if explanation.seen.is_none() && session.view.theme == ThemeChoice::Light {
+        all.push((
+            Severity::Info,
+            "The window with the light theme has a light surround here; pictures that are rendered have this background."
+                .to_owned(),
         ));
     }
     if explanation.terms != TermSelection::All {
