@@ -93,15 +93,15 @@ pub fn slice(
     detail: Detail,
     progress: &Progress,
 ) -> Result<Slice, CurveError> {
-    /// The rows between two looks at the wish to stop.
-    const ROWS: u32 = 16;
     subject.has(Kind::Slice)?;
     subject.runs()?;
     let side = if detail == Detail::Fine { 256 } else { 48 };
+    // The rows between two looks at the wish to stop.
+    let step = side / 16;
     let mut slice = Slice { name: subject.name.clone(), side, values: Vec::new() };
-    for row in (0..side).step_by(ROWS as usize) {
+    for row in (0..side).step_by(step as usize) {
         progress.step(row as f32 / side as f32, "")?;
-        let pixels = row * side..(row + ROWS).min(side) * side;
+        let pixels = row * side..(row + step).min(side) * side;
         let rows: Vec<_> = pixels
             .into_par_iter()
             .map(|pixel| {

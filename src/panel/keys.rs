@@ -245,6 +245,11 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
     ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),
     ("On a slider", "double-click", "The default; Backspace does it too"),
+    (
+        "In the plots",
+        "← →",
+        "Move the light or the reading by 1°, with Shift by 10°; Tab goes from one to the other",
+    ),
     ("Mouse in the picture", "left drag", "Turn about what is looked at"),
     ("Mouse in the picture", "right drag", "Move sideways; Shift and left drag does it too"),
     ("Mouse in the picture", "wheel", "Nearer, farther"),

@@ -51,7 +51,9 @@ pub(super) fn show(
         Ground::Polar { centre, radius } => {
             let (sin, cos) = theta_i.to_radians().sin_cos();
             let [x, y] = *centre;
-            let at = screen.place([x - radius * sin, y - radius * cos]);
+            // The circle has the label.
+            let out = 0.88 * radius;
+            let at = screen.place([x - out * sin, y - out * cos]);
             (at, Box::new(move |[to_x, to_y]| (x - to_x).atan2(y - to_y).to_degrees()))
         }
         Ground::Slices(_) => return,
