@@ -68,7 +68,7 @@ pub const OBJECT_KEYS: &[&str] = &[
     "material",
 ];
 /// The letters that do something in the window other than to choose a shading model.
-pub const WINDOW_KEYS: &[char] = &['C', 'H', 'R', 'T', 'V', 'X'];
+pub const WINDOW_KEYS: &[char] = &['C', 'E', 'H', 'R', 'T', 'V', 'X'];
 
 /// The trust with which something is registered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
