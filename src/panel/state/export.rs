@@ -1,6 +1,6 @@
 //! Exports: what is asked for, and how they end.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Action, Answer, Effect, ExportCommand, Note, Question, Session, Severity};
 use crate::export::{Form, form};
@@ -31,6 +31,12 @@ impl Session {
         }
     }
 
+    /// Says that something was written, and offers its folder.
+    pub(super) fn note_file(&mut self, text: String, folder: &Path) {
+        let reveal = Action::Export(ExportCommand::Reveal(folder.to_owned()));
+        self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
+    }
+
     /// An export has ended: its notes, or why there is none, a sentence each.
     pub fn exported(&mut self, id: &str, path: PathBuf, outcome: Result<Vec<String>, Vec<String>>) {
         let name = form(id).map_or("", |form: &Form| form.name);
@@ -38,9 +44,7 @@ impl Session {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
                 let text = format!("Exported as {name} to {}.", path.display());
-                let folder = if path.is_dir() { path } else { crate::files::folder_of(&path).to_owned() };
-                let reveal = Action::Export(ExportCommand::Reveal(folder));
-                self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
+                self.note_file(text, if path.is_dir() { &path } else { crate::files::folder_of(&path) });
             }
             // The latest message stands on top.
             Err(reasons) => {

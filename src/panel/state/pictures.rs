@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Action, Answer, Effect, ExportCommand, Note, PictureCommand, Question, Session, Severity};
+use super::{Answer, Effect, PictureCommand, Question, Session, Severity};
 use crate::{files, scene::variant::LETTERS};
 
 /// The end of a picture.
@@ -53,10 +53,7 @@ impl Session {
     pub fn pictured(&mut self, end: PictureEnd) {
         match end {
             PictureEnd::Saved(path) => {
-                let folder = files::folder_of(&path).to_owned();
-                let text = format!("Saved the picture to {}.", path.display());
-                let reveal = Action::Export(ExportCommand::Reveal(folder));
-                self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
+                self.note_file(format!("Saved the picture to {}.", path.display()), files::folder_of(&path));
             }
             PictureEnd::Copied([width, height]) => {
                 self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));

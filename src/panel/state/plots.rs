@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Action, Effect, ExportCommand, Note, Session, Severity};
+use super::{Effect, Session, Severity};
 use crate::{
     curves::{Channel, Kind, Style, draw::Line},
     document::Selection,
@@ -191,9 +191,7 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                let reveal = Action::Export(ExportCommand::Reveal(files::folder_of(&path).to_owned()));
-                let text = format!("The plot was written to {}.", path.display());
-                self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
+                self.note_file(format!("The plot was written to {}.", path.display()), files::folder_of(&path));
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }
