@@ -26,7 +26,8 @@ struct Illumination {
     terms: u32,
     exposure: f32,
     gamma_naive: u32,
-    // The debug channel that is shown, 0 for none; its light; the ends of its scale.
+    // The debug channel that is shown, 0 for none; its light; the ends of its scale, or for the direction of a light: 1 at
+    // the low end if the light shines from its position, 0 if along its direction.
     channel: u32,
     channel_light: u32,
     channel_low: f32,

@@ -106,7 +106,8 @@ mod tests {
         scene.lights.clear();
         assert_eq!(legend(DebugChannel::NDotL, &scene).title, "N·L: no light has a direction");
         assert_eq!(legend(DebugChannel::Light, &scene).title, "One light alone: no light shines");
-        let depth = Setting { channel: DebugChannel::Depth, light: None, range: [0.12, 13.0] };
+        let depth =
+            Setting { channel: DebugChannel::Depth, light: None, range: [0.12, 13.0], from_position: false };
         let depth = depth.legend(&scene, &Registry::builtin());
         assert_eq!(depth.scale, Some(["0.12", "6.56", "13"].map(str::to_owned)));
         assert!(depth.title.ends_with(", m"));

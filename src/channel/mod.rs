@@ -224,6 +224,8 @@ pub struct Setting {
     pub light: Option<usize>,
     /// The values at the ends of the scale: for depth, metres.
     pub range: [f32; 2],
+    /// True if the light shines from its position, false if along its direction.
+    pub from_position: bool,
 }
 
 impl Setting {
@@ -239,7 +241,10 @@ impl Setting {
     ) -> Self {
         let light = channel.has_light().then(|| light(channel, scene, registry, chosen)).flatten();
         let range = if channel == DebugChannel::Depth { depths(scene, registry, eye) } else { [0.0, 1.0] };
-        Self { channel, light, range }
+        let mut shining = scene.lights.iter().filter(|light| light.enabled);
+        let shown = light.and_then(|place| shining.nth(place));
+        let declared = shown.and_then(|light| registry.light(&light.light_type));
+        Self { channel, light, range, from_position: declared.is_some_and(|l| l.declaration.has_position) }
     }
 
     /// True if the light with that place among those that shine takes part in the picture.

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::{
     focus,
     state::{
-        Action, CompareCommand, HandleChange, ModelCommand, PLOTS_TAB, PictureArea, PictureCommand, SHADER_TAB,
-        Session, Steer, ViewChange,
+        Action, CompareCommand, HandleChange, ModelCommand, PLOTS_TAB, PictureArea, PictureCommand,
+        SHADER_TAB, Session, Steer, ViewChange,
     },
 };
 use crate::{channel::DebugChannel, registry::Registry, scene::Comparison};

@@ -278,7 +278,6 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                         }
                     }
                 });
-                menu::submenu(ui, "Channel", |ui| channels::entries(ui, session, actions));
                 menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
                 ui.separator();
                 let v = &session.view;
@@ -315,8 +314,12 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     actions,
                 );
                 menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
-                let clipping = ViewChange::Clipping(!v.show_clipping);
-                check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
+                menu::submenu(ui, "Channel", |ui| {
+                    channels::entries(ui, session, actions);
+                    ui.separator();
+                    let clipping = ViewChange::Clipping(!v.show_clipping);
+                    check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
+                });
                 ui.separator();
                 menu::submenu(ui, "Panels", |ui| {
                     ui.set_width(0.8 * MENU_WIDTH);

@@ -205,9 +205,11 @@ pub fn illumination_bytes(
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
-    if let Some(Setting { channel, light, range: [low, high] }) = channel {
+    if let Some(Setting { channel, light, range: [low, high], from_position }) = channel {
         put(16, channel.code().to_le_bytes());
         put(20, light.map_or(u32::MAX, |light| light as u32).to_le_bytes());
+        let directed = channel.has_light() && !channel.is_picture();
+        let low = if directed { f32::from(u8::from(*from_position)) } else { *low };
         put(24, low.to_le_bytes());
         put(28, high.to_le_bytes());
     }

@@ -191,7 +191,10 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(format!("The plot was written to {}.", path.display()), files::folder_of(&path));
+                self.note_file(
+                    format!("The plot was written to {}.", path.display()),
+                    files::folder_of(&path),
+                );
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }
