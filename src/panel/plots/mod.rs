@@ -1,5 +1,5 @@
 //! The panel of the plots: curves of the selected object's model with its present parameters, and of what was pinned or
-//! laid over. Curves are calculated in a [thread of their own](work), and only while the panel is shown.
+//! laid over. Curves are calculated in a thread of their own, and only while the panel is shown.
 //!
 //! The figure is that of [`curves`](crate::curves), drawn by another pen: what the window shows is what
 //! its files show.
