@@ -10,8 +10,7 @@ use crate::{compare::Shown, failure::Failure, files, scene::load::MAX_PICTURE_BY
 /// True if a path leads to a picture: its content begins as one, or its name says so.
 pub(super) fn is_picture(path: &Path) -> bool {
     let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    let begins = files::PNG.begins;
-    named || files::read_start(path, begins.len() as u64).is_ok_and(|start| start == begins)
+    named || files::PNG.begins(path)
 }
 
 /// Reads a PNG file: its colours with eight bits, as they are.

@@ -38,7 +38,7 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Comparison, Scene, check, comparison::Layout},
+    scene::{Scene, check, comparison::Layout},
     text::quoted,
 };
 
@@ -487,9 +487,7 @@ fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registr
 /// The scene that a picture holds: what the command line says of its views is also said by it.
 fn pictured(job: &Job) -> Scene {
     match job.plan.parts.as_slice() {
-        [part] if job.alone => {
-            Scene { variants: Vec::new(), comparison: Comparison::default(), ..part.scene.clone() }
-        }
+        [part] if job.alone => part.scene.clone().alone(),
         _ => Scene { comparison: job.plan.comparison, ..job.scene.clone() },
     }
 }

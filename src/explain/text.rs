@@ -280,16 +280,8 @@ fn result(out: &mut Writer, seen: &Seen) {
 /// The light that arrives at a point.
 fn arriving(out: &mut Writer, lit: &Lit) {
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
-        let from: Vec<_> = factor
-            .from
-            .iter()
-            .map(|(symbol, value, unit)| {
-                let space = if unit.is_empty() || *unit == "°" { "" } else { " " };
-                format!("{symbol} = {}{space}{unit}", number(*value))
-            })
-            .collect();
         let (symbol, value) = (factor.symbol, number_or_triple(factor.value));
-        out.line(2, format_args!("{symbol} = {value} for {}: {}", from.join(", "), factor.meaning));
+        out.line(2, format_args!("{symbol} = {value} for {}: {}", factor.givens(number), factor.meaning));
     }
     let factors = lit.factors.iter().map(|factor| {
         let value = number_or_triple(factor.value);

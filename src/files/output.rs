@@ -24,6 +24,14 @@ pub struct Signature {
     pub begins: &'static [u8],
 }
 
+impl Signature {
+    /// True if a path leads to a regular file that begins so.
+    #[must_use]
+    pub fn begins(&self, path: &Path) -> bool {
+        read_start(path, self.begins.len() as u64).is_ok_and(|start| start == self.begins)
+    }
+}
+
 /// Pictures.
 pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n\x1a\n" };
 

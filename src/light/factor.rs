@@ -39,6 +39,16 @@ impl Factor {
         self
     }
 
+    /// The numbers that it follows from, as people write them: "d = 4.82 m".
+    #[must_use]
+    pub fn givens(&self, number: impl Fn(f32) -> String) -> String {
+        let given = |(symbol, value, unit): &(&str, f32, &str)| {
+            let space = if unit.is_empty() || *unit == "°" { "" } else { " " };
+            format!("{symbol} = {}{space}{unit}", number(*value))
+        };
+        self.from.iter().map(given).collect::<Vec<_>>().join(", ")
+    }
+
     /// The intensity `I` of a light, in the unit of its type.
     #[must_use]
     pub fn intensity(light: &LightRecord, unit: &'static str) -> Self {

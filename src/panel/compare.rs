@@ -258,7 +258,8 @@ fn header(
         Stroke::new(if active { 2.0 } else { 1.0 }, line),
     );
     let letter = LETTERS[view.min(MAX_VARIANTS)];
-    let text = words(session, view, registry);
+    let parts = in_parts(session, view, registry);
+    let text = line(&parts);
     let comparison = &session.document.comparison;
     // Of views that are shown in turn, the one on screen stands out.
     let hidden =
@@ -293,7 +294,7 @@ fn header(
                     if button.clicked() {
                         actions.push(Action::Compare(CompareCommand::Activate(other)));
                     }
-                    button.on_hover_text(format!("View {name}: {}", words(session, other, registry)));
+                    button.on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
                 }
             }
             ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
@@ -310,7 +311,6 @@ fn header(
                 let at = badge.right_center() + vec2(8.0, 0.0) * scale;
                 // With symbols as in the equation, if the words have room.
                 let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
-                let parts = in_parts(session, view, registry);
                 let lines = Lines::within(ui, parts, size, ink, room - dots.size().x, 1);
                 if lines.size.y < 1.9 * size && lines.size.x <= room {
                     let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
@@ -335,11 +335,6 @@ fn header(
 }
 
 /// A view in words: its name, unless what it shows says the same, and what it shows.
-fn words(session: &Session, view: usize, registry: &Registry) -> String {
-    line(&in_parts(session, view, registry))
-}
-
-/// The same in parts.
 fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
     let shown = view_parts(&session.document, view, registry);
     let said = line(&shown).to_lowercase();

@@ -78,22 +78,15 @@ impl Stage {
     /// The text in this rectangle.
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
-        let models = models_shown(session);
-        // Among several models, an equation would say of all what is true of one.
-        let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
-        let equation = model.map_or_else(Vec::new, |m| maths::definitions(m.declaration.equation));
+        let equation = equation_shown(session, registry);
         let parts = caption::parts(session, registry);
         // The camera that turns moves nothing: its place at the beginning counts.
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
-        let (id, key) = (Id::new("stage of the presentation"), hasher.finish());
-        if let Some((_, stage)) = ui.data(|d| d.get_temp::<(u64, Self)>(id)).filter(|(of, _)| *of == key) {
-            return stage;
-        }
-        let stage = Self::laid_out(ui, whole, session, equation, parts);
-        ui.data_mut(|d| d.insert_temp(id, (key, stage.clone())));
-        stage
+        kept(ui, "stage of the presentation", hasher.finish(), |ui| {
+            Self::laid_out(ui, whole, session, equation, parts)
+        })
     }
 
     fn laid_out(
@@ -204,14 +197,23 @@ impl Footer {
     /// The footer of a screen.
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
-        let padding = padding(whole);
-        let most = whole.width() - 2.0 * padding.x;
-        let models = models_shown(session);
-        let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
-        let mut equation = model.map_or_else(Vec::new, |m| maths::definitions(m.declaration.equation));
+        let equation = equation_shown(session, registry);
         let mut parts = caption::parts(session, registry);
         let letter = LETTERS.get(session.active()).copied().unwrap_or_default();
         parts.insert(0, caption::Part::new(0, format!("{letter}:")));
+        let mut hasher = DefaultHasher::new();
+        format!("{equation:?} {parts:?} {whole:?}").hash(&mut hasher);
+        kept(ui, "footer of the presentation", hasher.finish(), |ui| Self::laid_out(ui, whole, equation, parts))
+    }
+
+    fn laid_out(
+        ui: &mut Ui,
+        whole: Rect,
+        mut equation: Vec<Definition>,
+        parts: Vec<caption::Part>,
+    ) -> Self {
+        let padding = padding(whole);
+        let most = whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
         let mut ui = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
@@ -239,6 +241,29 @@ impl Footer {
         words.paint(ui, at + vec2(0.0, gap), palette.text);
         notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui).0, session);
     }
+}
+
+/// The equation of the model that the active view shows. Among several models, it would say of all what is true of one.
+fn equation_shown(session: &Session, registry: &Registry) -> Vec<Definition> {
+    let models = models_shown(session);
+    let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
+    model.map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation))
+}
+
+/// What was made in an earlier frame, if it was made from the same.
+fn kept<T: Clone + Send + Sync + 'static>(
+    ui: &mut Ui,
+    name: &str,
+    key: u64,
+    make: impl FnOnce(&mut Ui) -> T,
+) -> T {
+    let id = Id::new(name);
+    if let Some((_, known)) = ui.data(|d| d.get_temp::<(u64, T)>(id)).filter(|(of, _)| *of == key) {
+        return known;
+    }
+    let made = make(ui);
+    ui.data_mut(|d| d.insert_temp(id, (key, made.clone())));
+    made
 }
 
 /// Sets an equation in its columns from a corner on.

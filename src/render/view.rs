@@ -122,6 +122,12 @@ impl Drawing {
         self.due == 0
     }
 
+    /// True if the picture shows everything as it is, and is not drawn in this frame.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        self.is_done() && !self.draws()
+    }
+
     /// The number of pictures drawn so far.
     #[must_use]
     pub fn drawn(&self) -> u64 {
@@ -146,6 +152,15 @@ struct Look {
 pub fn texture_of(target: &RenderTarget) -> Option<&Handle<Image>> {
     match target {
         RenderTarget::Image(image) => Some(&image.handle),
+        _ => None,
+    }
+}
+
+/// The background of its own that a camera has.
+#[must_use]
+pub fn background_of(camera: &Camera) -> Option<Color> {
+    match camera.clear_color {
+        ClearColorConfig::Custom(colour) => Some(colour),
         _ => None,
     }
 }
@@ -254,10 +269,7 @@ fn rest(
                 Projection::Perspective(lens) => Some([lens.fov, lens.aspect_ratio]),
                 _ => None,
             },
-            background: match camera.clear_color {
-                ClearColorConfig::Custom(colour) => Some(colour),
-                _ => None,
-            },
+            background: background_of(camera),
             tone: *tone,
             overrides: overrides.cloned(),
         };

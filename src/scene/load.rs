@@ -99,11 +99,15 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
     in_folder(&bytes(path, registry)?, (&path.display().to_string(), folder), registry, defaults)
 }
 
-/// The most bytes that are read of a file: in a picture, the scene is a small part.
-fn most(path: &FilePath) -> u64 {
-    let begins = files::PNG.begins;
-    let is_picture = files::read_start(path, begins.len() as u64).is_ok_and(|start| start == begins);
-    if is_picture { MAX_PICTURE_BYTES } else { MAX_FILE_BYTES }
+/// What reading a file gives. A picture may be larger than other files: the scene is a small part of it.
+fn larger_if_picture(
+    path: &FilePath,
+    read: impl Fn(u64) -> Result<Vec<u8>, FileError>,
+) -> Result<Vec<u8>, FileError> {
+    match read(MAX_FILE_BYTES) {
+        Err(FileError::TooLarge(_)) if files::PNG.begins(path) => read(MAX_PICTURE_BYTES),
+        read => read,
+    }
 }
 
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
@@ -111,7 +115,7 @@ fn most(path: &FilePath) -> u64 {
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    files::read_input(path, most(path)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read_input(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads the content of a scene file, valid or not.
@@ -119,7 +123,7 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] if it is not a regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    files::read(path, most(path)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).

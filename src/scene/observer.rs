@@ -44,6 +44,17 @@ pub fn vertical_field_of_view(degrees: f32, aspect: f32, fits_width: bool) -> f3
     2.0 * ((radians * 0.5).tan() * WIDE / aspect).atan()
 }
 
+impl Observer {
+    /// The same for a picture of this size that fits widths, drawn by a renderer that takes the field of view as the vertical
+    /// one.
+    #[must_use]
+    pub fn fitting_width(self, [width, height]: [u32; 2]) -> Self {
+        let aspect = width as f32 / height as f32;
+        let field_of_view = vertical_field_of_view(self.field_of_view, aspect, true).to_degrees();
+        Self { field_of_view, ..self }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

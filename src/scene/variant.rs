@@ -136,6 +136,12 @@ impl Scene {
         Some((variant.applied(self, registry), variant.terms.unwrap_or_default()))
     }
 
+    /// The same without its views and their comparison.
+    #[must_use]
+    pub fn alone(self) -> Self {
+        Self { variants: Vec::new(), comparison: Comparison::default(), ..self }
+    }
+
     /// True if two scenes with the same lights and objects differ at most in variants and comparison: then view A shows
     /// the same.
     #[must_use]

@@ -4,37 +4,32 @@
 //! The display codes are those on screen. Light, and what objects cover, the CPU renderer says: from the screen alone they
 //! cannot be known.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-
 use bevy::{
     app::{App, Plugin, PostUpdate},
     asset::{Assets, Handle, RenderAssetUsages},
-    camera::RenderTarget,
     ecs::prelude::*,
     image::Image,
-    math::Vec3,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
     window::RequestRedraw,
 };
 use glam::UVec2;
 
 use super::{
-    WindowView,
+    background::Background,
     readback::{Reading, codes},
     redraw::{SETTLING_FRAMES, Settling},
-    views::{DifferenceMap, OtherView},
+    views::{DifferenceMap, ShownViews},
 };
 use crate::{
     compare::{Measured, Pair, Shown, short},
     optics::TermSelection,
-    panel::state::{LARGEST, Numbers, PictureArea, Session},
+    panel::state::{LARGEST, Numbers, Session},
     reference::{self, Picture, Settings},
     registry::Registry,
-    render::view::{Drawing, View, ViewSystems, texture_of},
+    render::view::ViewSystems,
     scene::{
         Comparison, Observer, Scene,
         comparison::{Compared, Layout},
-        observer::vertical_field_of_view,
         variant::LETTERS,
     },
 };
@@ -77,16 +72,13 @@ struct Comparing {
     asked: Option<Question>,
     known: Option<Question>,
     read: Option<Reading>,
-    thread: Option<std::sync::Mutex<Receiver<Answer>>>,
+    /// Its result is `None` if it broke off.
+    work: Background<(), Option<Answer>>,
 }
 
 fn compare(
-    area: Option<Res<PictureArea>>,
+    views: ShownViews,
     registry: Res<Registry>,
-    views: Query<
-        (&View, &Drawing, &RenderTarget, Option<&OtherView>),
-        Or<(With<WindowView>, With<OtherView>)>,
-    >,
     mut session: ResMut<Session>,
     mut comparing: ResMut<Comparing>,
     mut map: ResMut<DifferenceMap>,
@@ -97,24 +89,21 @@ fn compare(
 ) {
     let comparison = session.document.comparison;
     let with = session.compared_with();
-    let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
-    let own = cells.first().map_or(0, |cell| cell.view);
-    let find = |number: usize| views.iter().find(|(.., other)| other.map_or(own, |other| other.0) == number);
-    let both = (cells.len() > 1).then(|| find(0).zip(find(with))).flatten();
-    let Some(((view, a, target_a, _), (_, b, target_b, _))) = both else {
+    let both = (views.cells().len() > 1).then(|| views.find(0).zip(views.find(with))).flatten();
+    let Some((a, b)) = both else {
         if session.facts.comparison.is_some() {
             session.bypass_change_detection().facts.comparison = None;
         }
         return forget(&mut comparing, &mut commands);
     };
-    let rests = a.is_done() && b.is_done() && !a.draws() && !b.draws();
-    if rests && let (Some(texture_a), Some(texture_b)) = (texture_of(target_a), texture_of(target_b)) {
+    let rest = a.drawing.rests() && b.drawing.rests();
+    if rest && let (Some(texture_a), Some(texture_b)) = (a.texture(), b.texture()) {
         // Where the edge of a wipe is, and how the views are arranged, changes no number.
         let question = Question {
             comparison: Comparison { split: 0.0, ..comparison },
             with,
-            size: view.size,
-            drawn: [a.drawn(), b.drawn()],
+            size: a.view.size,
+            drawn: [a.drawing.drawn(), b.drawing.drawn()],
             textures: [texture_a.clone(), texture_b.clone()],
         };
         let under_way = comparing.asked.is_some();
@@ -126,41 +115,28 @@ fn compare(
     if comparing.asked.is_some() {
         requests.write(RequestRedraw);
     }
-    if comparing.thread.is_none()
+    if comparing.work.running().is_none()
         && let Some(question) = comparing.asked.clone()
         && let Some(codes) = Reading::end(&mut comparing.read, &mut commands)
     {
         let job = Job {
+            terms: [0, question.with].map(|view| session.terms_of(view)),
             question,
             codes,
             scene: (*session.document).clone(),
-            terms: [0, with].map(|view| session.terms_of(view)),
-            eye: session.facts.eye,
-            forward: session.facts.camera * Vec3::NEG_Z,
+            camera: session.facts.observer(session.document.observer.field_of_view),
             registry: registry.clone(),
         };
-        let (tell, hear) = channel();
-        // It ends by itself; an answer that nobody waits for any more is dropped.
-        std::thread::spawn(move || _ = tell.send(job.run()));
-        comparing.thread = Some(std::sync::Mutex::new(hear));
+        // An answer that nobody waits for any more is dropped.
+        comparing.work.begin((), || {}, || None, move |_| Some(job.run()));
     }
-    let Some(heard) =
-        comparing.thread.as_mut().and_then(|thread| thread.get_mut().ok()).map(|t| t.try_recv())
-    else {
-        return;
-    };
-    let answer = match heard {
-        Err(TryRecvError::Empty) => return,
-        Err(TryRecvError::Disconnected) => None,
-        Ok(answer) => Some(answer),
-    };
-    comparing.thread = None;
+    let Some(answer) = comparing.work.take() else { return };
     comparing.known = comparing.asked.take();
-    let Some(answer) = answer else { return };
+    let (Some(answer), Some(known)) = (answer, &comparing.known) else { return };
     let several = session.document.variants.len() > 1;
-    let size = comparing.known.as_ref().map_or(UVec2::ONE, |known| known.size);
-    session.bypass_change_detection().facts.comparison =
-        Some(numbers(&answer, with, several, comparison.values));
+    let size = known.size;
+    let numbers = numbers(&answer, known.with, several, known.comparison.values);
+    session.bypass_change_detection().facts.comparison = Some(numbers);
     if let Some(colours) = answer.map {
         let rgba: Vec<u8> =
             colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
@@ -197,8 +173,7 @@ struct Job {
     scene: Scene,
     /// The terms that view A and the other show.
     terms: [TermSelection; 2],
-    eye: Vec3,
-    forward: Vec3,
+    camera: Observer,
     registry: Registry,
 }
 
@@ -230,21 +205,19 @@ impl Job {
         // What is covered shows in the cheapest term too.
         let terms =
             if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
-        Some(light(seen, [self.eye, self.forward], self.question.size, terms, &self.registry))
+        Some(light(seen, self.camera, self.question.size, terms, &self.registry))
     }
 }
 
-/// The light of what a view shows, from an eye in the direction in which it looks.
+/// The light of what a view shows, as the camera of the window sees it.
 pub(super) fn light(
-    mut seen: Scene,
-    [eye, forward]: [Vec3; 2],
+    seen: Scene,
+    camera: Observer,
     size: UVec2,
     terms: TermSelection,
     registry: &Registry,
 ) -> Picture {
-    let aspect = size.x as f32 / size.y as f32;
-    let angle = vertical_field_of_view(seen.observer.field_of_view, aspect, true).to_degrees();
-    seen.observer = Observer { position: eye, direction: forward, field_of_view: angle };
+    let seen = Scene { observer: camera.fitting_width(size.to_array()), ..seen };
     let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
     reference::render(&seen, registry, &settings)
 }

@@ -1,6 +1,6 @@
 //! Matches of the window: one at a time, beside it.
 
-use bevy::{ecs::prelude::*, math::Vec3};
+use bevy::ecs::prelude::*;
 
 use super::background::Background;
 use crate::{
@@ -30,8 +30,7 @@ impl Matches {
         let same = scene.clone();
         // Pictures are compared as they are seen: from where the camera stands.
         let mut seen = scene.clone();
-        seen.observer.position = session.facts.eye;
-        seen.observer.direction = session.facts.camera * Vec3::NEG_Z;
+        seen.observer = session.facts.observer(seen.observer.field_of_view);
         self.0.begin(
             view,
             wake,

@@ -12,19 +12,16 @@ use std::{
 use arboard::{Clipboard, ImageData};
 use bevy::{
     app::{App, Plugin, PostUpdate},
-    camera::RenderTarget,
     ecs::prelude::*,
-    math::Vec3,
     window::RequestRedraw,
 };
 use glam::UVec2;
 
 use super::{
-    WindowView,
     background::Background,
     difference::light,
     readback::{Reading, codes},
-    views::OtherView,
+    views::ShownViews,
 };
 use crate::{
     caption,
@@ -32,14 +29,14 @@ use crate::{
     export::write::inputs,
     files,
     optics::TermSelection,
-    panel::state::{Effect, LabEffect, PictureArea, PictureEnd, Session},
+    panel::state::{Effect, LabEffect, PictureEnd, Session},
     registry::Registry,
     render::{
         capture::png::{self, About},
-        view::{Drawing, View, ViewSystems, texture_of},
+        view::ViewSystems,
     },
     scene::{
-        Comparison, Observer, Scene,
+        Observer, Scene,
         comparison::{Compared, Layout},
         variant::LETTERS,
     },
@@ -78,12 +75,8 @@ struct Wanted {
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn take(
-    area: Option<Res<PictureArea>>,
+    views: ShownViews,
     registry: Res<Registry>,
-    views: Query<
-        (&View, &Drawing, &RenderTarget, Option<&OtherView>),
-        Or<(With<WindowView>, With<OtherView>)>,
-    >,
     mut effects: MessageReader<LabEffect>,
     mut session: ResMut<Session>,
     mut pictures: ResMut<Pictures>,
@@ -104,12 +97,8 @@ fn take(
     }
     let busy = pictures.job.is_some() || pictures.work.running().is_some();
     if let Some(Wanted { view, file, since }) = pictures.wanted.front().cloned().filter(|_| !busy) {
-        let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
-        let own = cells.first().map_or(0, |cell| cell.view);
-        let find =
-            |number: usize| views.iter().find(|(.., other)| other.map_or(own, |other| other.0) == number);
-        let numbers = shown(&session, cells.iter().map(|cell| cell.view).collect(), view);
-        let found: Option<Vec<_>> = numbers.iter().map(|number| find(*number)).collect();
+        let numbers = shown(&session, views.cells().iter().map(|cell| cell.view).collect(), view);
+        let found: Option<Vec<_>> = numbers.iter().map(|number| views.find(*number)).collect();
         let Some(found) = found else {
             pictures.wanted.pop_front();
             let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
@@ -117,20 +106,18 @@ fn take(
                 format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
             return session.pictured(PictureEnd::Failed(why));
         };
-        let rest = |drawing: &Drawing| drawing.is_done() && !drawing.draws() || since.elapsed() > PATIENCE;
-        let textures: Option<Vec<_>> = found
-            .iter()
-            .map(|(_, drawing, target, _)| texture_of(target).filter(|_| rest(drawing)).cloned())
-            .collect();
-        if let (Some(textures), Some((first, ..))) = (textures, found.first()) {
+        let rest = found.iter().all(|view| view.drawing.rests()) || since.elapsed() > PATIENCE;
+        let textures: Option<Vec<_>> =
+            found.iter().map(|view| view.texture().filter(|_| rest).cloned()).collect();
+        if let (Some(textures), Some(first)) = (textures, found.first()) {
             pictures.reading = Some(Reading::begin(&textures, &mut commands));
             pictures.job = Some(Job {
                 scene: scene(&session, &registry),
                 registry: registry.clone(),
                 shown: numbers.iter().map(|view| (*view, session.terms_of(*view))).collect(),
-                size: first.size,
-                eye: session.facts.eye,
-                forward: session.facts.camera * Vec3::NEG_Z,
+                size: first.view.size,
+                camera: session.facts.observer(session.document.observer.field_of_view),
+                camera_left: session.facts.camera_left,
                 caption: session.view.picture_caption,
                 // In a layout that shows one view, a variant alone is meant too.
                 alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
@@ -202,8 +189,9 @@ struct Job {
     shown: Vec<(usize, TermSelection)>,
     /// The size of each.
     size: UVec2,
-    eye: Vec3,
-    forward: Vec3,
+    camera: Observer,
+    /// The camera is not where the observer of the scene is.
+    camera_left: bool,
     caption: bool,
     /// The picture is that of one view, whatever others the scene has.
     alone: bool,
@@ -235,7 +223,7 @@ impl Job {
             let codes = codes(bytes, self.size).ok_or_else(unread)?;
             let mut picture = Shown::of_codes(self.size.x, self.size.y, codes).map_err(|e| e.to_string())?;
             if needs_light {
-                let light = light(seen.clone(), [self.eye, self.forward], self.size, *terms, &self.registry);
+                let light = light(seen.clone(), self.camera, self.size, *terms, &self.registry);
                 picture = picture.with_light(light).map_err(|e| e.to_string())?;
             }
             pictures.push(picture);
@@ -264,17 +252,11 @@ impl Job {
 
     /// The scene that the picture shows, with its observer where the camera is: whoever opens the picture sees the same.
     fn pictured(&self) -> Scene {
-        let Observer { position, direction, .. } = self.scene.observer;
-        let moved =
-            position.distance(self.eye) > 1e-4 || direction.normalize_or_zero().distance(self.forward) > 1e-4;
         let alone = self.shown.first().filter(|_| self.alone);
         let alone = alone.and_then(|(view, _)| self.scene.seen(*view, &self.registry));
-        let mut scene = match alone {
-            Some((seen, _)) => Scene { variants: Vec::new(), comparison: Comparison::default(), ..seen },
-            None => self.scene.clone(),
-        };
-        if moved {
-            (scene.observer.position, scene.observer.direction) = (self.eye, self.forward);
+        let mut scene = alone.map_or_else(|| self.scene.clone(), |(seen, _)| seen.alone());
+        if self.camera_left {
+            scene.observer = self.camera;
         }
         scene
     }

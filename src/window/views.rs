@@ -1,8 +1,10 @@
 //! The views of a comparison in the window: one camera for all, textures of one size, and their places.
 
 use bevy::{
+    asset::Handle,
     camera::{Camera, Hdr, RenderTarget},
-    ecs::prelude::*,
+    ecs::{prelude::*, system::SystemParam},
+    image::Image,
     math::URect,
     render::view::Msaa,
     transform::components::Transform,
@@ -24,7 +26,7 @@ use crate::{
         entities::CurrentScene,
         overrides::Overrides,
         show::{ShownPicture, Shows},
-        view::{View, texture_of},
+        view::{Drawing, View, background_of, texture_of},
     },
     scene::{Scene, variant::MAX_VARIANTS},
 };
@@ -35,7 +37,7 @@ pub(super) struct OtherView(pub(super) usize);
 
 /// The map of the difference between two views, and its size.
 #[derive(Resource, Clone, Debug, Default)]
-pub(super) struct DifferenceMap(pub(super) Option<(bevy::asset::Handle<bevy::image::Image>, UVec2)>);
+pub(super) struct DifferenceMap(pub(super) Option<(Handle<Image>, UVec2)>);
 
 /// The debug channels that the views show, view A first, and the light that is chosen for them.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
@@ -93,7 +95,7 @@ pub(super) fn set_views(
         known.push(*number);
         other.set_if_neq(*view);
         transform.set_if_neq(*place);
-        if format!("{:?}", camera.clear_color) != format!("{:?}", lens.clear_color) {
+        if background_of(&camera) != background_of(lens) {
             camera.clear_color = lens.clear_color;
         }
         match (overrides_of(*number), overrides) {
@@ -120,20 +122,57 @@ pub(super) fn set_views(
     }
 }
 
+/// A view that is shown.
+#[derive(Clone, Copy)]
+pub(super) struct ShownView<'a> {
+    pub(super) view: &'a View,
+    pub(super) drawing: &'a Drawing,
+    target: &'a RenderTarget,
+}
+
+impl<'a> ShownView<'a> {
+    pub(super) fn texture(&self) -> Option<&'a Handle<Image>> {
+        texture_of(self.target)
+    }
+}
+
+/// The views that are shown, by their number: 0 is the scene itself, 1 view B.
+#[derive(SystemParam)]
+pub(super) struct ShownViews<'w, 's> {
+    area: Option<Res<'w, PictureArea>>,
+    views: Query<
+        'w,
+        's,
+        (&'static View, &'static Drawing, &'static RenderTarget, Option<&'static OtherView>),
+        Or<(With<WindowView>, With<OtherView>)>,
+    >,
+}
+
+impl ShownViews<'_, '_> {
+    /// Their places; none where there is but one.
+    pub(super) fn cells(&self) -> &[Cell] {
+        self.area.as_deref().map_or(&[], |area| &area.cells)
+    }
+
+    /// The view with a number.
+    pub(super) fn find(&self, number: usize) -> Option<ShownView<'_>> {
+        let own = self.area.as_deref().map_or(0, first);
+        let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
+        let (view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
+        Some(ShownView { view, drawing, target })
+    }
+}
+
 /// Shows the textures of the views, and the map of their difference, in their places.
 pub(super) fn show_views(
-    area: Option<Res<PictureArea>>,
+    views: ShownViews,
     map: Option<Res<DifferenceMap>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    views: Query<(&RenderTarget, Option<&OtherView>), Or<(With<WindowView>, With<OtherView>)>>,
     mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
 ) {
-    let area = area_of(area.as_deref(), &window);
+    let area = area_of(views.area.as_deref(), &window);
     let own = first(&area);
-    let texture = |view: usize| {
-        let mut all = views.iter().filter(|(_, other)| other.map_or(own, |other| other.0) == view);
-        all.find_map(|(target, _)| texture_of(target).cloned())
-    };
+    let texture = |view: usize| views.find(view)?.texture().cloned();
     let place = |rect: Rect| PicturePlace::of_rect(rect, area.zoom, &window);
     let mut pictures = Vec::new();
     if area.cells.is_empty() {

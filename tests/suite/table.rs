@@ -11,7 +11,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::{Register as _, Registry},
     scene::{
-        Comparison, Scene,
+        Scene,
         formats::{Csv, SceneFormat as _, Target},
         load::{self, Defaults},
         save::{self, Expected},
@@ -83,7 +83,7 @@ fn a_table_says_what_json_says() {
 fn the_full_scene_comes_back_from_a_table() {
     // A table has no place for variants.
     let whole = read(&full_scene().to_string());
-    let scene = Scene { variants: Vec::new(), comparison: Comparison::default(), ..whole.clone() };
+    let scene = whole.clone().alone();
     assert_eq!(from_table(&table(&scene, None)), scene);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("room.csv");

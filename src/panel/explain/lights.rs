@@ -199,15 +199,7 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
     };
     rows::equation(ui, Term::Total, equation, false, name);
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
-        let from: Vec<_> = factor
-            .from
-            .iter()
-            .map(|(symbol, value, unit)| {
-                let space = if unit.is_empty() || *unit == "°" { "" } else { " " };
-                format!("{symbol} = {}{space}{unit}", rows::short(*value))
-            })
-            .collect();
-        rows::note(ui, &format!("{} for {}", factor.meaning, from.join(", ")));
+        rows::note(ui, &format!("{} for {}", factor.meaning, factor.givens(rows::short)));
         let line = format!("{} = {}", factor.symbol, rows::formula(factor.value));
         rows::equation(ui, Term::Total, &line, true, name);
     }

@@ -113,9 +113,9 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 actions.push(Action::Copy(explained.explanation.to_text()));
             }
             let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
-                "Let go of the pixel (X or Esc): the pointer is followed again"
+                "Let go of the pixel (E or Esc): the pointer is followed again"
             } else {
-                "Keep this pixel explained wherever the pointer is. At the pointer: X, or Alt and a click"
+                "Keep this pixel explained wherever the pointer is. At the pointer: E, or Alt and a click"
             });
             if pin.clicked() {
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);

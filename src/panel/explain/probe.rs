@@ -4,7 +4,6 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
-use glam::{Quat, Vec3};
 
 use crate::{
     document::Revision,
@@ -17,7 +16,7 @@ use crate::{
     },
     reference::{Settings, ignored_edits},
     registry::Registry,
-    scene::{Observer, Scene, observer::vertical_field_of_view},
+    scene::{Observer, Scene},
 };
 
 /// A click this near to what is pinned lets go of it, points.
@@ -61,8 +60,8 @@ struct Question {
     view: usize,
     pixel: [u32; 2],
     size: [u32; 2],
-    eye: Vec3,
-    camera: Quat,
+    /// The camera.
+    observer: Observer,
     terms: TermSelection,
     /// The change of a shader that came through last.
     reloaded: Option<Reloaded>,
@@ -210,15 +209,13 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
         return;
     };
     let (size, _) = pixels(ctx, rect);
-    let own = session.document.overrides(pin.view).and_then(|variant| variant.terms);
     let question = Question {
         revision: session.document.revision(),
         view: pin.view,
         pixel: pin.pixel(size, field_of_view(session)),
         size,
-        eye: session.facts.eye,
-        camera: session.facts.camera,
-        terms: own.unwrap_or(session.view.terms),
+        observer: session.facts.observer(field_of_view(session)),
+        terms: session.terms_of(pin.view),
         reloaded: session.shaders.last.clone(),
     };
     if probe.asked.as_ref() == Some(&question) {
@@ -237,13 +234,7 @@ impl Probe {
             self.scene = Some((revision, view, scene));
         }
         let (.., scene) = self.scene.as_mut()?;
-        let aspect = size[0] as f32 / size[1] as f32;
-        let fov = session.document.observer.field_of_view;
-        scene.observer = Observer {
-            position: question.eye,
-            direction: question.camera * Vec3::NEG_Z,
-            field_of_view: vertical_field_of_view(fov, aspect, true).to_degrees(),
-        };
+        scene.observer = question.observer.fitting_width(size);
         let settings = Settings { width: size[0], height: size[1], samples: 1, terms: question.terms };
         let explanation = self.explainer.pixel(scene, registry, &settings, pixel).ok()?;
         let ignored = ignored_edits(registry, scene).into_iter().collect();

@@ -39,6 +39,12 @@ impl Facts {
         Self { camera: rotation(observer.direction), eye: observer.position, ..Self::default() }
     }
 
+    /// An observer where the camera is.
+    #[must_use]
+    pub fn observer(&self, field_of_view: f32) -> Observer {
+        Observer { position: self.eye, direction: self.camera * Vec3::NEG_Z, field_of_view }
+    }
+
     /// Frames per second; 0 when not yet known.
     #[must_use]
     pub fn fps(&self) -> f32 {
