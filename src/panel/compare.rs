@@ -251,11 +251,11 @@ fn header(
     let palette = Palette::here(ui);
     let active = session.active() == view;
     ui.painter().rect_filled(rect, 0.0, palette.panel);
-    let line = if active && several { palette.accent } else { palette.line };
+    let edge = if active && several { palette.accent } else { palette.line };
     ui.painter().hline(
         rect.x_range(),
         rect.bottom() - 1.0,
-        Stroke::new(if active { 2.0 } else { 1.0 }, line),
+        Stroke::new(if active { 2.0 } else { 1.0 }, edge),
     );
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let parts = in_parts(session, view, registry);
@@ -294,7 +294,8 @@ fn header(
                     if button.clicked() {
                         actions.push(Action::Compare(CompareCommand::Activate(other)));
                     }
-                    button.on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
+                    button
+                        .on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
                 }
             }
             ui.with_layout(Direction::left_to_right(Align::Center), |ui| {

@@ -14,7 +14,10 @@ use super::{
     error::{LoadError, Path, Place, Problem},
     formats::{self, Source},
 };
-use crate::{files, registry::Registry};
+use crate::{
+    files::{self, FileError},
+    registry::Registry,
+};
 
 /// Larger files are refused before they are read. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.
@@ -115,7 +118,8 @@ fn larger_if_picture(
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    larger_if_picture(path, |most| files::read_input(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read_input(path, most))
+        .map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads the content of a scene file, valid or not.
@@ -123,7 +127,8 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] if it is not a regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    larger_if_picture(path, |most| files::read(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read(path, most))
+        .map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).
