@@ -128,6 +128,8 @@ pub struct View {
     pub show_room: bool,
     /// The labels of objects.
     pub labels: Labels,
+    /// True if of the parameters of a model only those that differ from their defaults have knobs.
+    pub only_changed: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
     /// True if pictures that are saved or copied have a caption.
@@ -184,6 +186,7 @@ impl Default for View {
             handles: HandleMode::Move,
             show_room: true,
             labels: Labels::Off,
+            only_changed: false,
             show_clipping: false,
             picture_caption: true,
             terms: TermSelection::All,
@@ -233,6 +236,8 @@ pub enum ViewChange {
     Room(bool),
     /// See [`View::labels`].
     Labels(Labels),
+    /// See [`View::only_changed`].
+    OnlyChanged(bool),
     /// See [`View::show_clipping`].
     Clipping(bool),
     /// See [`View::picture_caption`].
@@ -324,6 +329,7 @@ impl View {
             }
             ViewChange::Room(on) => self.show_room = on,
             ViewChange::Labels(labels) => self.labels = labels,
+            ViewChange::OnlyChanged(on) => self.only_changed = on,
             ViewChange::Clipping(on) => self.show_clipping = on,
             ViewChange::PictureCaption(on) => self.picture_caption = on,
             ViewChange::Terms(terms) => self.terms = terms,
