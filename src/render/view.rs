@@ -269,7 +269,7 @@ fn rest(
                 Projection::Perspective(lens) => Some([lens.fov, lens.aspect_ratio]),
                 _ => None,
             },
-            background: background_of(camera),
+            background: background_of(&camera),
             tone: *tone,
             overrides: overrides.cloned(),
         };

@@ -14,7 +14,10 @@ use super::{
     error::{LoadError, Path, Place, Problem},
     formats::{self, Source},
 };
-use crate::{files, registry::Registry};
+use crate::{
+    files::{self, FileError},
+    registry::Registry,
+};
 
 /// Larger files are refused before they are read. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.

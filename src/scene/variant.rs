@@ -3,7 +3,7 @@
 //! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
 //! it gives.
 
-use super::{Display, Scene};
+use super::{Comparison, Display, Scene};
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Values,
