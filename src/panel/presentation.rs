@@ -203,15 +203,12 @@ impl Footer {
         parts.insert(0, caption::Part::new(0, format!("{letter}:")));
         let mut hasher = DefaultHasher::new();
         format!("{equation:?} {parts:?} {whole:?}").hash(&mut hasher);
-        kept(ui, "footer of the presentation", hasher.finish(), |ui| Self::laid_out(ui, whole, equation, parts))
+        kept(ui, "footer of the presentation", hasher.finish(), |ui| {
+            Self::laid_out(ui, whole, equation, parts)
+        })
     }
 
-    fn laid_out(
-        ui: &mut Ui,
-        whole: Rect,
-        mut equation: Vec<Definition>,
-        parts: Vec<caption::Part>,
-    ) -> Self {
+    fn laid_out(ui: &mut Ui, whole: Rect, mut equation: Vec<Definition>, parts: Vec<caption::Part>) -> Self {
         let padding = padding(whole);
         let most = whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);

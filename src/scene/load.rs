@@ -118,7 +118,8 @@ fn larger_if_picture(
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    larger_if_picture(path, |most| files::read_input(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read_input(path, most))
+        .map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads the content of a scene file, valid or not.
@@ -126,7 +127,8 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] if it is not a regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    larger_if_picture(path, |most| files::read(path, most)).map_err(|e| LoadError::from_file(path, e, registry))
+    larger_if_picture(path, |most| files::read(path, most))
+        .map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).
