@@ -294,7 +294,8 @@ fn header(
                     if button.clicked() {
                         actions.push(Action::Compare(CompareCommand::Activate(other)));
                     }
-                    button.on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
+                    button
+                        .on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
                 }
             }
             ui.with_layout(Direction::left_to_right(Align::Center), |ui| {

@@ -147,7 +147,8 @@ pub(super) fn linked(
     let response = add(ui);
     touch(ui, response.rect, symbols);
     if lit(ui.ctx()) {
-        ui.painter().set(under, ground(response.rect.expand2(bevy_egui::egui::vec2(2.0, 0.0)), &Palette::here(ui)));
+        ui.painter()
+            .set(under, ground(response.rect.expand2(bevy_egui::egui::vec2(2.0, 0.0)), &Palette::here(ui)));
     }
     response
 }
@@ -227,9 +228,10 @@ mod tests {
         };
         // The first frames of egui ask by themselves.
         (0..6).for_each(|_| drop(asks("")));
-        assert_eq!(["", "a", "a", "a", "b", "b", "", ""].map(asks), [
-            false, true, false, false, true, false, true, false
-        ]);
+        assert_eq!(
+            ["", "a", "a", "a", "b", "b", "", ""].map(asks),
+            [false, true, false, false, true, false, true, false]
+        );
     }
 
     #[test]

@@ -33,21 +33,27 @@ pub(super) fn angles(a: &str, b: &str) -> impl Iterator<Item = &'static str> {
     ANGLES.into_iter().filter(move |(_, pair)| is(*pair)).map(|(symbol, _)| symbol)
 }
 
+/// True if the equation of a model has a letter for something of its own, which then is no vector.
+fn is_own(model: &Model, letter: &str) -> bool {
+    definition(model.declaration.equation, letter).is_some()
+        || model.settings.iter().any(|setting| same_symbol(setting.parameter.symbol, letter))
+}
+
+/// The letters of vectors that are their symbols in the equation of a model.
+pub(super) fn symbols<'l>(model: &Model, letters: &[&'l str]) -> Vec<&'l str> {
+    letters.iter().copied().filter(|letter| !is_own(model, letter)).collect()
+}
+
 /// The vectors that the symbols which light stand for.
 pub(super) fn lit(ctx: &Context, model: &Model) -> Vec<&'static str> {
     let symbols = lit_in(ctx, Domain::Surface);
-    // A letter that the equation of the model uses for something of its own is no vector.
-    let own = |symbol: &str| {
-        definition(model.declaration.equation, symbol).is_some()
-            || model.settings.iter().any(|s| same_symbol(s.parameter.symbol, symbol))
-    };
-    let named = |symbol: &str| symbols.iter().any(|lit| same_symbol(lit, symbol)) && !own(symbol);
+    let named = |symbol: &str| symbols.iter().any(|lit| same_symbol(lit, symbol)) && !is_own(model, symbol);
     let between = |letter: &str| ANGLES.iter().any(|(angle, pair)| pair.contains(&letter) && named(angle));
     LETTERS.into_iter().filter(|letter| named(letter) || between(letter)).collect()
 }
 
 /// True if just these vectors light.
-pub(super) fn is_lit(ctx: &Context, model: &Model, ends: &[&str]) -> bool {
+pub(super) fn are_lit(ctx: &Context, model: &Model, letters: &[&str]) -> bool {
     let lit = lit(ctx, model);
-    lit.len() == ends.len() && ends.iter().all(|end| lit.contains(end))
+    lit.len() == letters.len() && letters.iter().all(|letter| lit.contains(letter))
 }
