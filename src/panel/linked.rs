@@ -1,7 +1,7 @@
 //! The symbol that is pointed at: in an equation, at its knob, at its vector in the picture, at its number or its curve.
 //! In the next frame, all that stands for it lights.
 
-use bevy_egui::egui::{Context, Id, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui};
+use bevy_egui::egui::{Context, Id, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, vec2};
 
 use super::theme::Palette;
 use crate::text::mathematics::same_symbol;
@@ -120,7 +120,7 @@ pub(super) fn is_lit(ctx: &Context, symbol: &str) -> bool {
 
 /// The ground of what lights: a tint, and a line below it, since a tint alone is easily missed.
 pub(super) fn ground(rect: Rect, palette: &Palette) -> Shape {
-    let line = [rect.left_bottom(), rect.right_bottom()].map(|at| at - bevy_egui::egui::vec2(0.0, 1.0));
+    let line = [rect.left_bottom(), rect.right_bottom()].map(|at| at - vec2(0.0, 1.0));
     Shape::Vec(vec![
         Shape::rect_filled(rect, 3.0, palette.chosen),
         Shape::line_segment(line, Stroke::new(1.5, palette.accent)),
@@ -148,7 +148,7 @@ pub(super) fn linked(
     touch(ui, response.rect, symbols);
     if lit(ui.ctx()) {
         ui.painter()
-            .set(under, ground(response.rect.expand2(bevy_egui::egui::vec2(2.0, 0.0)), &Palette::here(ui)));
+            .set(under, ground(response.rect.expand2(vec2(2.0, 0.0)), &Palette::here(ui)));
     }
     response
 }
@@ -227,7 +227,9 @@ mod tests {
             output.viewport_output.values().any(|v| v.repaint_delay.is_zero())
         };
         // The first frames of egui ask by themselves.
-        (0..6).for_each(|_| drop(asks("")));
+        (0..6).for_each(|_| {
+            asks("");
+        });
         assert_eq!(
             ["", "a", "a", "a", "b", "b", "", ""].map(asks),
             [false, true, false, false, true, false, true, false]

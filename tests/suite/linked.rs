@@ -478,7 +478,7 @@ fn pictures_of_what_lights() -> Result<(), Box<dyn std::error::Error>> {
                     text.map_or(strip, |(_, place)| place)
                 }
                 "factor" => first(&mut bench, "D", panel),
-                _ => first(&mut bench, "diffuse coefficient", panel),
+                _ => first(&mut bench, "base colour", panel),
             };
             point(&mut bench, at.center());
             bench.picture(&folder.join(format!("linked-{what}-{name}.png")), ground.surround)?;
@@ -546,21 +546,25 @@ fn explain_has_the_columns_that_have_room() {
         let middle = bench.area.rect.center() + vec2(13.0, -7.0);
         bench.frame(vec![Event::PointerMoved(middle)]);
         bench.frame(Vec::new());
-        let whole = size / bench.ctx.zoom_factor();
-        let strip = Rect::from_min_max(Pos2::new(0.0, bench.area.rect.bottom()), (10.0 * whole).to_pos2());
-        let lefts = ["Interpolated between the vertices", "N", "From light to the code on the display"]
-            .map(|text| first(&mut bench, text, strip).left());
+        let zoom = bench.ctx.zoom_factor();
+        let top = zoom * bench.area.rect.bottom();
+        // Also what is scrolled out of sight.
+        let place = |label: &str| {
+            let is = |seen: &&Seen| seen.label.starts_with(label) && seen.rect.top() > top;
+            bench.tree.iter().find(is).unwrap_or_else(|| panic!("no {label}")).rect / zoom
+        };
+        let lefts =
+            ["computed per vertex", "Light 1", "From light to the code"].map(|label| place(label).left());
         let [surface, lights, display] = lefts;
         let found = match () {
-            () if display > lights + 40.0 && lights > surface + 40.0 => 3,
-            () if lights > surface + 40.0 && display < surface + 1.0 => 2,
-            () if lights < surface + 1.0 && display < surface + 1.0 => 1,
-            () => 0,
+            () if display > lights && lights > surface => 3,
+            () if lights > surface => 2,
+            () => 1,
         };
         assert_eq!(found, columns, "{size:?}, {scale} %: {lefts:?}");
         // The choice of the point keeps to its column, the scroll bar free.
-        let edge = if columns == 3 { display - 24.0 } else { whole.x - 12.0 };
-        let last = first(&mut bench, "per pixel", strip);
+        let edge = if columns == 3 { display - 24.0 } else { size.x / zoom - 12.0 };
+        let last = place("Point: per pixel");
         assert!(last.right() <= edge - 10.0, "{size:?}, {scale} %: {last:?} beyond {edge}");
     }
 }
