@@ -155,9 +155,9 @@ mod tests {
 
     #[test]
     fn a_curve_is_changed_by_its_own_parameters() {
-        assert_eq!(shapes("phong", Kind::Polar), ["k_d", "k_s", "alpha", "base_colour", "specular_colour"]);
+        assert_eq!(shapes("phong", Kind::Polar), ["base_colour", "specular_colour", "k_d", "k_s", "alpha"]);
         assert_eq!(shapes("metallic_roughness", Kind::Distribution), ["roughness"]);
-        assert_eq!(shapes("metallic_roughness", Kind::Fresnel), ["base_colour", "metallic", "specular"]);
+        assert_eq!(shapes("metallic_roughness", Kind::Fresnel), ["metallic", "reflectance"]);
         assert_eq!(shapes("metallic_roughness", Kind::Masking), ["roughness"]);
         assert_eq!(shapes("lambert", Kind::Albedo), ["base_colour"]);
         assert!(shapes("lambert", Kind::Slice).contains(&"base_colour"));
