@@ -61,6 +61,7 @@ pub mod keys;
 pub mod knob;
 mod labels;
 pub mod laws;
+mod linked;
 pub mod marks;
 mod matching;
 pub mod maths;
@@ -151,6 +152,7 @@ pub fn show(
     chooser::closed(&ctx, &session);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
+    linked::begin(&ctx);
     let mut context = PanelContext::new(&session, registry, world);
     let actions = &mut context.actions;
     if !dialogs.is_open() {
@@ -235,7 +237,7 @@ pub fn show(
     };
     let (asked, places) = compare::show(ui, &arrangement, &session, registry);
     if let Some(footer) = footer {
-        footer.paint(ui, whole, &session);
+        footer.paint(ui, whole, &session, registry);
     }
     over.places.extend(places);
     actions.append(&mut over.actions);
@@ -265,6 +267,7 @@ pub fn show(
     }
     *area = now;
     focus::remember_regions(&ctx);
+    linked::end(&ctx);
     focus::show(&ctx, &palette, frame);
 
     let mut effects = Vec::new();

@@ -61,7 +61,7 @@ pub fn overlays(
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
     explain::vectors(ui, rect, session.active(), session);
     ui.scope(|ui| {
-        let free = stage.map_or(rect, |stage| stage.paint(ui, session));
+        let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };

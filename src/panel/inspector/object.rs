@@ -11,6 +11,7 @@ use crate::{
     document::{Edit, ObjectField, Selection, VariantField},
     panel::{
         knob::{self, Caption},
+        linked::{self, Domain},
         model_override,
         state::{Action, Session},
         theme,
@@ -36,7 +37,9 @@ pub(super) fn object(
     let mut fields = Vec::new();
     section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
     section(ui, "Material", true, |ui| shown.material(ui, &mut fields, actions));
-    section(ui, "Shape and position", true, |ui| shown.geometry(ui, i, &mut fields, actions));
+    section(ui, "Shape and position", true, |ui| {
+        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, i, &mut fields, actions));
+    });
     actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
 }
 
