@@ -47,6 +47,7 @@ mod law_check;
 mod laws;
 mod layout;
 mod links;
+mod lobe;
 mod marks;
 mod matching;
 mod memory;

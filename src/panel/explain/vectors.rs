@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use super::{probe, rows};
+use super::{lobe, probe, rows};
 use crate::{
     explain::{Explanation, Lit, Place, Seen, Spot},
     panel::{
@@ -22,7 +22,7 @@ const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
 /// Length of a vector that lies in the plane of the picture, points.
-const LENGTH: f32 = 96.0;
+pub(super) const LENGTH: f32 = 96.0;
 /// Width of a line, points.
 const LINE: f32 = 2.25;
 /// Height of letters, points.
@@ -60,19 +60,19 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
-pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
+/// Returns the place of the legend of their lobe.
+pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
-    let Some(explained) = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)
-    else {
-        return;
-    };
+    let explained = probe::explained(ui.ctx())
+        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)?;
     let mut drawing = Drawing { ink: Ink::new(Lens::of(session, rect)), words: Vec::new(), rect };
+    let legend = lobe::paint(ui, rect, &explained, session);
     if let Some(seen) = &explained.explanation.seen {
         drawing.seen(ui, seen);
     }
     drawing.cross(&explained.explanation, session.view.pinned.is_some());
-    drawing.paint(ui);
+    drawing.paint(ui, legend);
+    legend
 }
 
 struct Drawing {
@@ -227,11 +227,11 @@ impl Drawing {
         }
     }
 
-    fn paint(self, ui: &Ui) {
+    fn paint(self, ui: &Ui, legend: Option<Rect>) {
         let painter = ui.painter_at(self.rect);
         self.ink.paint(&painter);
         let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
-        let mut taken: Vec<Rect> = Vec::new();
+        let mut taken: Vec<Rect> = legend.into_iter().collect();
         for (at, word, colour) in self.words {
             let text = painter.layout_no_wrap(word, font.clone(), colour);
             let place = |at: Pos2| Align2::CENTER_CENTER.anchor_size(at, text.size() + vec2(8.0, 2.0));
