@@ -3,7 +3,9 @@
 use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare, export, glyphs,
+    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare,
+    explain::lobe_entries,
+    export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
     labels, maths, menu, model_override, pictures,
@@ -314,6 +316,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     actions,
                 );
                 menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
+                menu::submenu(ui, "Lobe at the explained point", |ui| lobe_entries(ui, session, actions));
                 menu::submenu(ui, "Channel", |ui| {
                     channels::entries(ui, session, actions);
                     ui.separator();

@@ -48,6 +48,7 @@ mod laws;
 mod layout;
 mod linked;
 mod links;
+mod lobe;
 mod marks;
 mod matching;
 mod memory;

@@ -26,12 +26,16 @@ use crate::{
 
 mod display;
 mod lights;
+mod lobe;
 mod pairs;
 mod point;
 mod probe;
 mod rows;
+mod surface;
 mod vectors;
 
+pub(super) use lobe::entries as lobe_entries;
+pub use lobe::{LightLobe, Lobes, lobe_calculations, lobes_shown};
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
 pub(super) use vectors::vectors;
 
@@ -122,6 +126,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);
                 actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
+            lobe::button(ui, session, actions);
         });
     });
 }

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use super::{pairs, probe, rows};
+use super::{lobe, pairs, probe, rows};
 use crate::{
     explain::{Explanation, Lit, Model, Place, Seen, Spot},
     panel::{
@@ -23,7 +23,7 @@ const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
 /// Length of a vector that lies in the plane of the picture, points.
-const LENGTH: f32 = 96.0;
+pub(super) const LENGTH: f32 = 96.0;
 /// Width of a line, points, and of one that lights.
 const LINE: f32 = 2.25;
 const LIT: f32 = 4.5;
@@ -67,13 +67,12 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
-pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
+/// Returns the place of the legend of their lobe.
+pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
-    let Some(explained) = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)
-    else {
-        return;
-    };
+    let explained = probe::explained(ui.ctx())
+        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)?;
+    let legend = lobe::paint(ui, rect, &explained, session);
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));
@@ -82,7 +81,8 @@ pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
         drawing.seen(ui, seen);
     }
     drawing.cross(&explained.explanation, session.view.pinned.is_some());
-    drawing.paint(ui, explained.explanation.seen.as_ref().map(|seen| &seen.model));
+    drawing.paint(ui, legend, explained.explanation.seen.as_ref().map(|seen| &seen.model));
+    legend
 }
 
 struct Drawing {
@@ -270,11 +270,11 @@ impl Drawing {
         }
     }
 
-    fn paint(self, ui: &Ui, model: Option<&Model>) {
+    fn paint(self, ui: &Ui, legend: Option<Rect>, model: Option<&Model>) {
         let painter = ui.painter_at(self.rect);
         self.ink.paint(&painter);
         let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
-        let mut taken: Vec<Rect> = Vec::new();
+        let mut taken: Vec<Rect> = legend.into_iter().collect();
         let mut near = self.near;
         for (at, word, colour, symbols) in self.words {
             let text = painter.layout_no_wrap(word, font.clone(), colour);

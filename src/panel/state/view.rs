@@ -1,6 +1,6 @@
 //! The choice of what is shown, and how.
 
-use super::{Effect, Pin, Place, Session, probe::EXPLAIN_TAB};
+use super::{Effect, LobeChoice, Pin, Place, Session, probe::EXPLAIN_TAB};
 use crate::{channel::DebugChannel, optics::TermSelection, scene::variant::MAX_VARIANTS};
 
 /// Id of the panel that shows the messages.
@@ -152,6 +152,8 @@ pub struct View {
     pub right_open: bool,
     /// The pixel that stays explained wherever the pointer is.
     pub pinned: Option<Pin>,
+    /// The lobe of the model at the point that is explained.
+    pub lobe: LobeChoice,
     /// Width of the tree, points.
     pub left_width: f32,
     /// Width of the inspector, points.
@@ -198,6 +200,7 @@ impl Default for View {
             left_open: true,
             right_open: true,
             pinned: None,
+            lobe: LobeChoice::default(),
             left_width: 208.0,
             right_width: 344.0,
             bottom_height: 144.0,
@@ -256,6 +259,8 @@ pub enum ViewChange {
     Fold(String, bool),
     /// See [`View::pinned`]; what is pinned is shown.
     Pin(Option<Pin>),
+    /// See [`View::lobe`].
+    Lobe(LobeChoice),
     /// See [`View::left_open`].
     Left(bool),
     /// See [`View::right_open`].
@@ -350,6 +355,7 @@ impl View {
                     self.unfold(EXPLAIN_TAB);
                 }
             }
+            ViewChange::Lobe(lobe) => self.lobe = lobe,
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
