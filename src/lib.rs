@@ -108,6 +108,7 @@ pub mod export;
 
 pub mod curves;
 
+pub mod lesson;
 pub mod panel;
 pub mod window;
 

@@ -7,7 +7,9 @@ use bevy_egui::egui::{
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::panel::{
-    chooser, maths, menu,
+    chooser,
+    lesson::point,
+    maths, menu,
     theme::{self, Palette},
 };
 
@@ -97,7 +99,7 @@ pub fn choice_with_help(
         }
     };
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         let id = ui.make_persistent_id(salt);
         let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
             ui.add_space(22.0);
@@ -138,5 +140,6 @@ pub fn choice_with_help(
         explain(label, |ui| tooltip(ui, caption, "", ""));
         ui.add_space(4.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out
 }

@@ -9,7 +9,7 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    panel::{maths, theme::Palette},
+    panel::{lesson::point, maths, theme::Palette},
     scene::limits::Limits,
 };
 
@@ -23,7 +23,7 @@ pub fn colour_knob(
 ) -> Option<[u8; 3]> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
@@ -77,6 +77,7 @@ pub fn colour_knob(
         }
         ui.add_space(6.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out.filter(|c| *c != value)
 }
 

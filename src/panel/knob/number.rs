@@ -8,7 +8,7 @@ use super::{
     slider::slider,
 };
 use crate::{
-    panel::{maths, menu, theme::Palette},
+    panel::{lesson::point, maths, menu, theme::Palette},
     scene::limits::{Limits, number},
 };
 
@@ -71,7 +71,7 @@ pub fn number_knob_beside(
 ) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
         let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
@@ -102,5 +102,6 @@ pub fn number_knob_beside(
         }
         ui.add_space(3.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out
 }

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     panel::{
+        lesson::point,
         maths,
         theme::{self, Palette},
     },
@@ -103,7 +104,7 @@ pub fn vector_knob(
     const LETTERS: [&str; 3] = ["x", "y", "z"];
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
         let colour = Palette::here(ui).text;
@@ -139,6 +140,7 @@ pub fn vector_knob(
         });
         ui.add_space(6.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out
 }
 
@@ -153,7 +155,7 @@ pub fn triple_knob(
 ) -> Option<[f32; 3]> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
@@ -184,5 +186,6 @@ pub fn triple_knob(
         }
         ui.add_space(6.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out.filter(|v| *v != value)
 }
