@@ -28,8 +28,9 @@ const HEADING: f32 = 24.0;
 const LESSON: f32 = 184.0;
 const MODEL: f32 = 148.0;
 const GAP: f32 = 24.0;
-/// In a narrower strip, the door to a model is a button, points.
+/// In a narrower strip, the door to a model is a button below that to lessons, which is as wide as this, points.
 const WIDE: f32 = 600.0;
+const NARROW: f32 = 150.0;
 /// The tooltip of the door to a model.
 const MODEL_TIP: &str =
     "A model of your own is one file in WGSL: equation and knobs. The picture follows while you write it.";
@@ -61,9 +62,9 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
             vec2(ui.available_width(), HEADING + 4.0 + CARD.y + below),
         );
         let wide = whole.width() >= WIDE;
-        let lessons = if session.progress.next().is_none() { 0.0 } else { LESSON };
+        let lessons = if wide { LESSON } else { NARROW };
         let model = if wide { MODEL } else { 0.0 };
-        let first = whole.left() + if lessons > 0.0 { lessons + GAP } else { 0.0 };
+        let first = whole.left() + lessons + GAP;
         let last = whole.right() - if wide { model + GAP } else { 0.0 };
         let column = |ui: &mut Ui, from: f32, to: f32, show: &mut dyn FnMut(&mut Ui)| {
             let place = Rect::from_x_y_ranges(from..=to, whole.y_range());
@@ -73,17 +74,16 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
             }
             show(&mut ui.new_child(UiBuilder::new().id_salt(from as i32).max_rect(place)));
         };
-        if lessons > 0.0 {
-            column(ui, whole.left(), whole.left() + lessons, &mut |ui| lesson_door(ui, session, &mut actions));
-        }
+        column(ui, whole.left(), whole.left() + lessons, &mut |ui| {
+            lesson_door(ui, session, &mut actions);
+            if !wide && small_button(ui, "New model…").on_hover_text(MODEL_TIP).clicked() {
+                actions.push(Action::Model(ModelCommand::New));
+            }
+        });
         column(ui, first, last, &mut |ui| {
             heading(ui, "Examples", |ui| {
                 if !wide {
-                    close(ui, &mut actions);
-                    if ui.button("New model…").on_hover_text(MODEL_TIP).clicked() {
-                        actions.push(Action::Model(ModelCommand::New));
-                    }
-                    return;
+                    return close(ui, &mut actions);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let hint = theme::small(ui, "open as new scenes; also in the File menu");
@@ -192,9 +192,13 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             ui.label(maths::prose(ui, &lesson.summary, TextStyle::Body));
         });
     }
-    let all = Button::new(egui::RichText::new("All lessons ▾").small()).small();
-    let all = ui.add(all);
+    let all = small_button(ui, "All lessons ▾");
     Popup::menu(&all).show(|ui| list::entries(ui, session, actions));
+}
+
+fn small_button(ui: &mut Ui, text: &str) -> Response {
+    ui.spacing_mut().interact_size.y = 0.0;
+    ui.add(Button::new(egui::RichText::new(text).small()).small())
 }
 
 /// The way to a model of one's own.

@@ -46,12 +46,14 @@ impl Widths {
             least: least.min(most),
             most,
         };
+        // Beside a lesson there is so little room that each knob counts.
+        let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
         let sides = [
             match session.lesson {
                 Some(_) => side(view.left_open, view.lesson_width, usual.lesson_width, 264.0, 0.45 * whole),
                 None => side(view.left_open, view.left_width, usual.left_width, 120.0, 0.26 * whole),
             },
-            side(view.right_open, view.right_width, usual.right_width, 280.0, 0.45 * whole),
+            side(view.right_open, view.right_width, usual.right_width, least, 0.45 * whole),
         ];
         // One that is dragged takes nothing from the other.
         let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();

@@ -63,12 +63,13 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let Some(explained) = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)
+        .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)
     else {
         return;
     };
     let mut drawing = Drawing { ink: Ink::new(Lens::of(session, rect)), words: Vec::new(), rect };
-    if let Some(seen) = &explained.explanation.seen {
+    // With the panel closed, a lesson wants to see which pixel it is about, and no more.
+    if let Some(seen) = explained.explanation.seen.as_ref().filter(|_| session.explains()) {
         drawing.seen(ui, seen);
     }
     drawing.cross(&explained.explanation, session.view.pinned.is_some());

@@ -13,7 +13,7 @@ use super::{
     theme::{self, Palette},
 };
 
-pub(super) mod check;
+pub mod check;
 mod footer;
 pub(super) mod list;
 pub(super) mod point;

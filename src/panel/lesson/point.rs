@@ -72,7 +72,12 @@ fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
 
 /// A name without what tells spellings apart.
 fn plain(name: &str) -> String {
-    name.trim_start_matches("shape ").replace([' ', '-'], "_").to_lowercase()
+    let name = name.trim_start_matches("shape ").replace([' ', '-'], "_").to_lowercase();
+    match name.as_str() {
+        "luminous_flux" => "flux".to_owned(),
+        "colour_temperature" => "temperature".to_owned(),
+        _ => name,
+    }
 }
 
 /// The knob of a parameter is shown here.

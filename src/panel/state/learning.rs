@@ -15,6 +15,11 @@ use crate::{
     scene::Scene,
 };
 
+/// True if a goal is about the pixel that is pinned.
+fn is_about_pixels(goal: &Goal) -> bool {
+    goal.until.text().contains("probe.")
+}
+
 /// The places that steps pin are fractions of a picture with these sides: a window of another shape shows more or less
 /// of the scene above and below.
 const PICTURE: [u32; 2] = [1600, 900];
@@ -152,6 +157,10 @@ impl Session {
             kind.into_iter().for_each(|kind| self.plots.kind = kind);
         }
         if let Some(place) = change.pin {
+            let Some(place) = place else {
+                self.view.pinned = None;
+                return;
+            };
             let pixel = [0, 1].map(|i| (place[i].clamp(0.0, 1.0) * PICTURE[i] as f32) as u32);
             let fov = self.document.observer.field_of_view;
             self.view.pinned = Some(Pin::of_pixel(self.active(), pixel, PICTURE, fov));
@@ -292,26 +301,24 @@ impl Session {
         effects
     }
 
-    /// The goal of the step that is shown, unless it is reached.
-    fn goal(&self) -> Option<(&Goal, bool)> {
-        let open = self.lesson.as_ref().filter(|open| !open.is_done())?;
-        match open.now()?.task.as_ref()? {
-            Task::Do(goal) => Some((goal, false)),
-            Task::Find(goal) => Some((goal, true)),
-            Task::Predict { .. } => None,
-        }
+    /// The task of the step that is shown, unless it is done.
+    #[must_use]
+    pub fn open_task(&self) -> Option<&Task> {
+        self.lesson.as_ref().filter(|open| !open.is_done())?.now()?.task.as_ref()
     }
 
-    /// True while a task is about the pixel that is pinned, so that it is explained also out of sight.
+    /// True in a step whose task is about the pixel that is pinned: it is explained also out of sight.
     #[must_use]
     pub fn needs_probe(&self) -> bool {
-        self.view.pinned.is_some() && self.goal().is_some_and(|(goal, _)| goal.until.uses_probe())
+        let step = self.lesson.as_ref().and_then(OpenLesson::now);
+        let goal = step.and_then(|step| step.task.as_ref()?.goal());
+        self.view.pinned.is_some() && goal.is_some_and(|goal| is_about_pixels(goal))
     }
 
     /// True while a pixel is to be found: a click into the picture pins it.
     #[must_use]
     pub fn seeks_pixel(&self) -> bool {
-        self.goal().is_some_and(|(goal, finds)| finds && goal.until.uses_probe())
+        matches!(self.open_task(), Some(Task::Find(goal)) if is_about_pixels(goal))
     }
 
     /// The end of the last step.
@@ -415,9 +422,6 @@ impl Session {
             }
         };
         open.problems.clear();
-        if *open.lesson == lesson {
-            return Vec::new();
-        }
         let step = open.step.min(lesson.steps.len() - 1);
         let before = Self::scene_of(&open.lesson, open.step, registry);
         let windows = |lesson: &Lesson, step: usize| -> Vec<WindowChange> {
@@ -430,7 +434,11 @@ impl Session {
         open.entered.retain(|at, _| same && *at == step);
         open.answers.clear();
         if same {
-            return self.note_progress();
+            // What the author looks at stays where it is.
+            let entries = open.entries;
+            let effects = self.note_progress();
+            self.lesson.iter_mut().for_each(|open| open.entries = entries);
+            return effects;
         }
         self.return_to(step, registry)
     }
