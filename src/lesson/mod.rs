@@ -1,52 +1,252 @@
-//! STUB
-#![allow(missing_docs)]
+//! Lessons: text with equations, scene states, and steps with a task that a condition checks. Markdown with a few fenced
+//! blocks of our own; no window: the panel shows what this module reads, and asks it whether a task is done.
+//!
+//! ```
+//! use lights_camera_models::{lesson::Lesson, registry::Registry};
+//! let text = "---\ntitle: Light\nsummary: A sphere.\n---\n\n## Look\n\nA *matte* sphere.\n";
+//! let lesson = Lesson::from_text(text, "light", None, &Registry::builtin()).unwrap();
+//! assert_eq!(lesson.steps[0].title, "Look");
+//! ```
+
 use std::{path::Path, sync::Arc};
-use crate::{scene::Scene, registry::Registry, document::Selection, channel::DebugChannel, optics::TermSelection, curves::Kind, explain::Explanation};
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lesson { pub id: String, pub title: String, pub summary: String, pub minutes: Option<u32>, pub start: Arc<Scene>, pub steps: Vec<Step> }
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step { pub title: String, pub blocks: Vec<Block>, pub scene: Option<SceneChange>, pub window: WindowChange, pub points: Vec<Control>, pub task: Option<Task> }
-#[derive(Clone, Debug, PartialEq)]
-pub enum Block { Paragraph(Vec<Run>), Item { number: Option<u64>, depth: usize, runs: Vec<Run> }, Equation(String), Task }
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run { pub text: String, pub style: RunStyle }
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RunStyle { Plain, Emphasis, Strong, Code }
-#[derive(Clone, Debug, PartialEq)]
-pub enum Task { Predict { question: Vec<Run>, answers: Vec<AnswerChoice> }, Do(Goal), Find(Goal) }
-#[derive(Clone, Debug, PartialEq)]
-pub struct AnswerChoice { pub text: Vec<Run>, pub right: bool, pub feedback: Vec<Run> }
-#[derive(Clone, Debug, PartialEq)]
-pub struct Goal { pub text: Vec<Run>, pub until: Condition, pub hint: Option<Vec<Run>> }
-#[derive(Clone, Debug, PartialEq)]
-pub struct PartName(pub String);
-impl PartName { pub fn find(&self, _d: &Scene) -> Option<Selection> { None } }
-#[derive(Clone, Debug, PartialEq)]
-pub enum Control { Knob(String), Menu(String), Button(String), Tab(String), Part(PartName) }
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct WindowChange { pub channel: Option<Option<DebugChannel>>, pub terms: Option<TermSelection>, pub explain: Option<bool>, pub plots: Option<Option<Kind>>, pub active: Option<usize>, pub select: Option<PartName>, pub pin: Option<Option<[f32; 2]>> }
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneChange;
-impl SceneChange { pub fn apply(&self, s: &Scene, _r: &Registry) -> Result<Scene, String> { Ok(s.clone()) } }
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problem(pub String);
-impl std::fmt::Display for Problem { fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result { f.write_str(&self.0) } }
-#[derive(Clone, Debug, PartialEq)]
-pub struct Condition(pub String);
-pub struct WindowFacts<'a> { pub a: &'a str }
-pub struct Situation<'a> { pub scene: &'a Scene, pub registry: &'a Registry, pub selection: Selection, pub window: WindowFacts<'a>, pub probe: Option<&'a Explanation>, pub pinned: bool }
-impl Condition { pub fn holds(&self, s: &Situation<'_>) -> bool { s.pinned && s.window.a == self.0 } pub fn missing(&self, _s: &Situation<'_>) -> Option<String> { None } pub fn uses_probe(&self) -> bool { self.0.contains("probe.") } }
-impl Task { pub fn goal(&self) -> Option<&Goal> { match self { Self::Predict { .. } => None, Self::Do(g) | Self::Find(g) => Some(g) } } }
-impl Lesson { pub fn read(_p: &Path, _r: &Registry) -> Result<Lesson, Vec<Problem>> { Err(vec![]) }
- pub fn state(&self, _s: usize, _r: &Registry) -> Result<Scene, String> { Ok((*self.start).clone()) } }
-pub mod shipped { use super::*; use std::sync::LazyLock; pub static LESSONS: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
- let r = |t: &str, style| Run { text: t.into(), style };
- let p = |t: &str| Block::Paragraph(vec![r(t, RunStyle::Plain)]);
- let step = |title: &str, blocks, points, task| Step { title: title.into(), blocks, scene: None, window: WindowChange::default(), points, task };
- let steps = || vec![
-  step("Light that hits a surface", vec![p("A surface that faces a light is bright; one that turns away is dark. The cosine of the angle between the normal `x` and the light says how bright: with k_d for the share that is scattered, the diffuse term is"), Block::Equation("I_d = k_d max(0, N·L)\nI = k_a + k_d max(0, N·L) + k_s max(0, N·H)^α".into()), Block::Paragraph(vec![r("Press ", RunStyle::Plain), r("F7", RunStyle::Strong), r(" to see the curve, and turn α up. The ", RunStyle::Plain), r("half vector", RunStyle::Emphasis), r(" is ", RunStyle::Plain), r("normalize(L + V)", RunStyle::Code), r(", halfway between k_s and N·L.", RunStyle::Plain)]), Block::Item { number: None, depth: 0, runs: vec![r("First, a point that does not face the light at all: it gets nothing.", RunStyle::Plain)] }, Block::Item { number: Some(2), depth: 0, runs: vec![r("Second.", RunStyle::Plain)] }, Block::Task], vec![Control::Knob("shininess".into()), Control::Menu("Help".into()), Control::Button("shading".into())], Some(Task::Predict { question: vec![r("The sphere turns. Which part of it stays the brightest?", RunStyle::Plain)], answers: vec![AnswerChoice { text: vec![r("The part that turns with the surface.", RunStyle::Plain)], right: false, feedback: vec![r("No: the light does not move with the surface.", RunStyle::Plain)] }, AnswerChoice { text: vec![r("The part that faces the light, whatever is there: N·L is largest where N = L.", RunStyle::Plain)], right: true, feedback: vec![r("Right. Only the direction of the normal counts.", RunStyle::Plain)] }] })),
-  step("Find the brightest vertex", vec![p("Gouraud shading computes light at the corners of triangles."), Block::Task], vec![Control::Knob("tessellation".into())], Some(Task::Find(Goal { text: vec![r("Click the vertex that is brightest.", RunStyle::Plain)], until: Condition("probe.x".into()), hint: Some(vec![r("It is near the light.", RunStyle::Plain)]) }))),
-  step("The end", vec![p("That is all.")], vec![], None)];
- let lesson = |id: &str, title: &str| Lesson { id: id.into(), title: title.into(), summary: "How the normal, the light and the observer make a colour, with k_d and k_s.".into(), minutes: Some(10), start: Arc::new(Scene::default()), steps: steps() };
- vec![lesson("model", "What a reflection model is"), lesson("terms", "The three terms"), lesson("where", "Where shading is computed"), lesson("half", "Half vectors and highlights")]
-}); }
+
+use crate::{
+    channel::DebugChannel,
+    curves::Kind,
+    document::Selection,
+    optics::TermSelection,
+    registry::Registry,
+    scene::Scene,
+};
+
+mod blocks;
+mod check;
+mod condition;
+mod controls;
+mod front;
+mod markdown;
+mod problem;
+mod read;
+pub mod shipped;
+mod situation;
+mod state;
+mod text;
+mod window;
+mod words;
+
+pub use condition::{Condition, QUANTITIES, Quantity};
+pub use controls::{BUTTONS, Control, MENUS, PartName, TABS, Which};
+pub use problem::Problem;
+pub use read::MAX_FILE_BYTES;
+pub use situation::{Situation, WindowFacts};
+pub use state::SceneChange;
+pub use window::SETTINGS;
+
+/// A lesson.
+#[derive(Clone, Debug)]
+pub struct Lesson {
+    /// The name of its file or folder, without `.md`: progress is kept by it.
+    pub id: String,
+    /// Its title.
+    pub title: String,
+    /// One sentence: its content.
+    pub summary: String,
+    /// The time that it takes, minutes.
+    pub minutes: Option<u32>,
+    /// The scene before the first step.
+    pub start: Arc<Scene>,
+    /// The steps, one at least.
+    pub steps: Vec<Step>,
+}
+
+/// A step of a lesson.
+#[derive(Clone, Debug, Default)]
+pub struct Step {
+    /// Its heading.
+    pub title: String,
+    /// What it says, in order.
+    pub blocks: Vec<Block>,
+    /// The change of the scene on entering it.
+    pub scene: Option<SceneChange>,
+    /// The change of the window on entering it.
+    pub window: WindowChange,
+    /// The controls that are highlighted while it is shown.
+    pub points: Vec<Control>,
+    /// What the learner does; [`Block::Task`] is its place among the blocks.
+    pub task: Option<Task>,
+}
+
+/// A piece of a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Block {
+    /// A paragraph.
+    Paragraph(Vec<Run>),
+    /// An item of a list.
+    Item {
+        /// Its number, in numbered lists.
+        number: Option<u64>,
+        /// 0 for a list, 1 for a list within it.
+        depth: usize,
+        /// Its text.
+        runs: Vec<Run>,
+    },
+    /// An equation, a line of it per line, in the notation of the models' equations.
+    Equation(String),
+    /// The task of the step.
+    Task,
+}
+
+/// Text in one style.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// The text; a line break only where one is meant.
+    pub text: String,
+    /// Its style.
+    pub style: RunStyle,
+}
+
+/// The style of a text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RunStyle {
+    /// Plain.
+    #[default]
+    Plain,
+    /// Emphasised.
+    Emphasis,
+    /// A key or the name of a menu.
+    Strong,
+    /// As it is typed.
+    Code,
+}
+
+/// What the learner does in a step.
+#[derive(Clone, Debug)]
+pub enum Task {
+    /// Answers a question before the answer can be seen.
+    Predict {
+        /// The question.
+        question: Vec<Run>,
+        /// The answers, two at least, of which one at least is right and one wrong.
+        answers: Vec<AnswerChoice>,
+    },
+    /// Changes something.
+    Do(Goal),
+    /// Finds something.
+    Find(Goal),
+}
+
+/// A possible answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnswerChoice {
+    /// The answer.
+    pub text: Vec<Run>,
+    /// True if it is right.
+    pub right: bool,
+    /// What is said to those who choose it.
+    pub feedback: Vec<Run>,
+}
+
+/// Something to reach.
+#[derive(Clone, Debug)]
+pub struct Goal {
+    /// The task in words.
+    pub text: Vec<Run>,
+    /// The task is done once this holds.
+    pub until: Condition,
+    /// Help for those who ask for it.
+    pub hint: Option<Vec<Run>>,
+}
+
+/// The change of the window on entering a step. What is `None` stays as it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WindowChange {
+    /// The debug channel of the active view; `Some(None)` shows the picture.
+    pub channel: Option<Option<DebugChannel>>,
+    /// The terms of the equation that are shown.
+    pub terms: Option<TermSelection>,
+    /// True if the panel *Explain* is shown, false if it is not.
+    pub explain: Option<bool>,
+    /// The plot that is shown; `Some(None)` shows none.
+    pub plots: Option<Option<Kind>>,
+    /// The active view: 0 is the scene, 1 view B.
+    pub active: Option<usize>,
+    /// The selected part.
+    pub select: Option<PartName>,
+    /// The pinned pixel, as fractions of the picture from the left and from the top; `Some(None)` lets go of it.
+    pub pin: Option<Option<[f32; 2]>>,
+}
+
+impl Lesson {
+    /// Reads a lesson: a Markdown file, or a folder with `lesson.md` and the scenes that it names.
+    ///
+    /// # Errors
+    /// Every problem, in the order of the file.
+    pub fn read(path: &Path, registry: &Registry) -> Result<Self, Vec<Problem>> {
+        read::file(path, registry)
+    }
+
+    /// Reads a lesson from text. `name` becomes its [`id`](Self::id); scenes that it names are looked for in the folder,
+    /// then among those shipped.
+    ///
+    /// # Errors
+    /// Every problem, in the order of the text.
+    pub fn from_text(
+        text: &str,
+        name: &str,
+        folder: Option<&Path>,
+        registry: &Registry,
+    ) -> Result<Self, Vec<Problem>> {
+        read::text(text, name, folder, registry)
+    }
+
+    /// The scene on entering a step, as those before it leave it if the learner changes nothing.
+    ///
+    /// # Errors
+    /// If there is no such step, or its scene breaks a rule: with another registry than the one it was read with.
+    pub fn state(&self, step: usize, registry: &Registry) -> Result<Scene, String> {
+        let Some(until) = self.steps.get(..=step) else {
+            return Err(format!("the lesson has {} steps; there is no step {}", self.steps.len(), step + 1));
+        };
+        let mut scene = (*self.start).clone();
+        for change in until.iter().filter_map(|step| step.scene.as_ref()) {
+            scene = change.apply(&scene, registry)?;
+        }
+        Ok(scene)
+    }
+
+    /// The lesson as plain text.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        text::of(self)
+    }
+}
+
+impl Task {
+    /// The goal, of tasks that a condition checks.
+    #[must_use]
+    pub fn goal(&self) -> Option<&Goal> {
+        match self {
+            Self::Predict { .. } => None,
+            Self::Do(goal) | Self::Find(goal) => Some(goal),
+        }
+    }
+}
+
+/// The text of some runs, without their styles.
+#[must_use]
+pub fn plain(runs: &[Run]) -> String {
+    runs.iter().map(|run| run.text.as_str()).collect()
+}
+
+/// The word for the kind of a selection, in conditions.
+fn kind_of(selection: Selection) -> &'static str {
+    match selection {
+        Selection::Room => "room",
+        Selection::Observer => "observer",
+        Selection::Light(_) => "light",
+        Selection::Object(_) => "object",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -44,6 +44,7 @@ pub(crate) mod meshes;
 mod object;
 pub(crate) mod probe;
 mod raster;
+mod vertices;
 
 pub use crate::optics::colour::BACKGROUND;
 use channel::Sight;
@@ -54,6 +55,7 @@ use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
 use raster::{Screen, TILE, Tile, Triangle};
+pub use vertices::brightest_vertex;
 
 /// The settings of a picture, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
