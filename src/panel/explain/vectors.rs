@@ -71,13 +71,15 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let explained = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)?;
-    let legend = lobe::paint(ui, rect, &explained, session);
+        .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)?;
+    // With the panel closed, a lesson wants to see which pixel it is about, and no more.
+    let explains = session.explains();
+    let legend = if explains { lobe::paint(ui, rect, &explained, session) } else { None };
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));
     let mut drawing = Drawing { ink, words: Vec::new(), rect, pointer, lit: Vec::new(), near: None };
-    if let Some(seen) = &explained.explanation.seen {
+    if let Some(seen) = explained.explanation.seen.as_ref().filter(|_| explains) {
         drawing.seen(ui, seen);
     }
     drawing.cross(&explained.explanation, session.view.pinned.is_some());

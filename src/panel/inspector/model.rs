@@ -5,7 +5,9 @@ use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
 use crate::{
     optics::TermSelection,
     panel::{
-        chooser, icon, maths,
+        chooser, icon,
+        lesson::point,
+        maths,
         segmented::{segment_width, segmented},
         shader,
         state::{Action, SHADER_TAB, Session, Severity, ViewChange},
@@ -108,7 +110,7 @@ pub(super) fn terms(
     if options.len() == 1 {
         return;
     }
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         ui.set_min_height(30.0);
         let chosen = options.iter().position(|t| *t == session.terms());
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
@@ -128,6 +130,7 @@ pub(super) fn terms(
             actions.push(Action::View(ViewChange::Terms(options[i])));
         }
     });
+    point::button(ui, "terms", row.response.rect);
     ui.add_space(4.0);
 }
 

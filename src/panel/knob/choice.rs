@@ -7,7 +7,9 @@ use bevy_egui::egui::{
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::panel::{
-    chooser, linked, menu,
+    chooser,
+    lesson::point,
+    linked, menu,
     theme::{self, Palette},
 };
 
@@ -136,5 +138,6 @@ pub fn choice_with_help(
         ui.add_space(4.0);
     });
     linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out
 }

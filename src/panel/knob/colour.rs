@@ -9,7 +9,7 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    panel::{linked, theme::Palette},
+    panel::{lesson::point, linked, theme::Palette},
     scene::limits::Limits,
 };
 
@@ -73,6 +73,7 @@ pub fn colour_knob(
         ui.add_space(6.0);
     });
     linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out.filter(|c| *c != value)
 }
 

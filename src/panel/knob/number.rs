@@ -8,7 +8,7 @@ use super::{
     slider::slider,
 };
 use crate::{
-    panel::{linked, menu, theme::Palette},
+    panel::{lesson::point, linked, menu, theme::Palette},
     scene::limits::{Limits, number},
 };
 
@@ -98,5 +98,6 @@ pub fn number_knob_beside(
         ui.add_space(3.0);
     });
     linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out
 }

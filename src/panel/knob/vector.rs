@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     panel::{
+        lesson::point,
         linked,
         theme::{self, Palette},
     },
@@ -103,7 +104,7 @@ pub fn vector_knob(
     const LETTERS: [&str; 3] = ["x", "y", "z"];
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
         let colour = Palette::here(ui).text;
@@ -139,6 +140,7 @@ pub fn vector_knob(
         });
         ui.add_space(6.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out
 }
 
@@ -182,5 +184,6 @@ pub fn triple_knob(
         ui.add_space(6.0);
     });
     linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out.filter(|v| *v != value)
 }

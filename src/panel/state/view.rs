@@ -156,6 +156,8 @@ pub struct View {
     pub lobe: LobeChoice,
     /// Width of the tree, points.
     pub left_width: f32,
+    /// Width of a lesson, points.
+    pub lesson_width: f32,
     /// Width of the inspector, points.
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
@@ -202,6 +204,7 @@ impl Default for View {
             pinned: None,
             lobe: LobeChoice::default(),
             left_width: 208.0,
+            lesson_width: 340.0,
             right_width: 344.0,
             bottom_height: 144.0,
             hidden_panels: Vec::new(),
@@ -392,7 +395,15 @@ impl Session {
             ViewChange::Bottom(false) => self.view.guest_tab = None,
             _ => {}
         }
+        let left = self.view.left_width;
         self.view.change(change);
+        if self.lesson.is_some() {
+            // It is the lesson that is at the left.
+            let width = std::mem::replace(&mut self.view.left_width, left);
+            if width != left {
+                self.view.lesson_width = width;
+            }
+        }
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
     }
 }
