@@ -9,6 +9,7 @@ use crate::{
     document::{ObjectField, VariantField},
     panel::{
         knob,
+        lesson::point,
         state::{Action, ViewChange},
         theme::{self, Palette},
     },
@@ -54,6 +55,7 @@ impl Shown<'_> {
             CollapsingHeader::new(heading(ui, group.name, changed))
                 .id_salt(("group", group.name))
                 .default_open(true)
+                .open(all.iter().any(|p| point::at_knob(ui, p.name)).then_some(true))
                 .show_unindented(ui, |ui| shown.into_iter().for_each(|p| knob(ui, p)));
         }
         if model.parameters.is_empty() {
@@ -94,7 +96,9 @@ impl Shown<'_> {
         let kept: Vec<&'static str> = ui.data(|d| d.get_temp(memory)).unwrap_or_default();
         let busy = ui.input(|i| i.pointer.any_down()) || ui.memory(|m| m.focused()).is_some();
         let filters = self.session.view.only_changed && !model.groups.is_empty();
-        let shown = |p: &&Parameter| !filters || self.differs(p) || busy && kept.contains(&p.name);
+        let shown = |p: &&Parameter| {
+            !filters || self.differs(p) || busy && kept.contains(&p.name) || point::at_knob(ui, p.name)
+        };
         let listed: Vec<_> = model.parameters.iter().filter(shown).map(|p| p.name).collect();
         ui.data_mut(|d| d.insert_temp(memory, listed.clone()));
         listed

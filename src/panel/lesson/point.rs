@@ -83,6 +83,12 @@ pub(in crate::panel) fn knob(ui: &Ui, name: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name)));
 }
 
+/// True if the step points at the knob of a parameter, so that it must be in sight.
+pub(in crate::panel) fn at_knob(ui: &Ui, name: &str) -> bool {
+    let is = |control: &Control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name));
+    ui.data(|d| d.get_temp::<Pointed>(memory())).is_some_and(|pointed| pointed.controls.iter().any(is))
+}
+
 /// The menu of this name is opened here.
 pub(in crate::panel) fn menu(ui: &Ui, name: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Menu(wanted) if plain(wanted) == plain(name)));
