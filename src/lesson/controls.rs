@@ -30,7 +30,7 @@ pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 /// The tabs below the picture, by id.
 pub const TABS: &[&str] = &["explain", "plots", "messages"];
 /// The knobs that belong to no declared parameter.
-pub(super) const KNOBS: &[&str] = &[
+pub const KNOBS: &[&str] = &[
     "exposure",
     "tone_mapping",
     "encoding",

@@ -156,6 +156,10 @@ pub(super) fn steps(
             _ if skipped > 0 => {}
             _ => {
                 let refused = reader.event(&event, from + range.start, from + range.end);
+                if let Some(draft) = reader.steps.last_mut().filter(|_| refused) {
+                    // What was refused was meant to be there.
+                    draft.is_empty = false;
+                }
                 skipped = usize::from(refused && matches!(event, Event::Start(_)));
             }
         }

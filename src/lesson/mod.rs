@@ -31,7 +31,7 @@ mod window;
 mod words;
 
 pub use condition::{Condition, QUANTITIES, Quantity};
-pub use controls::{BUTTONS, Control, MENUS, PartName, TABS, Which};
+pub use controls::{BUTTONS, Control, KNOBS, MENUS, PartName, TABS, Which};
 pub use problem::Problem;
 pub use read::MAX_FILE_BYTES;
 pub use situation::{Situation, WindowFacts};

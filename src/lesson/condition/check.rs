@@ -165,7 +165,12 @@ fn spelling(quantity: &Operand, text: &Operand, registry: &Registry) -> Option<(
     }
     let near = did_you_mean(written, known.iter().map(|k| (*k, *k)));
     let all = if known.len() > 12 { String::new() } else { format!("; it is {}", listed(&known, "or")) };
-    Some((text.at, format!("{} is never {}{all}{near}", asked.quantity.name, quoted(written))))
+    let name = match &asked.argument {
+        Argument::Path(path) => format!("scene.{path}"),
+        Argument::Name(name) => format!("knob.{name}"),
+        Argument::None | Argument::Angle(_) => asked.quantity.name.to_owned(),
+    };
+    Some((text.at, format!("{name} is never {}{all}{near}", quoted(written))))
 }
 
 /// The type of an operand, or why it does not exist.

@@ -108,3 +108,6 @@ impl Condition {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
