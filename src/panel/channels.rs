@@ -8,6 +8,7 @@ use bevy_egui::egui::{
 use super::{
     state::{Action, CompareCommand, Session, ViewChange},
     theme::{self, Palette},
+    wires,
 };
 use crate::{
     channel::{DebugChannel, Legend, Setting},
@@ -58,6 +59,9 @@ pub(super) fn legend(
     let (channel, mut legend) = shown(session, view, registry)?;
     if !session.document.variants.is_empty() {
         legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
+    }
+    if let Some(remark) = wires::remark(ui.ctx(), view).filter(|_| channel.has_wires()) {
+        legend.title = format!("{} ({remark})", legend.title);
     }
     let place = plate(ui, rect, Align2::LEFT_TOP, top, &legend);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());

@@ -93,6 +93,7 @@ pub mod tree;
 pub mod typeset;
 pub mod welcome;
 mod widths;
+pub mod wires;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {

@@ -303,6 +303,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                             actions.push(Action::View(ViewChange::Terms(terms)));
                         }
                     }
+                    ui.separator();
+                    menu::submenu(ui, "Lobe at the explained point", |ui| lobe_entries(ui, session, actions));
                 });
                 menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
                 ui.separator();
@@ -340,7 +342,6 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     actions,
                 );
                 menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
-                menu::submenu(ui, "Lobe at the explained point", |ui| lobe_entries(ui, session, actions));
                 menu::submenu(ui, "Channel", |ui| {
                     channels::entries(ui, session, actions);
                     ui.separator();

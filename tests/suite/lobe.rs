@@ -78,7 +78,7 @@ fn choose(bench: &mut Bench, scale: LobeScale, all: bool) {
 }
 
 fn lobes(bench: &Bench) -> Arc<Lobes> {
-    lobes_shown(&bench.ctx).expect("there are lobes")
+    lobes_shown(&bench.ctx).unwrap_or_else(|| panic!("there are no lobes: {:?}", explained(&bench.ctx)))
 }
 
 /// The point whose vectors are shown: the one that counts most.

@@ -18,7 +18,8 @@ use glam::Vec3;
 
 use super::{
     probe::{self, Choice, Explained},
-    rows, surface,
+    rows,
+    surface::{self, LightLobe, tint},
 };
 use crate::{
     channel::Legend,
@@ -45,21 +46,6 @@ const MOST: usize = COLOURS.len();
 const ROOM: f32 = 240.0;
 /// Width of the legend at most, points.
 const LEGEND: f32 = 320.0;
-
-/// The lobe for one light.
-#[derive(Debug)]
-pub struct LightLobe {
-    /// The light, by its place in the scene.
-    pub light: usize,
-    /// Its name.
-    pub name: String,
-    /// The direction to it.
-    pub l: Vec3,
-    /// The lobe.
-    pub lobe: Lobe,
-    /// The lines around it.
-    pub(super) rims: Vec<surface::Rim>,
-}
 
 /// The lobes that are drawn.
 #[derive(Debug)]
@@ -237,12 +223,6 @@ pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &S
             plate(ui, rect, legend(lobes, count, &scale, terms))
         }
     }
-}
-
-/// The colour of a lobe among several.
-pub(super) fn tint(number: usize) -> [u8; 3] {
-    let lighter = |c: u8| c + (255 - c) / 4;
-    COLOURS[number % COLOURS.len()].map(lighter)
 }
 
 /// What is written beside lobes.

@@ -35,8 +35,9 @@ mod surface;
 mod vectors;
 
 pub(super) use lobe::entries as lobe_entries;
-pub use lobe::{LightLobe, Lobes, lobe_calculations, lobes_shown};
+pub use lobe::{Lobes, lobe_calculations, lobes_shown};
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
+pub use surface::LightLobe;
 pub(super) use vectors::vectors;
 
 /// The least width of a column, points; in less there are fewer.

@@ -5,14 +5,10 @@ use std::collections::HashMap;
 use bevy_egui::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui};
 use glam::Vec3;
 
-use super::{
-    lobe::{LightLobe, tint},
-    vectors::LENGTH,
-};
 use crate::{
     curves::{
         Lobe,
-        draw::Axis,
+        draw::{Axis, COLOURS},
         lobe::{edges, length},
     },
     optics::viridis::viridis,
@@ -22,10 +18,33 @@ use crate::{
     },
 };
 
+/// Length of a vector that lies in the plane of the picture, and of the longest value that the scale has, points.
+pub(super) const LENGTH: f32 = 96.0;
 /// Opacity of the surface.
 const OPACITY: f32 = 0.68;
 /// Brightness where the surface is seen from its side.
 const SIDE: f32 = 0.45;
+
+/// The lobe for one light.
+#[derive(Debug)]
+pub struct LightLobe {
+    /// The light, by its place in the scene.
+    pub light: usize,
+    /// Its name.
+    pub name: String,
+    /// The direction to it.
+    pub l: Vec3,
+    /// The lobe.
+    pub lobe: Lobe,
+    /// The lines around it.
+    pub(super) rims: Vec<Rim>,
+}
+
+/// The colour of a lobe among several.
+pub(super) fn tint(number: usize) -> [u8; 3] {
+    let lighter = |c: u8| c + (255 - c) / 4;
+    COLOURS[number % COLOURS.len()].map(lighter)
+}
 
 /// An edge of the surface, and the triangles at it: one at the rim or at a gap.
 pub(super) type Rim = ([u32; 2], [Option<u32>; 2]);

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use super::{lobe, pairs, probe, rows};
+use super::{lobe, pairs, probe, rows, surface::LENGTH};
 use crate::{
     explain::{Explanation, Lit, Model, Place, Seen, Spot},
     panel::{
@@ -22,8 +22,6 @@ const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
 const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
-/// Length of a vector that lies in the plane of the picture, points.
-pub(super) const LENGTH: f32 = 96.0;
 /// Width of a line, points, and of one that lights.
 const LINE: f32 = 2.25;
 const LIT: f32 = 4.5;
