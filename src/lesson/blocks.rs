@@ -48,12 +48,19 @@ pub(super) fn read(
 ) {
     let Some(kind) = KINDS.into_iter().find(|kind| *kind == info) else {
         let near = did_you_mean(info, KINDS.iter().map(|k| (*k, *k)));
-        let found = if info.is_empty() { "a block of no kind".to_owned() } else { format!("a block {}", quoted(info)) };
+        let found = if info.is_empty() {
+            "a block of no kind".to_owned()
+        } else {
+            format!("a block {}", quoted(info))
+        };
         problems.at(at, format!("this is {found}; a block is {}{near}", listed(&KINDS, "or")));
         return;
     };
     if kind != "equation" && draft.kinds.contains(&kind) {
-        problems.at(at, format!("the step has two blocks {kind}; write all into one, or begin another step with ##"));
+        problems.at(
+            at,
+            format!("the step has two blocks {kind}; write all into one, or begin another step with ##"),
+        );
         return;
     }
     draft.kinds.push(kind);
@@ -80,7 +87,10 @@ pub(super) fn read(
         "point" => {
             for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
                 let Some((key, value)) = pair(&line) else {
-                    problems.at(line.piece().at, "this is not KIND: NAME, as every line of a point block must be");
+                    problems.at(
+                        line.piece().at,
+                        "this is not KIND: NAME, as every line of a point block must be",
+                    );
                     continue;
                 };
                 if let Some(control) = controls::control(key, value, registry, problems) {
@@ -151,10 +161,16 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     }
     match answers.iter().filter(|answer| answer.right).count() {
         _ if answers.len() < 2 => {
-            problems.at(at, "a question has two answers at least; begin each with [ ], and the right one with [x]");
+            problems.at(
+                at,
+                "a question has two answers at least; begin each with [ ], and the right one with [x]",
+            );
         }
         _ if answers.len() > MOST_ANSWERS => {
-            problems.at(at, format!("a question has at most {MOST_ANSWERS} answers; this one has {}", answers.len()));
+            problems.at(
+                at,
+                format!("a question has at most {MOST_ANSWERS} answers; this one has {}", answers.len()),
+            );
         }
         0 => problems.at(at, "the question has no right answer; mark it with [x] instead of [ ]"),
         right if right == answers.len() => {

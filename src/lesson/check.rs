@@ -54,7 +54,8 @@ fn step(
     if let Some(active) = change.active {
         if active >= window.views {
             let views = plural(window.views, "view");
-            problems.at(place("active"), format!("there is no view {}: the scene has {views}", LETTERS[active]));
+            problems
+                .at(place("active"), format!("there is no view {}: the scene has {views}", LETTERS[active]));
         } else {
             (window.active, known.active) = (active, true);
         }
@@ -100,6 +101,9 @@ fn step(
         pinned: false,
     };
     if is_sound && goal.until.holds_at_once(&situation, known) {
-        problems.at(at, "the task is already done when the step begins; change the condition, or the scene before it");
+        problems.at(
+            at,
+            "the task is already done when the step begins; change the condition, or the scene before it",
+        );
     }
 }

@@ -31,8 +31,16 @@ pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 pub const TABS: &[&str] = &["explain", "plots", "messages"];
 /// The knobs that belong to no declared parameter.
 pub(super) const KNOBS: &[&str] = &[
-    "exposure", "tone_mapping", "encoding", "intensity", "luminous_flux", "colour", "colour_temperature", "size",
-    "tessellation", "field_of_view",
+    "exposure",
+    "tone_mapping",
+    "encoding",
+    "intensity",
+    "luminous_flux",
+    "colour",
+    "colour_temperature",
+    "size",
+    "tessellation",
+    "field_of_view",
 ];
 
 /// A part of a scene as a lesson names it.
@@ -86,13 +94,16 @@ impl PartName {
     pub(super) fn known(&self, scene: &Scene) -> String {
         let list = |count: usize, what: &str, names: Vec<&str>| {
             let names: Vec<_> = names.iter().take(6).map(|name| quoted(name)).collect();
-            let called = if names.is_empty() { String::new() } else { format!(", {}", listed(&names, "and")) };
+            let called =
+                if names.is_empty() { String::new() } else { format!(", {}", listed(&names, "and")) };
             format!("the scene has {}{called}", crate::text::plural(count, what))
         };
         match self {
-            Self::Light(_) => {
-                list(scene.lights.len(), "light", scene.lights.iter().filter_map(|l| l.name.as_deref()).collect())
-            }
+            Self::Light(_) => list(
+                scene.lights.len(),
+                "light",
+                scene.lights.iter().filter_map(|l| l.name.as_deref()).collect(),
+            ),
             _ => list(
                 scene.objects.len(),
                 "object",
@@ -132,13 +143,22 @@ pub(super) fn parameters(registry: &Registry) -> Vec<&'static str> {
 }
 
 /// Reads a line of a block `point`; a part comes with its byte, to be looked for in the scene.
-pub(super) fn control(key: Piece, value: Piece, registry: &Registry, problems: &mut Problems) -> Option<Control> {
+pub(super) fn control(
+    key: Piece,
+    value: Piece,
+    registry: &Registry,
+    problems: &mut Problems,
+) -> Option<Control> {
     let mut one_of = |what: &str, known: &[&'static str]| {
         let found = known.iter().find(|known| **known == value.text).map(|known| (*known).to_owned());
         if found.is_none() {
             let near = did_you_mean(value.text, known.iter().map(|k| (*k, *k)));
             // Of parameters there are too many to name.
-            let all = if known.len() > 12 { String::new() } else { format!("; it must be {}", listed(known, "or")) };
+            let all = if known.len() > 12 {
+                String::new()
+            } else {
+                format!("; it must be {}", listed(known, "or"))
+            };
             problems.at(value.at, format!("there is no {what} {}{all}{near}", quoted(value.text)));
         }
         found
@@ -164,7 +184,11 @@ pub(super) fn control(key: Piece, value: Piece, registry: &Registry, problems: &
             let near = did_you_mean(other, known.iter().map(|k| (*k, *k)));
             problems.at(
                 key.at,
-                format!("a lesson cannot point at a {}; it points at {}{near}", quoted(other), listed(&known, "or")),
+                format!(
+                    "a lesson cannot point at a {}; it points at {}{near}",
+                    quoted(other),
+                    listed(&known, "or")
+                ),
             );
             None
         }

@@ -62,7 +62,10 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
             let near = did_you_mean(key.text, KEYS.iter().map(|k| (*k, *k)));
             problems.at(
                 key.at,
-                format!("the front matter has no {}; it has title, summary, minutes and scene{near}", quoted(key.text)),
+                format!(
+                    "the front matter has no {}; it has title, summary, minutes and scene{near}",
+                    quoted(key.text)
+                ),
             );
             continue;
         };
@@ -83,7 +86,10 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
                 Ok(minutes @ 1..=LONGEST) => front.minutes = Some(minutes),
                 _ => problems.at(
                     value.at,
-                    format!("minutes is {}, but it must be a whole number from 1 to {LONGEST}", quoted(value.text)),
+                    format!(
+                        "minutes is {}, but it must be a whole number from 1 to {LONGEST}",
+                        quoted(value.text)
+                    ),
                 ),
             },
         }

@@ -4,13 +4,7 @@ use std::path::Path;
 
 use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
-use super::{
-    Block, Run, RunStyle, Step, blocks,
-    blocks::Draft,
-    plain,
-    problem::Problems,
-    words::Piece,
-};
+use super::{Block, Run, RunStyle, Step, blocks, blocks::Draft, plain, problem::Problems, words::Piece};
 use crate::registry::Registry;
 
 /// Lists within lists are no deeper than this.
@@ -73,7 +67,9 @@ fn refusal(event: &Event) -> &'static str {
             "HTML is not shown; write Markdown, and \\< for the sign <"
         }
         Event::Start(Tag::Table(_)) => "tables are not shown; write a list",
-        Event::Start(Tag::BlockQuote(_)) => "quotations are not shown; write a paragraph, and \\> for the sign >",
+        Event::Start(Tag::BlockQuote(_)) => {
+            "quotations are not shown; write a paragraph, and \\> for the sign >"
+        }
         Event::Start(Tag::Strikethrough) => "struck text is not shown; write \\~ for the sign ~",
         Event::Rule => "rules are not shown; a heading ## begins the next step",
         _ => "this Markdown is not shown; a lesson has headings ##, paragraphs, lists and fenced blocks",

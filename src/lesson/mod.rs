@@ -11,11 +11,7 @@
 use std::{path::Path, sync::Arc};
 
 use crate::{
-    channel::DebugChannel,
-    curves::Kind,
-    document::Selection,
-    optics::TermSelection,
-    registry::Registry,
+    channel::DebugChannel, curves::Kind, document::Selection, optics::TermSelection, registry::Registry,
     scene::Scene,
 };
 

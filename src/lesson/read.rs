@@ -29,9 +29,13 @@ pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Probl
                 format!("the file is larger than {} MiB, the most allowed for a lesson", MAX_FILE_BYTES >> 20)
             }
             FileError::Io(error) if error.kind() == std::io::ErrorKind::NotFound && is_folder => {
-                format!("the folder has no {IN_FOLDER}; a lesson is a Markdown file, or a folder with {IN_FOLDER}")
+                format!(
+                    "the folder has no {IN_FOLDER}; a lesson is a Markdown file, or a folder with {IN_FOLDER}"
+                )
             }
-            FileError::Io(error) if error.kind() == std::io::ErrorKind::NotFound => "file not found".to_owned(),
+            FileError::Io(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                "file not found".to_owned()
+            }
             error => format!("the file could not be read: {error}"),
         })
     })?;

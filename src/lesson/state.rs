@@ -60,9 +60,8 @@ impl SceneChange {
     /// # Errors
     /// If it breaks a rule of scenes.
     pub fn apply(&self, scene: &Scene, registry: &Registry) -> Result<Scene, String> {
-        self.applied(scene, registry).map_err(|problems| {
-            problems.into_iter().map(|(_, what)| what).collect::<Vec<_>>().join("\n")
-        })
+        self.applied(scene, registry)
+            .map_err(|problems| problems.into_iter().map(|(_, what)| what).collect::<Vec<_>>().join("\n"))
     }
 
     /// The same, with the bytes of the problems.
@@ -90,11 +89,15 @@ impl SceneChange {
         let read = load::in_folder(text.as_bytes(), (NAME, &self.folder), registry, Defaults::Use);
         read.map(|Loaded { scene, .. }| scene).map_err(|error| {
             let of = |problem: &Path| {
-                let alike = |path: &Path| path.segments().iter().zip(problem.segments()).take_while(|(a, b)| a == b).count();
+                let alike = |path: &Path| {
+                    path.segments().iter().zip(problem.segments()).take_while(|(a, b)| a == b).count()
+                };
                 sets.iter().rev().max_by_key(|(_, path, _)| alike(path)).map_or(0, |(at, ..)| *at)
             };
             let problems = error.problems().into_iter();
-            problems.map(|p| (of(&p.path), crate::scene::error::Problem { place: None, ..p }.to_string())).collect()
+            problems
+                .map(|p| (of(&p.path), crate::scene::error::Problem { place: None, ..p }.to_string()))
+                .collect()
         })
     }
 }
@@ -110,7 +113,9 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
             if json.is_null() {
                 *json = Json::Object(serde_json::Map::new());
             }
-            let Json::Object(map) = json else { return Err("leads into a value that has no keys".to_owned()) };
+            let Json::Object(map) = json else {
+                return Err("leads into a value that has no keys".to_owned());
+            };
             if rest.is_empty() && value.is_null() {
                 map.remove(key.as_ref());
                 return Ok(());
@@ -124,7 +129,9 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
             let Json::Array(list) = json else { return Err("leads into a value that is no list".to_owned()) };
             if *index > list.len() {
                 let count = list.len();
-                return Err(format!("does not exist: the list has {count} entries, counted from 0; [{count}] adds one"));
+                return Err(format!(
+                    "does not exist: the list has {count} entries, counted from 0; [{count}] adds one"
+                ));
             }
             if rest.is_empty() && value.is_null() {
                 if *index < list.len() {
@@ -144,7 +151,10 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
 pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
     let is_plain = FilePath::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     if !is_plain {
-        return Err(format!("{} leads out of the folder of the lesson; put the scene beside the lesson", quoted(name)));
+        return Err(format!(
+            "{} leads out of the folder of the lesson; put the scene beside the lesson",
+            quoted(name)
+        ));
     }
     let beside = folder.map(|folder| folder.join(name)).filter(|path| path.exists());
     let loaded = match beside {
@@ -153,13 +163,16 @@ pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -
             Some(example) => example.scene(registry),
             None => {
                 let near = did_you_mean(name, EXAMPLES.iter().map(|e| (e.file, e.file)));
-                let wherever = if folder.is_some() { "neither beside the lesson nor among" } else { "not among" };
+                let wherever =
+                    if folder.is_some() { "neither beside the lesson nor among" } else { "not among" };
                 return Err(format!("the scene {} is {wherever} the shipped scenes{near}", quoted(name)));
             }
         },
     };
     loaded.map_err(|error| match &error {
-        LoadError::Invalid { .. } => format!("the scene has problems: {}", error.to_string().replace('\n', "; ")),
+        LoadError::Invalid { .. } => {
+            format!("the scene has problems: {}", error.to_string().replace('\n', "; "))
+        }
         error => error.to_string(),
     })
 }
@@ -173,7 +186,13 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
         if let Some(inside) = rest.strip_prefix('[') {
             let end = inside.find(']').ok_or((at, "this bracket is never closed".to_owned()))?;
             let index = inside[..end].trim().parse().map_err(|_| {
-                (at + 1, format!("{} is no place in a list; places are whole numbers from 0", quoted(&inside[..end])))
+                (
+                    at + 1,
+                    format!(
+                        "{} is no place in a list; places are whole numbers from 0",
+                        quoted(&inside[..end])
+                    ),
+                )
             })?;
             path = path.index(index);
             at += end + 2;
@@ -183,7 +202,10 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
         let word = &rest[dot..];
         let length = word.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(word.len());
         if length == 0 || dot == 0 && at > 0 {
-            return Err((at, "a path is keys with dots between them and [places] in lists: objects[0].size".to_owned()));
+            return Err((
+                at,
+                "a path is keys with dots between them and [places] in lists: objects[0].size".to_owned(),
+            ));
         }
         path = path.key(word[..length].to_owned());
         at += dot + length;
@@ -229,7 +251,10 @@ pub(super) fn read(
             continue;
         }
         let Some(equals) = piece.text.find('=') else {
-            problems.at(piece.at, "this is neither PATH = VALUE nor open: FILE, as every line of a scene block must be");
+            problems.at(
+                piece.at,
+                "this is neither PATH = VALUE nor open: FILE, as every line of a scene block must be",
+            );
             continue;
         };
         let written = piece.part(0, equals).trimmed();
@@ -258,7 +283,13 @@ fn json(piece: Piece) -> Result<Json, (usize, String)> {
         } else {
             ""
         };
-        return Err((piece.at + at, format!("{}{hint}", sentence(&what).trim_end_matches('.').to_owned() + if hint.is_empty() { "" } else { "." })));
+        return Err((
+            piece.at + at,
+            format!(
+                "{}{hint}",
+                sentence(&what).trim_end_matches('.').to_owned() + if hint.is_empty() { "" } else { "." }
+            ),
+        ));
     }
     serde_json::from_str(piece.text).map_err(|error| (piece.at, error.to_string()))
 }

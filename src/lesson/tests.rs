@@ -24,7 +24,8 @@ fn every_file_of_the_folder_is_shipped_and_without_a_problem() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
     let mut files: Vec<_> = fs::read_dir(folder)
         .map(|entries| {
-            let names = entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned());
+            let names =
+                entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned());
             names.filter_map(|name| name.strip_suffix(".md").map(str::to_owned)).collect()
         })
         .unwrap_or_default();

@@ -1,6 +1,10 @@
 //! The block `view`: the window on entering a step.
 
-use super::{PartName, WindowChange, problem::Problems, words::{Line, Piece, pair}};
+use super::{
+    PartName, WindowChange,
+    problem::Problems,
+    words::{Line, Piece, pair},
+};
 use crate::{
     channel::DebugChannel,
     curves::Kind,
@@ -17,7 +21,11 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
     ("plots", "id of a plot, or `off`", "the panel *Plots*"),
     ("active", "`A` to `D`", "the view that the panels show and change"),
     ("select", "`room`, `observer`, `object 1`, `light \"key light\"`, …", "the selected part"),
-    ("pin", "`X, Y` from 0 to 1, or `none`", "the pinned pixel: fractions of the picture from the left and the top"),
+    (
+        "pin",
+        "`X, Y` from 0 to 1, or `none`",
+        "the pinned pixel: fractions of the picture from the left and the top",
+    ),
 ];
 
 /// A word of a list, or what is wrong with it.
@@ -29,7 +37,10 @@ where
     if found.is_none() {
         let words: Vec<_> = known.iter().map(|(word, _)| *word).collect();
         let near = did_you_mean(value.text, words.iter().map(|w| (*w, *w)));
-        problems.at(value.at, format!("this is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")));
+        problems.at(
+            value.at,
+            format!("this is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")),
+        );
     }
     found.map(|(_, meaning)| meaning.clone())
 }
@@ -71,7 +82,8 @@ pub(super) fn setting(
         "explain" => window.explain = one_of(value, &[("on", true), ("off", false)], problems),
         "plots" => {
             let kinds = Kind::ALL.map(|kind| (kind.id(), Some(kind)));
-            window.plots = one_of(value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
+            window.plots =
+                one_of(value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
         }
         "active" => {
             let letters: Vec<_> = LETTERS.into_iter().enumerate().map(|(i, letter)| (letter, i)).collect();

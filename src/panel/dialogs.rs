@@ -14,7 +14,8 @@ use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 use super::{
     preview::{self, Preview, Source},
     state::{
-        Action, Effect, ExportCommand, LessonCommand, LessonSource, ModelCommand, PictureCommand, PlotCommand, Session,
+        Action, Effect, ExportCommand, LessonCommand, LessonSource, ModelCommand, PictureCommand,
+        PlotCommand, Session,
     },
     theme::{self, Palette},
 };

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::{
     focus,
     state::{
-        Action, CompareCommand, HandleChange, LessonCommand, ModelCommand, PLOTS_TAB, PictureArea, PictureCommand,
-        SHADER_TAB, Session, Steer, ViewChange,
+        Action, CompareCommand, HandleChange, LessonCommand, ModelCommand, PLOTS_TAB, PictureArea,
+        PictureCommand, SHADER_TAB, Session, Steer, ViewChange,
     },
 };
 use crate::{channel::DebugChannel, registry::Registry, scene::Comparison};
@@ -268,7 +268,11 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
     ("Window", "F10, Alt and a letter", "The menus; arrows walk, Enter chooses"),
     ("In the scene list", "↑ ↓", "Select the part above, the one below"),
-    ("Lessons", "Page Up, Page Down", "Scroll the text, with the focus in the lesson; in a presentation: the steps"),
+    (
+        "Lessons",
+        "Page Up, Page Down",
+        "Scroll the text, with the focus in the lesson; in a presentation: the steps",
+    ),
     ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
     ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
     ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),

@@ -7,7 +7,8 @@ use super::{
     history::HISTORY_TAB,
     keys::{self, Binding},
     labels,
-    lesson::{list, point}, maths, menu, model_override, pictures,
+    lesson::{list, point},
+    maths, menu, model_override, pictures,
     segmented::{segment_width, segmented},
     state::{
         Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, PLOTS_TAB, SHADER_TAB, Session,
@@ -347,7 +348,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 menu::submenu(ui, "Panels", |ui| {
                     ui.set_width(0.8 * MENU_WIDTH);
                     let (left, right) = (ViewChange::Left(!v.left_open), ViewChange::Right(!v.right_open));
-                    let left_name = if session.lesson.is_some() { "Lesson and scene list" } else { "Scene list" };
+                    let left_name =
+                        if session.lesson.is_some() { "Lesson and scene list" } else { "Scene list" };
                     check(ui, left_name, v.left_open, "", view(left), actions);
                     check(ui, "Properties", v.right_open, "", view(right), actions);
                     let examples = ViewChange::Examples(!v.examples_open);

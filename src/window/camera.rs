@@ -206,11 +206,8 @@ impl CameraControl<'_, '_> {
     /// Makes room for the view of another document, or exchanges both.
     pub(super) fn change(&mut self, change: CameraChange) {
         let Some((mut orbit, mut transform, mut picture)) = self.cameras.iter_mut().next() else { return };
-        let now = Waiting {
-            place: *transform,
-            focus: orbit.focus,
-            follows_observer: picture.follows_observer,
-        };
+        let now =
+            Waiting { place: *transform, focus: orbit.focus, follows_observer: picture.follows_observer };
         let before = self.waiting.replace(now);
         match (change, before) {
             (CameraChange::Exchange, Some(Waiting { place, focus, follows_observer: false })) => {

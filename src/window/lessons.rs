@@ -36,7 +36,11 @@ pub(super) fn follow_lesson(
         }
         if let Some(path) = wanted {
             // A folder has the scenes of the lesson too.
-            if path.is_dir() { watch.0.watch_folder(path) } else { watch.0.watch_file(path) }
+            if path.is_dir() {
+                watch.0.watch_folder(path)
+            } else {
+                watch.0.watch_file(path)
+            }
             // It may have changed between being read and being watched.
             watch.0.report_later(path, Duration::ZERO);
         }

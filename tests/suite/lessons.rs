@@ -12,8 +12,8 @@ use lights_camera_models::{
     panel::{
         self, effects,
         state::{
-            Action, Answer, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Past, Pin, PlotCommand,
-            Question, Session, ViewChange,
+            Action, Answer, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Past, Pin,
+            PlotCommand, Question, Session, ViewChange,
         },
         theme::DARK,
     },
@@ -40,7 +40,7 @@ minutes: 5
 
 ## The picture
 
-Light that comes *straight* is bright: with `k_d` it is, see **F7**,
+Light that comes *straight* is bright: with k_d it is, see **F7**,
 
 ```equation
 I_d = k_d max(0, N·L)
@@ -91,7 +91,7 @@ channel: none
 
 ```find
 Click a pixel of the sphere.
-until: probe.pinned and not probe.background
+until: probe.background = false
 ```
 "#;
 
@@ -213,7 +213,9 @@ fn the_own_document_comes_back_with_all_that_belongs_to_it() {
     assert_eq!((session.path.clone(), session.own_path()), (None, before.path.as_deref()));
     assert_eq!(session.own_document().revision(), before.document.revision());
     assert!(session.document.steps().len() == 0 && session.view.terms == TermSelection::All);
-    assert!(session.view.channels == [None; 4] && session.view.pinned.is_none() && session.plots.pins.is_empty());
+    assert!(
+        session.view.channels == [None; 4] && session.view.pinned.is_none() && session.plots.pins.is_empty()
+    );
     // All of it is changed there.
     for _ in 0..2 {
         go(&mut bench, LessonCommand::Next);
@@ -281,7 +283,11 @@ fn what_would_lose_the_own_document_asks_about_it_and_not_about_the_lesson() {
         bench.settle();
         assert!(bench.says("“Mine” has unsaved changes.") && !bench.says("Step 2 of 4"));
         bench.apply(Action::Answer(Answer::Cancel));
-        assert_eq!((step(&bench), bench.session.document.scene()), (1, &scene), "{action:?}: the lesson goes on");
+        assert_eq!(
+            (step(&bench), bench.session.document.scene()),
+            (1, &scene),
+            "{action:?}: the lesson goes on"
+        );
         assert_eq!(bench.session.own_title(), "Mine");
         // Given up, the document goes.
         bench.session.apply(action.clone(), &bench.registry);
@@ -353,7 +359,10 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     assert!(bench.says("Replace it with a copy of this scene?"));
     apply_with(&mut bench, Action::Edit(Edit::Model("lambert".to_owned())), &mut files);
     apply_with(&mut bench, Action::Answer(Answer::Overwrite), &mut files);
-    assert_eq!(load::file(&copy, &registry, Defaults::Refuse).expect("legal").scene.reflection_model, "lambert");
+    assert_eq!(
+        load::file(&copy, &registry, Defaults::Refuse).expect("legal").scene.reflection_model,
+        "lambert"
+    );
     // Back home, saving needs no question.
     go(&mut bench, LessonCommand::Leave);
     apply(&mut bench, Action::Edit(Edit::ShadingModel("phong".to_owned())));
@@ -412,7 +421,10 @@ fn previous_and_again_begin_a_step_as_it_began() {
     }
     assert_eq!((step(&bench), alpha(&bench), channel(&bench)), (3, Some(Value::Integer(22)), None));
     go(&mut bench, LessonCommand::Previous);
-    assert_eq!((step(&bench), alpha(&bench), channel(&bench)), (2, Some(Value::Integer(20)), Some("n_dot_l")));
+    assert_eq!(
+        (step(&bench), alpha(&bench), channel(&bench)),
+        (2, Some(Value::Integer(20)), Some("n_dot_l"))
+    );
     for _ in 0..3 {
         go(&mut bench, LessonCommand::Previous);
     }
@@ -422,14 +434,19 @@ fn previous_and_again_begin_a_step_as_it_began() {
 #[test]
 fn a_step_whose_scene_cannot_follow_begins_from_the_start() {
     let desk = Desk::new();
+    let cube = "```scene\nobjects[1] = {\"type\": \"cube\", \"position\": [2, 5, 5], \"size\": 1}\n```\n\n```predict";
+    let text =
+        TEXT.replace("```predict", cube).replace("objects[0].material.alpha = 20", "objects[1].size = 2");
+    std::fs::write(desk.folder.path().join("light.md"), text).expect("writable");
     let mut bench = desk.bench(Session::default());
-    go(&mut bench, LessonCommand::GoTo(1));
-    apply(&mut bench, Action::Remove(Selection::Object(0)));
-    assert!(bench.session.document.objects.is_empty());
+    go(&mut bench, LessonCommand::Next);
+    apply(&mut bench, Action::Remove(Selection::Object(1)));
+    assert_eq!(bench.session.document.objects.len(), 1);
     for _ in 0..2 {
         go(&mut bench, LessonCommand::Next);
     }
-    assert_eq!((step(&bench), bench.session.document.objects.len()), (2, 1));
+    let objects = &bench.session.document.objects;
+    assert_eq!((step(&bench), objects.len(), objects[1].size), (2, 2, 2.0));
 }
 
 #[test]
@@ -568,11 +585,14 @@ fn a_lesson_goes_on_where_it_was_left() {
     assert!(effects.contains(&Effect::SaveProgress(name.clone())));
     let progress = bench.session.progress.clone();
     assert_eq!(progress.last.as_deref(), Some(name.as_str()));
-    let past = Past { title: "Light and angle".to_owned(), step: 2, steps: 4, done: [1].into(), finished: false };
+    let past =
+        Past { title: "Light and angle".to_owned(), step: 2, steps: 4, done: [1].into(), finished: false };
     assert_eq!(progress.of(&name), Some(&past));
     assert_eq!(progress.next(), Some(desk.source()));
     // Another day.
-    let mut bench = Bench::new(Session { progress, ..Session::default() });
+    let mut session = Session::default();
+    session.progress = progress;
+    let mut bench = Bench::new(session);
     desk.open(&mut bench);
     assert_eq!((step(&bench), done(&bench)), (2, [1].into()));
     assert_eq!(bench.session.document.reflection_model, "blinn_phong", "with the scenes of the steps before");
@@ -595,8 +615,11 @@ fn progress_beyond_the_end_of_a_lesson_that_became_shorter_is_no_harm() {
 fn a_lesson_with_problems_is_not_opened_and_every_problem_is_said() {
     let desk = Desk::new();
     let file = desk.folder.path().join("broken.md");
-    std::fs::write(&file, TEXT.replace("knob.alpha >", "knob.alpha >>").replace("## The picture", "### The picture"))
-        .expect("writable");
+    std::fs::write(
+        &file,
+        TEXT.replace("knob.alpha >", "knob.alpha >>").replace("## The picture", "### The picture"),
+    )
+    .expect("writable");
     let mut bench = Bench::new(busy());
     let open = LessonCommand::Open(LessonSource::File(file.clone()));
     go(&mut bench, open);
@@ -620,7 +643,8 @@ fn an_edited_lesson_is_read_again_and_keeps_the_step() {
     let write = |text: &str| std::fs::write(&file, text).expect("writable");
     let look = |bench: &mut Bench| {
         let mut files = DiskFiles::new(None, None);
-        let effects = effects::run(&mut bench.session, &Registry::builtin(), Effect::LookAtLesson, &mut files);
+        let effects =
+            effects::run(&mut bench.session, &Registry::builtin(), Effect::LookAtLesson, &mut files);
         bench.settle();
         effects
     };
@@ -634,7 +658,11 @@ fn an_edited_lesson_is_read_again_and_keeps_the_step() {
     look(&mut bench);
     assert!(bench.says("A much shinier sphere.") && bench.says("The file has errors"));
     let line = TEXT.lines().position(|line| line.starts_with("until: knob.alpha")).expect("there") + 1;
-    assert!(bench.says(&format!("light.md:{line}:")), "{:?}", bench.session.lesson.as_ref().map(|l| &l.problems));
+    assert!(
+        bench.says(&format!("light.md:{line}:")),
+        "{:?}",
+        bench.session.lesson.as_ref().map(|l| &l.problems)
+    );
     write(&TEXT.replace("alpha = 20", "alpha = 60"));
     look(&mut bench);
     assert!(!bench.says("The file has errors"));
@@ -658,7 +686,11 @@ fn focused(bench: &Bench) -> String {
     let rect = id.and_then(|id| bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect)));
     let Some(rect) = rect else { return String::new() };
     let near = |seen: &Rect| (seen.min - rect.min).length() + (seen.max - rect.max).length() < 2.0;
-    bench.tree.iter().find(|seen| !seen.label.is_empty() && near(&seen.rect)).map_or_else(String::new, |s| s.label.clone())
+    bench
+        .tree
+        .iter()
+        .find(|seen| !seen.label.is_empty() && near(&seen.rect))
+        .map_or_else(String::new, |s| s.label.clone())
 }
 
 #[test]
@@ -698,7 +730,8 @@ fn every_key_of_lessons() {
 #[test]
 fn page_keys_scroll_long_text_and_the_footer_stays() {
     let desk = Desk::new();
-    let long = TEXT.replace("- one", &"Words and words and words, more than the panel has room for.\n\n".repeat(40));
+    let long =
+        TEXT.replace("- one", &"Words and words and words, more than the panel has room for.\n\n".repeat(40));
     std::fs::write(desk.folder.path().join("light.md"), long).expect("writable");
     for (size, scale) in [((1280.0, 720.0), 100), ((1280.0, 720.0), 150), ((1920.0, 1080.0), 200)] {
         let mut bench = Bench::new(Session::default());
@@ -714,7 +747,11 @@ fn page_keys_scroll_long_text_and_the_footer_stays() {
         bench.key(Key::F6, Modifiers::NONE);
         bench.key(Key::PageDown, Modifiers::NONE);
         (0..20).for_each(|_| drop(bench.frame(Vec::new())));
-        assert!(heading(&bench).is_none_or(|now| now < top - 100.0), "{size:?} {scale}: {:?}", heading(&bench));
+        assert!(
+            heading(&bench).is_none_or(|now| now < top - 100.0),
+            "{size:?} {scale}: {:?}",
+            heading(&bench)
+        );
         assert_eq!(bench.find("Next").expect("a button").rect, next);
         // The next step begins at its top.
         bench.key(Key::Enter, Modifiers::NONE);
@@ -750,7 +787,11 @@ fn the_picture_keeps_its_room_and_no_text_leaves_the_panel() {
                     && text.pos.y > 40.0
                     && text.pos.y < area.bottom() - 30.0
                 {
-                    assert!(text.visual_bounding_rect().right() <= right, "{}: {scale} %", text.galley.text());
+                    assert!(
+                        text.visual_bounding_rect().right() <= right,
+                        "{}: {scale} %",
+                        text.galley.text()
+                    );
                     texts += 1;
                 }
             }
@@ -840,7 +881,9 @@ fn the_width_of_the_lesson_and_that_of_the_scene_list_are_kept_apart() {
 fn rings(bench: &mut Bench) -> Vec<Rect> {
     let shapes = bench.shapes();
     let ring = |shape: &Shape| match shape {
-        Shape::Rect(r) if r.stroke.color == DARK.accent && r.stroke.width >= 2.0 && r.fill.a() == 0 => Some(r.rect),
+        Shape::Rect(r) if r.stroke.color == DARK.accent && r.stroke.width >= 2.0 && r.fill.a() == 0 => {
+            Some(r.rect)
+        }
         _ => None,
     };
     shapes.iter().filter_map(ring).collect()
@@ -861,7 +904,9 @@ fn the_controls_that_a_step_names_get_a_ring_and_come_into_view() {
     let all = rings(&mut bench);
     let help = bench.tree.iter().find(|s| s.label == "Help" && s.rect.top() < 30.0).expect("a menu").rect;
     assert_eq!(all.len(), 2, "{all:?}");
-    assert!(all.iter().any(|ring| ring.contains_rect(knob)) && all.iter().any(|ring| ring.contains_rect(help)));
+    assert!(
+        all.iter().any(|ring| ring.contains_rect(knob)) && all.iter().any(|ring| ring.contains_rect(help))
+    );
     // It swells for a moment; then the window rests.
     assert!(!bench.ctx.has_requested_repaint(), "{:?}", bench.ctx.repaint_causes());
     go(&mut bench, LessonCommand::GoTo(3));
@@ -937,16 +982,18 @@ fn the_start_has_three_doors() {
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::Examples(true)));
         let first = &LESSONS[0];
-        let door = bench.tree.iter().find(|seen| seen.label.starts_with("Begin here")).expect("a lesson").clone();
+        let door =
+            bench.tree.iter().find(|seen| seen.label.starts_with("Begin here")).expect("a lesson").clone();
         assert!(door.label.contains(&first.title) && door.rect.top() > bench.area.rect.bottom());
         assert!(bench.find("Example: Default scene").is_some());
         // Nothing lies over anything else.
-        let doors: Vec<_> = ["All lessons ▾", "New reflection model…", "New model…", "Example: Default scene"]
-            .into_iter()
-            .filter_map(|name| bench.find(name))
-            .chain([&door])
-            .map(|seen| seen.rect)
-            .collect();
+        let doors: Vec<_> =
+            ["All lessons ▾", "New reflection model…", "New model…", "Example: Default scene"]
+                .into_iter()
+                .filter_map(|name| bench.find(name))
+                .chain([&door])
+                .map(|seen| seen.rect)
+                .collect();
         assert_eq!(doors.len(), 4, "{size:?} {scale}");
         for (i, a) in doors.iter().enumerate() {
             assert!(doors[..i].iter().all(|b| !a.shrink(0.5).intersects(*b)), "{size:?} {scale}: {doors:?}");
@@ -987,7 +1034,10 @@ fn the_door_goes_on_with_the_last_lesson() {
     bench.apply(Action::View(ViewChange::Examples(true)));
     let steps = LESSONS[1].steps.len();
     bench.click(&format!("Go on: step 3 of {steps}, {}", LESSONS[1].title));
-    assert_eq!((bench.session.lesson.as_ref().map(|open| open.source.clone()), step(&bench)), (Some(second), 2));
+    assert_eq!(
+        (bench.session.lesson.as_ref().map(|open| open.source.clone()), step(&bench)),
+        (Some(second), 2)
+    );
     // Once it is finished, the first that is not.
     go(&mut bench, LessonCommand::GoTo(steps - 1));
     while bench.session.lesson.is_some() {
@@ -1013,4 +1063,45 @@ fn every_shipped_lesson_can_be_gone_through_and_left() {
         assert!(bench.session.lesson.is_none(), "{}", lesson.title);
         assert_eq!(bench.session.title(), "Mine");
     }
+}
+
+#[test]
+fn a_lesson_that_there_is_not_is_named_on_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = |arguments: &[&str]| {
+        let output = crate::screen::lcm(arguments, folder.path()).output().expect("lcm runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let name = &LESSONS[0].id;
+    let misspelt = format!("{name}x");
+    let (code, text) = said(&["view", "--lesson", &misspelt]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains(&format!("there is no lesson “{misspelt}”")) && text.contains(name.as_str()),
+        "{text}"
+    );
+    let file = folder.path().join("broken.md");
+    std::fs::write(&file, TEXT.replace("knob.alpha >", "knob.alpha >>")).expect("writable");
+    let (code, text) = said(&["view", "--lesson", &file.display().to_string()]);
+    let line = TEXT.lines().position(|line| line.starts_with("until: knob.alpha")).expect("there") + 1;
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains(&format!("broken.md:{line}:")), "{text}");
+    assert_eq!(said(&["view", "--step", "2"]).0, Some(2), "a step of nothing");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_window_follows_the_file_of_the_lesson() {
+    use crate::screen::Screen;
+    let desk = Desk::new();
+    let file = desk.folder.path().join("light.md");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", "--size", "1280x720", "--lesson", &file.display().to_string()]);
+    let error = |p: &crate::screen::Picture| p.count(0..340, 100..600, |c| c == [0xff, 0x8a, 0x7a]);
+    // The panel of the lesson is wider than the scene list.
+    window.until("the lesson", |p| p.count(220..336, 560..610, |c| c == [21; 3]) > 4000 && error(p) == 0);
+    std::fs::write(&file, TEXT.replace("knob.alpha >", "knob.alpha >>")).expect("writable");
+    window.until("the errors", |p| error(p) > 100);
+    std::fs::write(&file, TEXT).expect("writable");
+    window.until("the lesson again", |p| error(p) == 0);
 }

@@ -77,7 +77,13 @@ impl Condition {
             match part {
                 Expression::Truth(operand) => {
                     if let Some(kind @ (Kind::Number | Kind::Text)) = kinds(operand) {
-                        mistakes.push((operand.at, format!("this is a {}, and alone neither true nor false; compare it, as in … = …", kind.name())));
+                        mistakes.push((
+                            operand.at,
+                            format!(
+                                "this is a {}, and alone neither true nor false; compare it, as in … = …",
+                                kind.name()
+                            ),
+                        ));
                     }
                 }
                 Expression::Comparison { left, sign, right } => {
@@ -113,7 +119,10 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
     for (operand, kind) in [(left, a), (right, b)] {
         if has_order && matches!(kind, Kind::Text | Kind::Truth) {
             let what = if kind == Kind::Text { "a text" } else { "true or false" };
-            return Some((operand.at, format!("this is {what}, which is not greater or less than others; compare it by = or !=")));
+            return Some((
+                operand.at,
+                format!("this is {what}, which is not greater or less than others; compare it by = or !="),
+            ));
         }
     }
     (a != b && a != Kind::Various && b != Kind::Various).then(|| {
@@ -135,7 +144,8 @@ fn spelling(quantity: &Operand, text: &Operand, registry: &Registry) -> Option<(
     match &asked.argument {
         Argument::Name(name) => {
             let parameter = registry.material_parameter(name);
-            if let Some(crate::parameter::ParameterKind::Choice { options, .. }) = parameter.map(|p| &p.kind) {
+            if let Some(crate::parameter::ParameterKind::Choice { options, .. }) = parameter.map(|p| &p.kind)
+            {
                 known = options.iter().map(|(id, _)| *id).collect();
             }
         }
@@ -191,7 +201,12 @@ fn kind(
 }
 
 /// The type of a knob.
-fn of_knob(name: &str, scene: &Scene, selection: Option<Selection>, registry: &Registry) -> Result<Kind, String> {
+fn of_knob(
+    name: &str,
+    scene: &Scene,
+    selection: Option<Selection>,
+    registry: &Registry,
+) -> Result<Kind, String> {
     match name {
         "exposure" => return Ok(Kind::Number),
         "tone_mapping" | "encoding" => return Ok(Kind::Text),

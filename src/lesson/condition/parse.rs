@@ -35,7 +35,9 @@ pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
     match parser.token {
         Token::End => Ok(read),
         Token::Close => Err((parser.at, "there is no opening bracket for this one".to_owned())),
-        _ => Err((parser.at, format!("expected and, or, or the end of the condition, not {}", parser.shown()))),
+        _ => {
+            Err((parser.at, format!("expected and, or, or the end of the condition, not {}", parser.shown())))
+        }
     }
 }
 
@@ -124,7 +126,8 @@ impl<'a> Parser<'a> {
         let negative = rest.starts_with(['-', '−']);
         let digits = rest.trim_start_matches(['-', '−', '+']);
         let start = rest.len() - digits.len();
-        let mut length = digits.find(|c: char| !(c.is_ascii_alphanumeric() || c == '.')).unwrap_or(digits.len());
+        let mut length =
+            digits.find(|c: char| !(c.is_ascii_alphanumeric() || c == '.')).unwrap_or(digits.len());
         // The sign of an exponent is part of the number.
         if digits[..length].ends_with(['e', 'E']) && digits[length..].starts_with(['-', '+']) {
             let after = &digits[length + 1..];
@@ -214,7 +217,9 @@ impl<'a> Parser<'a> {
             Token::Word("and" | "or" | "not") | Token::Sign(_) | Token::Open | Token::Close | Token::End => {
                 return Err((at, format!("expected a quantity or a value, not {}", self.shown())));
             }
-            Token::Word(word) => Term::Quantity(quantity::asked(word).map_err(|(inside, what)| (at + inside, what))?),
+            Token::Word(word) => {
+                Term::Quantity(quantity::asked(word).map_err(|(inside, what)| (at + inside, what))?)
+            }
         };
         self.advance()?;
         Ok(Operand { at, what })

@@ -58,7 +58,8 @@ pub(super) fn angle(s: &Situation, name: &str) -> Result<f64, String> {
 }
 
 pub(super) fn light_distance(s: &Situation) -> Result<f64, String> {
-    light(s, |lit| lit.distance.map(f64::from)).map_err(|_| "no light with a position shines there".to_owned())
+    light(s, |lit| lit.distance.map(f64::from))
+        .map_err(|_| "no light with a position shines there".to_owned())
 }
 
 /// True if the specular term is brighter than the diffuse one: at the points of evaluation, by their weights.
@@ -83,7 +84,8 @@ pub(super) fn is_highlight(s: &Situation) -> Result<bool, String> {
 
 pub(super) fn brightest_vertex(s: &Situation) -> Result<bool, String> {
     let seen = seen(s)?;
-    let vertices: Vec<_> = seen.spots.iter().filter(|spot| matches!(spot.place, Place::Vertex { .. })).collect();
+    let vertices: Vec<_> =
+        seen.spots.iter().filter(|spot| matches!(spot.place, Place::Vertex { .. })).collect();
     let Some(eye) = vertices.first().map(|spot| spot.position + spot.distance * spot.eye) else {
         return Err(format!(
             "the equation is not evaluated at vertices but at {} under {}",

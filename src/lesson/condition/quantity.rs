@@ -9,12 +9,7 @@ use crate::{
     document::Selection,
     lesson::{Situation, kind_of, state},
     matching::highlight_width,
-    optics::{
-        Frame, TermSelection,
-        albedo::directional_in_batches,
-        colour::luminance,
-        geometry::direction,
-    },
+    optics::{Frame, TermSelection, albedo::directional_in_batches, colour::luminance, geometry::direction},
     parameter::ParameterKind,
     reflection::{ModelEntry, Surface},
     registry::Registry,
@@ -278,10 +273,14 @@ fn knob(s: &Situation, name: &str) -> Result<Value, String> {
     let found = match s.selection {
         Selection::Object(i) => {
             let own = scene::value(s.scene, &path("objects", i).key(name.to_owned()), s.registry);
-            own.or_else(|_| scene::value(s.scene, &path("objects", i).key("material").key(name.to_owned()), s.registry))
+            own.or_else(|_| {
+                scene::value(s.scene, &path("objects", i).key("material").key(name.to_owned()), s.registry)
+            })
         }
         Selection::Light(i) => scene::value(s.scene, &path("lights", i).key(name.to_owned()), s.registry),
-        Selection::Observer => scene::value(s.scene, &Path::root().key("observer").key(name.to_owned()), s.registry),
+        Selection::Observer => {
+            scene::value(s.scene, &Path::root().key("observer").key(name.to_owned()), s.registry)
+        }
         Selection::Room => return Err("no object and no light is selected".to_owned()),
     };
     found.map_err(|_| format!("what is selected has no {name}"))
@@ -317,7 +316,10 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
             Ok(angle) if (0.0..90.0).contains(&angle) => {
                 of("curve.albedo(DEGREES)", Argument::Angle(angle)).ok_or_else(unknown)
             }
-            _ => Err((at, format!("the angle is {}, but it must be from 0° to less than 90°", quoted(written)))),
+            _ => Err((
+                at,
+                format!("the angle is {}, but it must be from 0° to less than 90°", quoted(written)),
+            )),
         };
     }
     if word == "curve.albedo" {

@@ -22,7 +22,11 @@ pub(super) fn value(scene: &Scene, path: &Path, registry: &Registry) -> Result<V
         // Scenes have 32 bits: 0.1 is to be 0.1, and not its nearest neighbour.
         Json::Number(number) => {
             let value = number.as_f64().unwrap_or(f64::NAN);
-            Ok(Value::Number(if number.is_f64() { (value as f32).to_string().parse().unwrap_or(value) } else { value }))
+            Ok(Value::Number(if number.is_f64() {
+                (value as f32).to_string().parse().unwrap_or(value)
+            } else {
+                value
+            }))
         }
         Json::String(text) => Ok(Value::Text(text)),
         Json::Bool(truth) => Ok(Value::Truth(truth)),
@@ -35,13 +39,20 @@ pub(super) fn value(scene: &Scene, path: &Path, registry: &Registry) -> Result<V
 /// The value at a path; null where a scene may give one and this one does not.
 pub(super) fn json_at(scene: &Scene, path: &Path, registry: &Registry) -> Result<Json, String> {
     let segments = path.segments();
-    let [Segment::Key(first), rest @ ..] = segments else { return Err("a path begins with a key".to_owned()) };
+    let [Segment::Key(first), rest @ ..] = segments else {
+        return Err("a path begins with a key".to_owned());
+    };
     let list = |count: usize, part: &dyn Fn(usize) -> Json| match rest {
         [] => Err(format!("{first} is a list; go on with [0], or with .count for the number of its entries")),
         [Segment::Key(key)] if key == COUNT => Ok(json!(count)),
         [Segment::Index(i), rest @ ..] if *i < count => walk(part(*i), &format!("{first}[{i}]"), rest),
-        [Segment::Index(i), ..] => Err(format!("there is no {first}[{i}]: the scene has {}, counted from 0; {first}.count is their number", plural(count, first.trim_end_matches('s')))),
-        [Segment::Key(key), ..] => Err(format!("{first} is a list, and has no {}; go on with [0] or .count", quoted(key))),
+        [Segment::Index(i), ..] => Err(format!(
+            "there is no {first}[{i}]: the scene has {}, counted from 0; {first}.count is their number",
+            plural(count, first.trim_end_matches('s'))
+        )),
+        [Segment::Key(key), ..] => {
+            Err(format!("{first} is a list, and has no {}; go on with [0] or .count", quoted(key)))
+        }
     };
     match first.as_ref() {
         "objects" => list(scene.objects.len(), &|i| object(scene, &scene.objects[i], registry)),
@@ -66,7 +77,10 @@ fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
             }
             (Segment::Index(i), Json::Array(mut list)) if *i < list.len() => list.swap_remove(*i),
             (Segment::Index(i), Json::Array(list)) => {
-                return Err(format!("there is no {at}[{i}]: the list has {} entries, counted from 0", list.len()));
+                return Err(format!(
+                    "there is no {at}[{i}]: the list has {} entries, counted from 0",
+                    list.len()
+                ));
             }
             (Segment::Key(key), Json::Array(_)) => {
                 return Err(format!("{place} is a list, and has no {}; go on with [0]", quoted(key)));
@@ -84,7 +98,11 @@ fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
 }
 
 /// Writes the values of all parameters, given or not.
-fn fill<'p>(map: &mut Map<String, Json>, values: &Values, parameters: impl IntoIterator<Item = &'p Parameter>) {
+fn fill<'p>(
+    map: &mut Map<String, Json>,
+    values: &Values,
+    parameters: impl IntoIterator<Item = &'p Parameter>,
+) {
     for parameter in parameters {
         map.insert(parameter.name.to_owned(), of(&values.get(parameter)));
     }
@@ -183,7 +201,14 @@ fn variant(scene: &Scene, index: usize, registry: &Registry) -> Json {
         _ => Map::new(),
     };
     for key in [
-        "name", "based_on", "reflection_model", "shading_model", "terms", "tone_mapping", "exposure", "encoding",
+        "name",
+        "based_on",
+        "reflection_model",
+        "shading_model",
+        "terms",
+        "tone_mapping",
+        "exposure",
+        "encoding",
         "tessellation",
     ] {
         default(&mut map, key, Json::Null);

@@ -62,8 +62,8 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 /// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
 pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
-    let Some(explained) = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)
+    let Some(explained) =
+        probe::explained(ui.ctx()).filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)
     else {
         return;
     };

@@ -1,15 +1,16 @@
 //! The lesson that is open, at the left: its step, the text, the task, and the way on.
 
+use std::path::Path;
+
 use bevy_egui::egui::{
-    self, Align, Context, Frame, Key, Label, Layout, Margin, Modifiers, Rect, ScrollArea, Sense, TextStyle, Ui,
-    WidgetInfo, WidgetType, pos2, vec2,
+    self, Align, Context, Frame, Key, Label, Layout, Margin, Modifiers, Rect, ScrollArea, Sense, TextStyle,
+    Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{
-    Panel, PanelContext, Place,
-    focus,
+    Panel, PanelContext, Place, focus,
     icon::{self, Icon},
-    state::{Action, LessonCommand, OpenLesson, Session, Severity},
+    state::{Action, LessonCommand, LessonSource, OpenLesson, Session, Severity, problem_of},
     theme::{self, Palette},
 };
 
@@ -58,9 +59,11 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     let scale = theme::scale_here(ui);
     let side = (12.0 * scale) as i8;
     let margin = Margin { left: side, right: side, top: 4, bottom: 6 };
-    let head = egui::Panel::top("head of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
+    let head =
+        egui::Panel::top("head of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
     head.show(ui, |ui| header(ui, session, open, actions));
-    let foot = egui::Panel::bottom("foot of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
+    let foot =
+        egui::Panel::bottom("foot of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
     foot.show(ui, |ui| footer::footer(ui, open, actions));
     let whole = ui.available_rect_before_wrap();
     let turned = pages(ui.ctx(), whole);
@@ -134,9 +137,10 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     });
     ui.horizontal(|ui| {
         let words = format!("Step {} of {count}", open.step + 1);
-        let button = ui.menu_button(egui::RichText::new(format!("{words} ▾")).small().color(palette.weak), |ui| {
-            steps(ui, open, actions);
-        });
+        let button =
+            ui.menu_button(egui::RichText::new(format!("{words} ▾")).small().color(palette.weak), |ui| {
+                steps(ui, open, actions);
+            });
         button.response.on_hover_text("Go to another step");
         bar(ui, open, &words);
     });
@@ -186,11 +190,17 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
         ui.set_min_width(ui.available_width());
         ui.add(Label::new(theme::strong(ui, "The file has errors; this is the last good version.")).wrap());
         for problem in &open.problems {
+            let text = match &open.source {
+                LessonSource::File(path) => {
+                    problem_of(Path::new(path.file_name().unwrap_or_default()), problem)
+                }
+                LessonSource::Shipped(_) => problem.to_string(),
+            };
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let (sign, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
                 icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
-                ui.add(Label::new(problem.to_string()).wrap().selectable(true));
+                ui.add(Label::new(text).wrap().selectable(true));
             });
         }
     });

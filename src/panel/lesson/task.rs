@@ -125,10 +125,21 @@ fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool
             (true, true) => ": right",
             (true, false) => ": wrong",
         };
-        WidgetInfo::selected(WidgetType::RadioButton, true, chosen, format!("{}{verdict}", spoken(&choice.text)))
+        WidgetInfo::selected(
+            WidgetType::RadioButton,
+            true,
+            chosen,
+            format!("{}{verdict}", spoken(&choice.text)),
+        )
     });
     let hot = response.hovered() || response.has_focus();
-    let fill = if chosen { palette.chosen } else if hot { palette.hovered } else { palette.panel };
+    let fill = if chosen {
+        palette.chosen
+    } else if hot {
+        palette.hovered
+    } else {
+        palette.panel
+    };
     let edge = if chosen || hot { palette.accent } else { palette.line };
     ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, edge), StrokeKind::Inside);
     let centre = pos2(rect.left() + 0.5 * left, rect.top() + 0.5 * (height.min(28.0 * scale)));

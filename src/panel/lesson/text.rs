@@ -61,12 +61,8 @@ pub(super) fn paragraph(ui: &mut Ui, runs: &[Run]) {
 
 /// An equation, a line for each of its own.
 fn equation(ui: &mut Ui, text: &str) {
-    let parts: Vec<_> = text
-        .lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .map(|line| (Term::Total, line))
-        .collect();
+    let parts: Vec<_> =
+        text.lines().map(str::trim).filter(|line| !line.is_empty()).map(|line| (Term::Total, line)).collect();
     ui.add_space(2.0);
     ui.indent("equation", |ui| {
         maths::equation_of(ui, &parts, Sizes::default(), |symbol| maths::meaning(symbol).map(str::to_owned));
@@ -84,12 +80,12 @@ fn item(ui: &mut Ui, number: Option<u64>, depth: usize, runs: &[Run]) {
     paragraph(&mut child, runs);
     let used = child.min_rect();
     let sign = number.map_or_else(|| "•".to_owned(), |number| format!("{number}."));
-    let galley = ui.painter().layout_no_wrap(
-        sign,
-        TextStyle::Body.resolve(ui.style()),
-        theme::Palette::here(ui).weak,
+    let galley =
+        ui.painter().layout_no_wrap(sign, TextStyle::Body.resolve(ui.style()), theme::Palette::here(ui).weak);
+    let at = pos2(
+        place.left() - 0.4 * size - galley.size().x,
+        used.top() + 0.5 * (LEADING * size - galley.size().y),
     );
-    let at = pos2(place.left() - 0.4 * size - galley.size().x, used.top() + 0.5 * (LEADING * size - galley.size().y));
     ui.painter().galley(at, galley, theme::Palette::here(ui).weak);
     ui.allocate_exact_size(vec2(whole.width(), used.height()), Sense::hover());
 }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::{CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange};
+use super::{
+    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange,
+};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,

@@ -173,10 +173,7 @@ impl Session {
             }
             (Question::EmptyFile { .. }, Answer::UseDefaults) => self.start_new(),
             (Question::Recover(offer), answer) => self.answer_offer(*offer, answer),
-            (
-                Question::ChangedOnDisk { path } | Question::ReplaceScene { path },
-                Answer::Overwrite,
-            ) => {
+            (Question::ChangedOnDisk { path } | Question::ReplaceScene { path }, Answer::Overwrite) => {
                 vec![Effect::SaveFile { path, overwrite: true }]
             }
             (Question::ChangedOnDisk { path }, Answer::Reload) => {
