@@ -13,6 +13,7 @@ use crate::{
     panel::state::LessonSource,
     registry::Registry,
     scene::{Scene, error::LoadError, load::Defaults},
+    text::{did_you_mean, listed, quoted},
 };
 
 #[derive(Args, Debug)]
@@ -155,9 +156,23 @@ fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Fai
     if let Some(i) = shipped {
         return Ok(LessonSource::Shipped(i));
     }
+    let name = lesson.display().to_string();
+    if !lesson.exists() {
+        let known: Vec<_> = LESSONS.iter().map(|lesson| lesson.id.as_str()).collect();
+        let near = did_you_mean(&name, known.iter().map(|id| (*id, *id)));
+        let shipped = if known.is_empty() {
+            String::new()
+        } else {
+            format!("; the lessons are {}", listed(&known, "and"))
+        };
+        return Err(Failure::Invalid(format!(
+            "there is no lesson {}, and no file of that name{shipped}{near}",
+            quoted(&name)
+        )));
+    }
     Lesson::read(lesson, registry).map_err(|problems| {
-        let lines: Vec<_> = problems.iter().map(ToString::to_string).collect();
-        Failure::Invalid(lines.join("\n"))
+        let all: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
+        Failure::Invalid(all.join("\n"))
     })?;
     Ok(LessonSource::File(lesson.to_owned()))
 }

@@ -166,6 +166,7 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         None => "Begin here".to_owned(),
     });
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{small}, {title}")));
+    focus::first(ui.ctx(), response.id);
     card(ui, rect, &response);
     let inside = rect.shrink2(vec2(10.0, 7.0));
     let font = TextStyle::Small.resolve(ui.style());

@@ -40,7 +40,7 @@ minutes: 5
 
 ## The picture
 
-Light that comes *straight* is bright: with `k_d` it is, see **F7**,
+Light that comes *straight* is bright: with k_d it is, see **F7**,
 
 ```equation
 I_d = k_d max(0, N·L)
@@ -91,7 +91,7 @@ channel: none
 
 ```find
 Click a pixel of the sphere.
-until: probe.pinned and not probe.background
+until: probe.background = false
 ```
 "#;
 
@@ -434,14 +434,19 @@ fn previous_and_again_begin_a_step_as_it_began() {
 #[test]
 fn a_step_whose_scene_cannot_follow_begins_from_the_start() {
     let desk = Desk::new();
+    let cube = "```scene\nobjects[1] = {\"type\": \"cube\", \"position\": [2, 5, 5], \"size\": 1}\n```\n\n```predict";
+    let text =
+        TEXT.replace("```predict", cube).replace("objects[0].material.alpha = 20", "objects[1].size = 2");
+    std::fs::write(desk.folder.path().join("light.md"), text).expect("writable");
     let mut bench = desk.bench(Session::default());
-    go(&mut bench, LessonCommand::GoTo(1));
-    apply(&mut bench, Action::Remove(Selection::Object(0)));
-    assert!(bench.session.document.objects.is_empty());
+    go(&mut bench, LessonCommand::Next);
+    apply(&mut bench, Action::Remove(Selection::Object(1)));
+    assert_eq!(bench.session.document.objects.len(), 1);
     for _ in 0..2 {
         go(&mut bench, LessonCommand::Next);
     }
-    assert_eq!((step(&bench), bench.session.document.objects.len()), (2, 1));
+    let objects = &bench.session.document.objects;
+    assert_eq!((step(&bench), objects.len(), objects[1].size), (2, 2, 2.0));
 }
 
 #[test]
@@ -585,7 +590,9 @@ fn a_lesson_goes_on_where_it_was_left() {
     assert_eq!(progress.of(&name), Some(&past));
     assert_eq!(progress.next(), Some(desk.source()));
     // Another day.
-    let mut bench = Bench::new(Session { progress, ..Session::default() });
+    let mut session = Session::default();
+    session.progress = progress;
+    let mut bench = Bench::new(session);
     desk.open(&mut bench);
     assert_eq!((step(&bench), done(&bench)), (2, [1].into()));
     assert_eq!(bench.session.document.reflection_model, "blinn_phong", "with the scenes of the steps before");
@@ -1056,4 +1063,45 @@ fn every_shipped_lesson_can_be_gone_through_and_left() {
         assert!(bench.session.lesson.is_none(), "{}", lesson.title);
         assert_eq!(bench.session.title(), "Mine");
     }
+}
+
+#[test]
+fn a_lesson_that_there_is_not_is_named_on_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = |arguments: &[&str]| {
+        let output = crate::screen::lcm(arguments, folder.path()).output().expect("lcm runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let name = &LESSONS[0].id;
+    let misspelt = format!("{name}x");
+    let (code, text) = said(&["view", "--lesson", &misspelt]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains(&format!("there is no lesson “{misspelt}”")) && text.contains(name.as_str()),
+        "{text}"
+    );
+    let file = folder.path().join("broken.md");
+    std::fs::write(&file, TEXT.replace("knob.alpha >", "knob.alpha >>")).expect("writable");
+    let (code, text) = said(&["view", "--lesson", &file.display().to_string()]);
+    let line = TEXT.lines().position(|line| line.starts_with("until: knob.alpha")).expect("there") + 1;
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains(&format!("broken.md:{line}:")), "{text}");
+    assert_eq!(said(&["view", "--step", "2"]).0, Some(2), "a step of nothing");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_window_follows_the_file_of_the_lesson() {
+    use crate::screen::Screen;
+    let desk = Desk::new();
+    let file = desk.folder.path().join("light.md");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", "--size", "1280x720", "--lesson", &file.display().to_string()]);
+    let error = |p: &crate::screen::Picture| p.count(0..340, 100..600, |c| c == [0xff, 0x8a, 0x7a]);
+    // The panel of the lesson is wider than the scene list.
+    window.until("the lesson", |p| p.count(220..336, 560..610, |c| c == [21; 3]) > 4000 && error(p) == 0);
+    std::fs::write(&file, TEXT.replace("knob.alpha >", "knob.alpha >>")).expect("writable");
+    window.until("the errors", |p| error(p) > 100);
+    std::fs::write(&file, TEXT).expect("writable");
+    window.until("the lesson again", |p| error(p) == 0);
 }

@@ -70,7 +70,7 @@ pub(in crate::panel) fn look(ctx: &Context, session: &Session, registry: &Regist
     let holds = goal.until.holds(&situation);
     let missing = if holds { None } else { goal.until.missing(&situation) };
     ctx.data_mut(|d| d.insert_temp(memory(), Checked { question, missing }));
-    holds.then(|| Action::Lesson(LessonCommand::Solved(open.step)))
+    holds.then_some(Action::Lesson(LessonCommand::Solved(open.step)))
 }
 
 /// The window as conditions see it.

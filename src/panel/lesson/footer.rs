@@ -26,7 +26,8 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
         (false, true) => ("Finish", "Leave the lesson: your own scene comes back (Alt+→)"),
         (false, false) => ("Next", "The next step (Alt+→)"),
     };
-    ui.horizontal(|ui| {
+    // The same widgets in all steps, so that Enter goes on and on.
+    let buttons = |ui: &mut Ui| {
         let gap = ui.spacing().item_spacing.x;
         let width = 0.5 * (ui.available_width() - gap);
         let size = vec2(width, HEIGHT * scale);
@@ -38,12 +39,12 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
         if open.is_done() || open.asking {
             button = button.fill(palette.chosen).stroke(Stroke::new(1.0, palette.accent));
         }
-        // The same widget in all steps, so that Enter goes on and on.
         let response = ui.push_id("next", |ui| ui.add(button)).inner;
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, next));
         focus::first(ui.ctx(), response.id);
         if response.on_hover_text(tip).clicked() {
             actions.push(Action::Lesson(LessonCommand::Next));
         }
-    });
+    };
+    ui.push_id("buttons", |ui| ui.horizontal(buttons));
 }

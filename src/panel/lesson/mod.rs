@@ -1,5 +1,7 @@
 //! The lesson that is open, at the left: its step, the text, the task, and the way on.
 
+use std::path::Path;
+
 use bevy_egui::egui::{
     self, Align, Context, Frame, Key, Label, Layout, Margin, Modifiers, Rect, ScrollArea, Sense, TextStyle,
     Ui, WidgetInfo, WidgetType, pos2, vec2,
@@ -8,7 +10,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, PanelContext, Place, focus,
     icon::{self, Icon},
-    state::{Action, LessonCommand, OpenLesson, Session, Severity},
+    state::{Action, LessonCommand, LessonSource, OpenLesson, Session, Severity, problem_of},
     theme::{self, Palette},
 };
 
@@ -188,11 +190,17 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
         ui.set_min_width(ui.available_width());
         ui.add(Label::new(theme::strong(ui, "The file has errors; this is the last good version.")).wrap());
         for problem in &open.problems {
+            let text = match &open.source {
+                LessonSource::File(path) => {
+                    problem_of(Path::new(path.file_name().unwrap_or_default()), problem)
+                }
+                LessonSource::Shipped(_) => problem.to_string(),
+            };
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let (sign, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
                 icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
-                ui.add(Label::new(problem.to_string()).wrap().selectable(true));
+                ui.add(Label::new(text).wrap().selectable(true));
             });
         }
     });

@@ -25,8 +25,8 @@ struct Pointed {
     entry: u64,
     /// When it was.
     since: f64,
-    /// One of them was scrolled into view, or is in view.
-    revealed: bool,
+    /// Those that were scrolled into view, or are in view.
+    revealed: Vec<Control>,
     found: Vec<(Rect, Rect, LayerId)>,
 }
 
@@ -53,17 +53,21 @@ pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
 
 /// A control is shown here.
 fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
-    let wanted = |pointed: &Pointed| pointed.controls.iter().any(&is);
-    let revealed =
-        ui.data(|d| d.get_temp::<Pointed>(memory()).filter(wanted).map(|pointed| pointed.revealed));
-    let Some(revealed) = revealed.filter(|_| ui.is_visible() && rect.is_positive()) else { return };
+    let found = ui.data(|d| {
+        let pointed: Pointed = d.get_temp(memory())?;
+        let control = pointed.controls.iter().find(|control| is(control))?.clone();
+        Some((pointed.revealed.contains(&control), control))
+    });
+    let Some((revealed, control)) = found.filter(|_| ui.is_visible() && rect.is_positive()) else { return };
     let clip = ui.clip_rect();
     if !revealed && !clip.contains_rect(rect) {
         ui.scroll_to_rect(rect, Some(Align::Center));
     }
     ui.data_mut(|d| {
         let pointed = d.get_temp_mut_or_default::<Pointed>(memory());
-        pointed.revealed = true;
+        if !revealed {
+            pointed.revealed.push(control);
+        }
         pointed.found.push((rect, clip, ui.layer_id()));
     });
 }

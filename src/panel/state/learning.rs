@@ -1,10 +1,14 @@
 //! The steps of the lesson that is open: its scenes and choices of the view, answers, and the way out.
 
-use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
-    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View, aside::Shown, lesson::Entered,
+    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View, aside::Shown, open_lesson::Entered,
 };
 use crate::{
     document::Document,
@@ -14,6 +18,12 @@ use crate::{
     registry::Registry,
     scene::Scene,
 };
+
+/// A problem with the file that it is in.
+pub(in crate::panel) fn problem_of(file: &Path, problem: &Problem) -> String {
+    let space = if problem.place.is_some() { "" } else { " " };
+    format!("{}:{space}{problem}", file.display())
+}
 
 /// True if a goal is about the pixel that is pinned.
 fn is_about_pixels(goal: &Goal) -> bool {
@@ -313,7 +323,7 @@ impl Session {
     pub fn needs_probe(&self) -> bool {
         let step = self.lesson.as_ref().and_then(OpenLesson::now);
         let goal = step.and_then(|step| step.task.as_ref()?.goal());
-        self.view.pinned.is_some() && goal.is_some_and(|goal| is_about_pixels(goal))
+        self.view.pinned.is_some() && goal.is_some_and(is_about_pixels)
     }
 
     /// True while a pixel is to be found: a click into the picture pins it.
@@ -402,7 +412,7 @@ impl Session {
             Err(problems) => {
                 // The latest message stands on top: the first problem, and above it the consequence.
                 for problem in problems.iter().rev() {
-                    self.say(Severity::Error, problem.to_string());
+                    self.say(Severity::Error, problem_of(&path, problem));
                 }
                 self.say(Severity::Error, format!("The lesson {} was not opened.", path.display()));
                 Vec::new()
@@ -446,7 +456,7 @@ impl Session {
 
     /// The folder of the file of the lesson that is open.
     #[must_use]
-    pub fn lesson_folder(&self) -> Option<&std::path::Path> {
+    pub fn lesson_folder(&self) -> Option<&Path> {
         match &self.lesson.as_ref()?.source {
             LessonSource::File(path) => Some(files::folder_of(path)),
             LessonSource::Shipped(_) => None,
