@@ -46,6 +46,7 @@ mod knobs;
 mod law_check;
 mod laws;
 mod layout;
+mod lessons;
 mod links;
 mod marks;
 mod matching;
