@@ -1,4 +1,4 @@
-//! What a lesson can point at, and the parts of a scene that it can name.
+//! The controls that a lesson can point at, and the parts of a scene that it can name.
 
 use super::{problem::Problems, words::Piece};
 use crate::{

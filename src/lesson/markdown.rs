@@ -10,7 +10,7 @@ use crate::registry::Registry;
 /// Lists within lists are no deeper than this.
 const DEEPEST_LIST: usize = 3;
 
-/// What Markdown may have beyond CommonMark: recognised, so that it is refused instead of shown as signs.
+/// Markdown beyond CommonMark: recognised, so that it is refused instead of shown as signs.
 fn options() -> Options {
     Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH
 }

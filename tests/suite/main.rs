@@ -46,6 +46,7 @@ mod knobs;
 mod law_check;
 mod laws;
 mod layout;
+mod lesson_files;
 mod lessons;
 mod linked;
 mod links;
