@@ -61,13 +61,13 @@ fn what_stands_before_an_object_hides_its_lines() {
     let mut scene = cube();
     let alone = length(&wires(&scene, DebugChannel::Wireframe));
     // A box before the nearest corner.
-    let wall = Object { position: Vec3::new(6.3, 6.0, 7.0), size: 0.5, ..scene.objects[0].clone() };
+    let wall = Object { position: Vec3::new(6.3, 6.0, 7.0), size: 0.8, ..scene.objects[0].clone() };
     scene.objects.push(wall);
     let both = wires(&scene, DebugChannel::Wireframe);
     let of_first =
         |line: &&Line| line.ends.iter().all(|p| (*p - Vec3::splat(5.0)).abs().max_element() < 1.001);
     let seen: f32 = both.lines.iter().filter(of_first).map(|l| l.ends[0].distance(l.ends[1])).sum();
-    assert!((0.2 * alone..0.95 * alone).contains(&seen), "{seen} of {alone}");
+    assert!((0.3 * alone..0.95 * alone).contains(&seen), "{seen} of {alone}");
     assert_eq!((both.drawn, both.objects), (2, 2));
     // Behind the eye there is nothing to see.
     scene.observer.direction = -scene.observer.direction;
@@ -87,7 +87,7 @@ fn a_sphere_shows_its_nearer_side_only() {
     let mut fine = scene.clone();
     fine.objects[0].tessellation = Some(96);
     let fine = mean(&wires(&fine, DebugChannel::Wireframe));
-    assert!(coarse > 0.9 && fine < 0.5, "fine meshes are faint: {coarse}, {fine}");
+    assert!(coarse > 2.0 * fine && fine < 0.3, "fine meshes are faint: {coarse}, {fine}");
     assert!(corners.dots.len() > 60, "{}", corners.dots.len());
     for dot in &corners.dots {
         let normal = (dot.at - Vec3::splat(5.0)).normalize();
