@@ -31,7 +31,7 @@ pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, proble
             known.scene |= change.opens();
         }
         step(draft, &scene, &mut window, &mut known, registry, problems);
-        if draft.step.task.as_ref().is_some_and(|task| task.goal().is_some()) {
+        if draft.until.is_some() {
             // The learner changes things from here on.
             known = Knowledge::default();
         }

@@ -70,17 +70,19 @@ pub(super) fn text(
         return Err(problems.finish());
     }
     let front = front::read(whole, &mut problems);
+    let mut is_known = true;
     let start = match &front.scene {
         None => Scene::default(),
         Some((at, file)) => state::open(file, folder, registry).unwrap_or_else(|what| {
             problems.at(*at, what);
+            is_known = false;
             Scene::default()
         }),
     };
     let drafts = markdown::steps(whole, front.end, folder, registry, &mut problems);
     let start = Arc::new(start);
-    // Without the scene that is meant, everything about it would be wrong.
-    if problems.is_empty() {
+    // Without the scene that is meant, everything about it would seem wrong.
+    if is_known {
         check::steps(&start, &drafts, registry, &mut problems);
     }
     if !problems.is_empty() {
