@@ -1077,7 +1077,7 @@ fn a_lesson_that_there_is_not_is_named_on_the_command_line() {
     let (code, text) = said(&["view", "--lesson", &misspelt]);
     assert_eq!(code, Some(1), "{text}");
     assert!(
-        text.contains(&format!("there is no lesson “{misspelt}”")) && text.contains(name.as_str()),
+        text.contains(&format!("there is no lesson \"{misspelt}\"")) && text.contains(name.as_str()),
         "{text}"
     );
     let file = folder.path().join("broken.md");
