@@ -46,7 +46,7 @@ mod knobs;
 mod law_check;
 mod laws;
 mod layout;
-mod lessons;
+mod lesson_window;
 mod links;
 mod marks;
 mod matching;
