@@ -1,4 +1,4 @@
-//! What a lesson can point at, and the parts of a scene that it can name.
+//! The controls that a lesson can point at, and the parts of a scene that it can name.
 
 use super::{problem::Problems, words::Piece};
 use crate::{
@@ -30,7 +30,7 @@ pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 /// The tabs below the picture, by id.
 pub const TABS: &[&str] = &["explain", "plots", "messages"];
 /// The knobs that belong to no declared parameter.
-pub(super) const KNOBS: &[&str] = &[
+pub const KNOBS: &[&str] = &[
     "exposure",
     "tone_mapping",
     "encoding",

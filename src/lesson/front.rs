@@ -11,7 +11,7 @@ const KEYS: [&str; 4] = ["title", "summary", "minutes", "scene"];
 /// The longest lesson, minutes.
 const LONGEST: u32 = 120;
 
-/// What the front matter says.
+/// The front matter.
 #[derive(Debug, Default)]
 pub(super) struct Front {
     pub(super) title: String,

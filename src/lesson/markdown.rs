@@ -10,7 +10,7 @@ use crate::registry::Registry;
 /// Lists within lists are no deeper than this.
 const DEEPEST_LIST: usize = 3;
 
-/// What Markdown may have beyond CommonMark: recognised, so that it is refused instead of shown as signs.
+/// Markdown beyond CommonMark: recognised, so that it is refused instead of shown as signs.
 fn options() -> Options {
     Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH
 }
@@ -156,6 +156,10 @@ pub(super) fn steps(
             _ if skipped > 0 => {}
             _ => {
                 let refused = reader.event(&event, from + range.start, from + range.end);
+                if let Some(draft) = reader.steps.last_mut().filter(|_| refused) {
+                    // What was refused was meant to be there.
+                    draft.is_empty = false;
+                }
                 skipped = usize::from(refused && matches!(event, Event::Start(_)));
             }
         }

@@ -31,7 +31,7 @@ mod window;
 mod words;
 
 pub use condition::{Condition, QUANTITIES, Quantity};
-pub use controls::{BUTTONS, Control, MENUS, PartName, TABS, Which};
+pub use controls::{BUTTONS, Control, KNOBS, MENUS, PartName, TABS, Which};
 pub use problem::Problem;
 pub use read::MAX_FILE_BYTES;
 pub use situation::{Situation, WindowFacts};
@@ -60,7 +60,7 @@ pub struct Lesson {
 pub struct Step {
     /// Its heading.
     pub title: String,
-    /// What it says, in order.
+    /// Its text, in order.
     pub blocks: Vec<Block>,
     /// The change of the scene on entering it.
     pub scene: Option<SceneChange>,
@@ -68,7 +68,7 @@ pub struct Step {
     pub window: WindowChange,
     /// The controls that are highlighted while it is shown.
     pub points: Vec<Control>,
-    /// What the learner does; [`Block::Task`] is its place among the blocks.
+    /// The task of the learner; [`Block::Task`] is its place among the blocks.
     pub task: Option<Task>,
 }
 
@@ -115,7 +115,7 @@ pub enum RunStyle {
     Code,
 }
 
-/// What the learner does in a step.
+/// The task of a step.
 #[derive(Clone, Debug)]
 pub enum Task {
     /// Answers a question before the answer can be seen.
@@ -138,7 +138,7 @@ pub struct AnswerChoice {
     pub text: Vec<Run>,
     /// True if it is right.
     pub right: bool,
-    /// What is said to those who choose it.
+    /// The comment for those who choose it.
     pub feedback: Vec<Run>,
 }
 

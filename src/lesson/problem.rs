@@ -33,16 +33,6 @@ impl Problem {
     /// The problem as lines of plain text: the message, file, line and column, the line itself and a caret.
     #[must_use]
     pub fn annotated(&self, file: &str) -> String {
-        self.rendered(file, &Renderer::plain())
-    }
-
-    /// The same in terminal colours.
-    #[must_use]
-    pub fn coloured(&self, file: &str) -> String {
-        self.rendered(file, &Renderer::styled())
-    }
-
-    fn rendered(&self, file: &str, renderer: &Renderer) -> String {
         // The annotation crate escapes control characters only in ASCII.
         let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
         let (file, message) = (printable(file), fit(&self.message));
@@ -58,7 +48,7 @@ impl Problem {
             .line_start(place.line)
             .path(&*file)
             .annotation(AnnotationKind::Primary.span(start..next));
-        renderer.render(&[Level::ERROR.primary_title(&message).element(snippet)])
+        Renderer::plain().render(&[Level::ERROR.primary_title(&message).element(snippet)])
     }
 }
 
@@ -99,7 +89,7 @@ impl<'a> Problems<'a> {
     pub(super) fn finish(mut self) -> Vec<Problem> {
         // More are of no help to anybody.
         const MOST: usize = 200;
-        self.found.sort();
+        self.found.sort_by_key(|(at, _)| *at);
         self.found.dedup();
         self.found.truncate(MOST);
         let lines = Lines::new(self.text);

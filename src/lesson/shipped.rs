@@ -12,7 +12,16 @@ macro_rules! texts {
 }
 
 /// In the order in which they build on each other.
-pub const TEXTS: &[(&str, &str)] = texts![];
+pub const TEXTS: &[(&str, &str)] = texts![
+    "01_reflection_models",
+    "02_three_terms",
+    "03_where_shading_is_computed",
+    "04_half_vectors_and_highlights",
+    "05_light_falls_off",
+    "06_gamma",
+    "07_fresnel_and_metals",
+    "08_energy_and_the_white_furnace",
+];
 
 /// All of them, in the order of lists.
 pub static LESSONS: LazyLock<Vec<Lesson>> = LazyLock::new(|| {

@@ -1,4 +1,4 @@
-//! What a condition is asked about: the scene, the window, the pinned pixel.
+//! The state in which a condition is decided: the scene, the window, the pinned pixel.
 
 use crate::{
     channel::DebugChannel, curves::Kind, document::Selection, explain::Explanation, optics::TermSelection,
@@ -10,11 +10,11 @@ use crate::{
 pub struct Situation<'a> {
     /// The scene of the active view: [`Scene::seen`].
     pub scene: &'a Scene,
-    /// What is known to the program.
+    /// The models, lights and shapes.
     pub registry: &'a Registry,
     /// The selected part.
     pub selection: Selection,
-    /// What the window shows.
+    /// Facts about the window.
     pub window: WindowFacts,
     /// The explanation of the pinned pixel, or of the pixel under the pointer if none is pinned, if there is one yet.
     pub probe: Option<&'a Explanation>,
@@ -22,7 +22,7 @@ pub struct Situation<'a> {
     pub pinned: bool,
 }
 
-/// What the window shows.
+/// Facts about the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WindowFacts {
     /// The number of views, 1 to 4.

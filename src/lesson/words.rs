@@ -12,6 +12,10 @@ impl<'a> Piece<'a> {
     /// Without white space at both ends.
     pub(super) fn trimmed(self) -> Self {
         let text = self.text.trim_start();
+        if text.is_empty() {
+            // The place where something is missing.
+            return Self { at: self.at, text };
+        }
         Self { at: self.at + self.text.len() - text.len(), text: text.trim_end() }
     }
 

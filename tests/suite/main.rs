@@ -47,6 +47,7 @@ mod law_check;
 mod laws;
 mod layout;
 mod lesson_window;
+mod lessons;
 mod links;
 mod marks;
 mod matching;

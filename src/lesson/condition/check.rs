@@ -1,4 +1,4 @@
-//! What can be wrong with a condition that was read: quantities that do not exist, types that do not fit, tasks that are
+//! Mistakes in a condition that was read: quantities that do not exist, types that do not fit, tasks that are
 //! done before they begin.
 
 use super::{
@@ -15,7 +15,7 @@ use crate::{
     text::{did_you_mean, listed, quoted},
 };
 
-/// What is known of the window when a step begins.
+/// The facts that are known when a step begins.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Knowledge {
     pub selection: Option<Selection>,
@@ -113,7 +113,7 @@ fn comparisons(expression: &Expression) -> Vec<&Expression> {
     }
 }
 
-/// What is wrong with a comparison of two types.
+/// The mistake in a comparison of two types.
 fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -> Option<(usize, String)> {
     let has_order = !matches!(sign, Sign::Equal | Sign::NotEqual);
     for (operand, kind) in [(left, a), (right, b)] {
@@ -165,7 +165,12 @@ fn spelling(quantity: &Operand, text: &Operand, registry: &Registry) -> Option<(
     }
     let near = did_you_mean(written, known.iter().map(|k| (*k, *k)));
     let all = if known.len() > 12 { String::new() } else { format!("; it is {}", listed(&known, "or")) };
-    Some((text.at, format!("{} is never {}{all}{near}", asked.quantity.name, quoted(written))))
+    let name = match &asked.argument {
+        Argument::Path(path) => format!("scene.{path}"),
+        Argument::Name(name) => format!("knob.{name}"),
+        Argument::None | Argument::Angle(_) => asked.quantity.name.to_owned(),
+    };
+    Some((text.at, format!("{name} is never {}{all}{near}", quoted(written))))
 }
 
 /// The type of an operand, or why it does not exist.

@@ -1,4 +1,4 @@
-//! Whether an expression holds: where a quantity has no value, neither yes nor no.
+//! Expressions decided: yes, no, or neither where a quantity has no value.
 
 use super::{Expression, Operand, Sign, Term, Value, quantity::Asked};
 
@@ -40,7 +40,7 @@ fn compare(left: &Value, sign: Sign, right: &Value) -> Option<bool> {
     }
 }
 
-/// Whether an expression holds, if that can be said.
+/// True if an expression holds, false if it does not; none if that is undecided.
 pub(super) fn holds(expression: &Expression, ask: &Ask) -> Option<bool> {
     match expression {
         Expression::All(parts) => join(parts, false, ask),

@@ -98,7 +98,7 @@ impl Condition {
         evaluate::holds(&self.expression, &|asked| asked.value(situation)) == Some(true)
     }
 
-    /// Why it cannot be decided, if so: the first quantity without a value says what is missing, as in "nothing is pinned".
+    /// The reason why it cannot be decided, if so, as in "nothing is pinned": that of the first quantity without a value.
     #[must_use]
     pub fn missing(&self, situation: &Situation) -> Option<String> {
         let value = |asked: &Asked| asked.value(situation);
@@ -108,3 +108,6 @@ impl Condition {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

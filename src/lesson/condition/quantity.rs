@@ -43,7 +43,7 @@ impl Kind {
     }
 }
 
-/// What stands behind the name of a quantity.
+/// The argument behind the name of a quantity.
 #[derive(Debug, PartialEq)]
 pub(super) enum Argument {
     None,
