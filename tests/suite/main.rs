@@ -46,7 +46,7 @@ mod knobs;
 mod law_check;
 mod laws;
 mod layout;
-mod lesson_files;
+mod lesson_window;
 mod lessons;
 mod linked;
 mod links;

@@ -1,6 +1,6 @@
 //! The buttons at the lower end of a lesson, which stay where long text scrolls: previous and next.
 
-use bevy_egui::egui::{Button, Label, RichText, Stroke, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{Button, Id, Label, RichText, Stroke, Ui, UiBuilder, WidgetInfo, WidgetType, vec2};
 
 use crate::panel::{
     focus,
@@ -46,5 +46,6 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
             actions.push(Action::Lesson(LessonCommand::Next));
         }
     };
-    ui.push_id("buttons", |ui| ui.horizontal(buttons));
+    let fixed = UiBuilder::new().id(Id::new("buttons of the lesson"));
+    ui.scope_builder(fixed, |ui| ui.horizontal(buttons));
 }

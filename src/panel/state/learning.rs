@@ -8,7 +8,9 @@ use std::{
 
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
-    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View, aside::Shown, open_lesson::Entered,
+    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View,
+    aside::Shown,
+    open_lesson::{Entered, problem_of},
 };
 use crate::{
     document::Document,
@@ -18,12 +20,6 @@ use crate::{
     registry::Registry,
     scene::Scene,
 };
-
-/// A problem with the file that it is in.
-pub(in crate::panel) fn problem_of(file: &Path, problem: &Problem) -> String {
-    let space = if problem.place.is_some() { "" } else { " " };
-    format!("{}:{space}{problem}", file.display())
-}
 
 /// True if a goal is about the pixel that is pinned.
 fn is_about_pixels(goal: &Goal) -> bool {

@@ -3,6 +3,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    path::Path,
     sync::Arc,
 };
 
@@ -79,4 +80,10 @@ impl OpenLesson {
     pub fn answer(&self) -> Option<usize> {
         self.answers.get(&self.step)?.last().copied()
     }
+}
+
+/// A problem with the file that it is in.
+pub(in crate::panel) fn problem_of(file: &Path, problem: &Problem) -> String {
+    let space = if problem.place.is_some() { "" } else { " " };
+    format!("{}:{space}{problem}", file.display())
 }
