@@ -30,7 +30,10 @@ fn a_sound_lesson_is_counted_and_printed() {
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(0), ""));
     let shown = lcm(&["lesson", "show", "examples/lesson.md"], "");
     assert_eq!(shown.status, Some(0), "{}", shown.err);
-    assert!(shown.out.starts_with("A narrow highlight\n====") && shown.out.contains("Until: curve.highlight_width < 10°"));
+    assert!(
+        shown.out.starts_with("A narrow highlight\n====")
+            && shown.out.contains("Until: curve.highlight_width < 10°")
+    );
 }
 
 #[test]
@@ -39,7 +42,8 @@ fn all_problems_are_printed_with_file_line_and_caret() {
     fs::write(folder.path().join("l.md"), BROKEN).expect("writable");
     let run = lcm_in(folder.path(), &["lesson", "check", "l.md"], b"");
     assert_eq!((run.status, run.out.as_str()), (Some(1), ""));
-    for part in ["l.md:8:5", "l.md:12:8", "l.md:18:10", "images are not shown", "channel: n_dot_q", "n_dot_l"] {
+    for part in ["l.md:8:5", "l.md:12:8", "l.md:18:10", "images are not shown", "channel: n_dot_q", "n_dot_l"]
+    {
         assert!(run.err.contains(part), "{part}\n{}", run.err);
     }
     assert_eq!(run.err.matches("error:").count(), 3, "{}", run.err);
@@ -48,7 +52,10 @@ fn all_problems_are_printed_with_file_line_and_caret() {
     assert_eq!(json.status, Some(1), "{}", json.err);
     let reports: Value = serde_json::from_str(&json.out).expect("JSON");
     assert_eq!(reports[0]["valid"], false);
-    assert_eq!((&reports[0]["problems"][1]["line"], &reports[0]["problems"][1]["column"]), (&12.into(), &8.into()));
+    assert_eq!(
+        (&reports[0]["problems"][1]["line"], &reports[0]["problems"][1]["column"]),
+        (&12.into(), &8.into())
+    );
     let said = reports[0]["problems"][1]["message"].as_str().expect("text");
     assert_eq!(said, "there is no parameter \"alhpa\"; did you mean \"alpha\"?");
     assert_eq!(reports[1]["problems"][0]["message"], "file not found");
@@ -56,7 +63,8 @@ fn all_problems_are_printed_with_file_line_and_caret() {
         check_wording(problem["message"].as_str().expect("text"));
     }
     // Several: the last line counts them.
-    fs::write(folder.path().join("m.md"), "---\ntitle: T\nsummary: S.\n---\n\n## A\n\nb\n").expect("writable");
+    fs::write(folder.path().join("m.md"), "---\ntitle: T\nsummary: S.\n---\n\n## A\n\nb\n")
+        .expect("writable");
     let both = lcm_in(folder.path(), &["lesson", "check", "l.md", "m.md"], b"");
     assert_eq!((both.status, both.out.as_str()), (Some(1), "m.md: valid: 1 step, 0 tasks\n"));
     assert!(both.err.ends_with("1 of 2 lessons is invalid\n"), "{}", both.err);

@@ -48,6 +48,7 @@ mod laws;
 mod layout;
 mod lesson_window;
 mod lessons;
+mod lessons_played;
 mod linked;
 mod links;
 mod lobe;
