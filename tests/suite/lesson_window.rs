@@ -7,7 +7,7 @@ use lights_camera_models::{
     channel::DebugChannel,
     curves::Kind,
     document::{Edit, ObjectField, Selection},
-    lesson::{Lesson, shipped::LESSONS},
+    lesson::shipped::LESSONS,
     optics::TermSelection,
     panel::{
         self, effects,
@@ -94,10 +94,6 @@ Click a pixel of the sphere.
 until: probe.background = false
 ```
 "#;
-
-fn lesson() -> Lesson {
-    Lesson::from_text(TEXT, "light", None, &Registry::builtin()).unwrap_or_else(|all| panic!("{all:?}"))
-}
 
 /// A folder with the lesson as a file.
 struct Desk {
