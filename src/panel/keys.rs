@@ -179,7 +179,7 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         Action::Pin,
     );
     let lobe = Action::View(ViewChange::Lobe(session.view.lobe.next()));
-    add("Picture", false, false, Key::L, "Lobe at the explained point: linear, logarithmic, off", lobe);
+    add("Picture", false, true, Key::E, "Lobe at the explained point: linear, logarithmic, off", lobe);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
     add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));

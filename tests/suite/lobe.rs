@@ -157,13 +157,13 @@ fn it_is_calculated_when_something_changed_and_only_then() {
 fn menu_button_and_key_choose_it() {
     let mut bench = bench(scene("phong", "phong"));
     assert!(is_written(&mut bench, "BRDF f in sr⁻¹") && is_written(&mut bench, "Length of the vectors: "));
-    bench.letter(Key::L, "l");
+    bench.key(Key::E, Modifiers::SHIFT);
     assert_eq!(bench.session.view.lobe.scale, LobeScale::Logarithmic);
     wait(&mut bench);
     assert!(is_written(&mut bench, "logarithmic"));
-    bench.letter(Key::L, "l");
+    bench.key(Key::E, Modifiers::SHIFT);
     assert!(bench.session.view.lobe.scale == LobeScale::Off && !is_written(&mut bench, "Lobe: "));
-    bench.letter(Key::L, "l");
+    bench.key(Key::E, Modifiers::SHIFT);
     assert_eq!(bench.session.view.lobe.scale, LobeScale::Linear);
     bench.click("Lobe: linear");
     bench.settle();

@@ -311,7 +311,7 @@ pub(super) fn button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) 
     let (response, _) = bevy_egui::egui::containers::menu::MenuButton::from_button(button)
         .ui(ui, |ui| entries(ui, session, actions));
     response.on_hover_text(
-        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. L goes \
-         on to the next.",
+        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. Shift+E \
+         goes on to the next.",
     );
 }
