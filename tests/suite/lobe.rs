@@ -10,7 +10,7 @@ use lights_camera_models::{
     explain::Spot,
     optics::TermSelection,
     panel::{
-        explain::{Lobes, calculations, explained, lobe_calculations, lobes_shown},
+        explain::{Lobes, calculations, explained, lobe_calculations, lobes_are_due, lobes_shown},
         state::{Action, CompareCommand, EXPLAIN_TAB, LobeChoice, LobeScale, Pin, Session, ViewChange},
     },
     parameter::Value,
@@ -34,8 +34,7 @@ fn bench(scene: Scene) -> Bench {
 fn wait(bench: &mut Bench) {
     for _ in 0..500 {
         bench.settle();
-        if !bench.says("calculating…") && !written(bench).iter().any(|text| text.contains("calculating…"))
-        {
+        if !lobes_are_due(&bench.ctx) {
             return;
         }
         sleep(Duration::from_millis(10));

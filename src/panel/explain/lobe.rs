@@ -91,6 +91,12 @@ pub fn lobe_calculations(ctx: &Context) -> u64 {
     shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).calculations
 }
 
+/// True while lobes are calculated; those before are shown meanwhile.
+#[must_use]
+pub fn lobes_are_due(ctx: &Context) -> bool {
+    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).running.is_some()
+}
+
 /// The lobes that were drawn last.
 #[must_use]
 pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {

@@ -35,7 +35,7 @@ mod surface;
 mod vectors;
 
 pub(super) use lobe::entries as lobe_entries;
-pub use lobe::{Lobes, lobe_calculations, lobes_shown};
+pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown};
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;
