@@ -42,7 +42,7 @@ use crate::{
 const PATIENCE: Duration = Duration::from_millis(2);
 /// More lobes at once have no colours of their own.
 const MOST: usize = COLOURS.len();
-/// A narrower picture has no legend, points.
+/// A narrower picture has no legend, and a lower one none with a scale, points.
 const ROOM: f32 = 240.0;
 /// Width of the legend at most, points.
 const LEGEND: f32 = 320.0;
@@ -273,7 +273,8 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
 
 /// Paints a legend at the right, where there is room for it.
 fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
-    if rect.width() < ROOM {
+    // In a low picture the scale would cover the middle; a sentence does not.
+    if rect.width() < ROOM || legend.scale.is_some() && rect.height() < ROOM {
         return None;
     }
     let left = (rect.right() - LEGEND * theme::scale_here(ui)).max(rect.left());
