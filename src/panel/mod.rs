@@ -198,9 +198,6 @@ pub fn show(
     let zoom = zoom_percent(&ctx);
     let widths = Widths::of(&ctx, &session, whole.width());
     let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
-    if session.view.bottom_open && !presenting {
-        sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
-    }
     if presenting && session.lesson.is_some() && session.view.left_open {
         let frame = theme::panel_frame(&palette, vec2(0.0, 4.0));
         let panel = egui::Panel::left("lesson presented").frame(frame).resizable(false);
@@ -211,6 +208,11 @@ pub fn show(
     }
     // The picture of a presentation has the rest.
     let whole = if presenting { ui.available_rect_before_wrap() } else { whole };
+    // A lesson has the whole height: it is read while the strip explains.
+    let learning = session.lesson.is_some();
+    if session.view.bottom_open && !presenting && !learning {
+        sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
+    }
     if session.view.left_open && !presenting {
         let side = if session.lesson.is_some() { "lesson at the left" } else { "left" };
         let panel = egui::Panel::left(Id::new((side, zoom)))
@@ -220,6 +222,9 @@ pub fn show(
         let response = panel.show(ui, |ui| sides::side(ui, Place::Left, &session, panels, &mut context));
         focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
         sizes.0 = response.response.rect.width();
+    }
+    if session.view.bottom_open && !presenting && learning {
+        sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
     }
     if session.view.right_open && !presenting {
         let panel = egui::Panel::right(Id::new(("right", zoom)))
