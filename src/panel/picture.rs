@@ -17,7 +17,6 @@ use super::{
     wires,
 };
 use crate::{
-    document::Selection,
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
@@ -105,10 +104,8 @@ fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &R
     if session.view.presenting {
         return;
     }
-    // They would cover the vectors of what is pinned.
-    let covers = session.explains()
-        && session.view.pinned.is_some()
-        && matches!(session.selection, Selection::Object(_));
+    // They would cover the pixel that is explained or that a lesson is about, and look like vectors.
+    let covers = session.explains() || session.lesson.is_some();
     let paints = [marks::marks, handles::handles];
     for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
         let (asked, places) = paint(ui, rect, written, session, registry);

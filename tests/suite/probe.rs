@@ -144,6 +144,25 @@ fn the_code_is_that_of_the_picture_in_every_shading_model() {
 }
 
 #[test]
+fn a_presentation_keeps_the_vectors_of_a_pinned_pixel() {
+    let mut bench = bench(scene("phong", "phong"));
+    point_at_sphere(&mut bench);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    // The equation of Phong has no H.
+    let has_h = |bench: &mut Bench| words(bench).iter().any(|word| word == "H");
+    assert!(bench.session.view.presenting && !has_h(&mut bench), "nothing is pinned");
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    point_at_sphere(&mut bench);
+    bench.key(Key::E, Modifiers::NONE);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    assert!(bench.session.view.presenting && bench.session.view.pinned.is_some());
+    assert!(has_h(&mut bench));
+}
+
+#[test]
 fn what_is_copied_is_what_the_command_line_says() {
     let mut bench = bench(Scene::default());
     point_at_sphere(&mut bench);

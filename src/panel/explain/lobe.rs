@@ -26,13 +26,13 @@ use crate::{
     curves::{
         Lobe,
         draw::{Axis, COLOURS},
-        lobe::scale,
+        lobe::steady,
     },
     explain::{Lit, Seen, Spot},
     optics::TermSelection,
     panel::{
         channels, segmented,
-        state::{Action, LobeChoice, LobeScale, Session, ViewChange},
+        state::{Action, LobeChoice, LobeScale, Pin, Session, ViewChange},
         theme,
     },
     progress::Progress,
@@ -77,6 +77,8 @@ struct Work {
     shown: Option<Arc<Lobes>>,
     running: Option<(Question, Receiver<Vec<LightLobe>>)>,
     calculations: u64,
+    /// The end of the scale, which a pinned pixel keeps.
+    kept: Option<(Pin, LobeScale, f64)>,
 }
 
 type Shared = Arc<Mutex<Work>>;
@@ -133,6 +135,15 @@ fn name_of(lit: &Lit) -> String {
 }
 
 impl Work {
+    /// The scale of lobes; while the same pixel is pinned it never gets smaller.
+    fn scale(&mut self, lobes: &[LightLobe], wanted: LobeScale, pinned: Option<Pin>) -> Axis {
+        let kept = self.kept.filter(|(pin, of, _)| Some(*pin) == pinned && *of == wanted);
+        let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
+        let scale = steady(&each, wanted == LobeScale::Logarithmic, kept.map(|(.., to)| to));
+        self.kept = pinned.map(|pin| (pin, wanted, scale.to));
+        scale
+    }
+
     /// The lobes; while they are calculated those before, if they are of the same point.
     fn answer(&mut self, ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Option<Arc<Lobes>> {
         let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
@@ -192,7 +203,11 @@ fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiv
 /// Paints the lobes of an explained point into the picture, and their legend, whose place it returns.
 pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &Session) -> Option<Rect> {
     let LobeChoice { scale: wanted, all } = session.view.lobe;
-    let seen = explained.explanation.seen.as_ref().filter(|_| wanted != LobeScale::Off)?;
+    if wanted == LobeScale::Off {
+        shared(ui.ctx()).lock().unwrap_or_else(PoisonError::into_inner).kept = None;
+        return None;
+    }
+    let seen = explained.explanation.seen.as_ref()?;
     let choice = probe::choice(ui.ctx());
     let number = probe::shown_spot(seen, choice);
     let spot = *probe::spots(seen).get(number)?;
@@ -216,15 +231,16 @@ pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &S
     let shared = shared(ui.ctx());
     let mut work = shared.lock().unwrap_or_else(PoisonError::into_inner);
     let shown = work.answer(ui.ctx(), &question, seen, spot);
+    let scale = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
+    let scale = scale.map(|lobes| work.scale(lobes, wanted, session.view.pinned));
     drop(work);
     let calculating =
         || Legend { title: "Lobe: calculating…".to_owned(), scale: None, colours: Vec::new() };
     let Some(shown) = shown else { return plate(ui, rect, calculating()) };
-    match &shown.lobes {
-        Err(why) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
-        Ok(lobes) => {
-            let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
-            let scale = scale(&each, wanted == LobeScale::Logarithmic);
+    match (&shown.lobes, scale) {
+        (Err(why), _) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
+        (Ok(_), None) => plate(ui, rect, calculating()),
+        (Ok(lobes), Some(scale)) => {
             surface::paint(ui, rect, session, shown.position, lobes, &scale);
             plate(ui, rect, legend(lobes, count, &scale, terms))
         }
@@ -240,7 +256,11 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
         (terms, false) => format!("Lobe: {} term of f in sr⁻¹", terms.id()),
         (terms, true) => format!("Lobe: {} term of f in sr⁻¹, logarithmic", terms.id()),
     }];
+    let white = (scale.to - std::f64::consts::FRAC_1_PI).abs() < 1e-9;
     lines.push(match scale.log {
+        false if white => {
+            format!("Length of the vectors: {}, that of a white matte surface", number(scale.to))
+        }
         false => format!("Length of the vectors: {}", number(scale.to)),
         true => format!("Centre: {}; length of the vectors: {}", number(scale.from), number(scale.to)),
     });

@@ -71,7 +71,7 @@ pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Re
     let explained = probe::explained(ui.ctx())
         .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)?;
     // With the panel closed, a lesson wants to see which pixel it is about, and no more.
-    let explains = session.explains();
+    let explains = session.shows_vectors();
     let legend = if explains { lobe::paint(ui, rect, &explained, session) } else { None };
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
