@@ -60,7 +60,7 @@ pub fn overlays(
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
-    all.written.extend(explain::vectors(ui, rect, session.active(), session));
+    all.written.extend(explain::vectors(ui, rect, session.active(), session, registry));
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
         let (asked, covered) = stale(ui, free, session, registry);
@@ -139,7 +139,7 @@ pub fn views(
     }
     for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
         // Views that lie over each other have the same rectangle.
-        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session));
+        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
     let mut stale_in = None;

@@ -247,7 +247,7 @@ fn each_light_that_reaches_the_point_has_a_lobe() {
         lights
     };
     assert_eq!(of(&bench), [0, 1], "not the one behind, nor ambient light");
-    assert!(is_written(&mut bench, "Light 1") && is_written(&mut bench, "Light 2"));
+    assert!(is_written(&mut bench, "Point 1") && is_written(&mut bench, "Point 2"));
     // More than there are colours: the brightest, and it is said.
     let mut many = three_lights();
     let first = many.lights[0].clone();

@@ -81,6 +81,9 @@ struct Work {
     kept: Option<(Pin, LobeScale, f64)>,
 }
 
+/// The name of a light, as the list of the scene has it.
+type Name<'a> = &'a dyn Fn(usize) -> String;
+
 type Shared = Arc<Mutex<Work>>;
 
 fn shared(ctx: &Context) -> Shared {
@@ -129,11 +132,6 @@ fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), 
     }
 }
 
-/// The name of a light as the panel has it.
-fn name_of(lit: &Lit) -> String {
-    lit.light.name.clone().unwrap_or_else(|| format!("Light {}", lit.light.index + 1))
-}
-
 impl Work {
     /// The scale of lobes; while the same pixel is pinned it never gets smaller.
     fn scale(&mut self, lobes: &[LightLobe], wanted: LobeScale, pinned: Option<Pin>) -> Axis {
@@ -145,7 +143,14 @@ impl Work {
     }
 
     /// The lobes; while they are calculated those before, if they are of the same point.
-    fn answer(&mut self, ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Option<Arc<Lobes>> {
+    fn answer(
+        &mut self,
+        ctx: &Context,
+        question: &Question,
+        seen: &Seen,
+        spot: &Spot,
+        name: Name<'_>,
+    ) -> Option<Arc<Lobes>> {
         let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
         // What still runs may be older.
         for _ in 0..2 {
@@ -153,8 +158,9 @@ impl Work {
                 break;
             }
             let new = self.running.is_none();
-            let (asked, receiver) =
-                self.running.get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot)));
+            let (asked, receiver) = self
+                .running
+                .get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot, name)));
             self.calculations += u64::from(new);
             let lobes = match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
                 Err(RecvTimeoutError::Timeout) => break,
@@ -179,13 +185,19 @@ fn place(question: &Question) -> Option<Vec3> {
 }
 
 /// Begins to calculate lobes.
-fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiver<Vec<LightLobe>> {
+fn start(
+    ctx: &Context,
+    question: &Question,
+    seen: &Seen,
+    spot: &Spot,
+    name: Name<'_>,
+) -> Receiver<Vec<LightLobe>> {
     let (sender, receiver) = mpsc::channel();
     let terms = question.explained.explanation.terms;
     let (surface, frame, ctx) = (seen.surface.0.clone(), spot.frame, ctx.clone());
     let of = |index: &usize| {
         let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
-        Some((*index, name_of(lit), lit.geometry?.l))
+        Some((*index, name(*index), lit.geometry?.l))
     };
     let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
     thread::spawn(move || {
@@ -201,7 +213,13 @@ fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiv
 }
 
 /// Paints the lobes of an explained point into the picture, and their legend, whose place it returns.
-pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &Session) -> Option<Rect> {
+pub(super) fn paint(
+    ui: &Ui,
+    rect: Rect,
+    explained: &Arc<Explained>,
+    session: &Session,
+    name: Name<'_>,
+) -> Option<Rect> {
     let LobeChoice { scale: wanted, all } = session.view.lobe;
     if wanted == LobeScale::Off {
         shared(ui.ctx()).lock().unwrap_or_else(PoisonError::into_inner).kept = None;
@@ -230,7 +248,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &S
     };
     let shared = shared(ui.ctx());
     let mut work = shared.lock().unwrap_or_else(PoisonError::into_inner);
-    let shown = work.answer(ui.ctx(), &question, seen, spot);
+    let shown = work.answer(ui.ctx(), &question, seen, spot, name);
     let scale = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
     let scale = scale.map(|lobes| work.scale(lobes, wanted, session.view.pinned));
     drop(work);
