@@ -23,8 +23,8 @@ impl Setting {
     #[must_use]
     pub fn legend(&self, scene: &Scene, registry: &Registry) -> Legend {
         let title = match self.channel {
-            DebugChannel::Normals => "Interpolated normals, as (1 + N)/2".to_owned(),
-            DebugChannel::FaceNormals => "Face normals, as (1 + N)/2".to_owned(),
+            DebugChannel::Normals => "Interpolated normals: x, y, z as red, green, blue".to_owned(),
+            DebugChannel::FaceNormals => "Face normals: x, y, z as red, green, blue".to_owned(),
             DebugChannel::VertexNormals => "Vertex normals".to_owned(),
             DebugChannel::Wireframe => "Wireframe: visible edges of polygons".to_owned(),
             DebugChannel::Vertices => "Vertices: Gouraud colour or normal".to_owned(),

@@ -9,7 +9,7 @@ use lights_camera_models::{
     panel::{
         explain::{calculations, explained},
         keys::{ELSEWHERE, bindings},
-        state::{Action, CompareCommand, EXPLAIN_TAB, Session, ThemeChoice, ViewChange},
+        state::{Action, CompareCommand, EXPLAIN_TAB, Pin, Session, ThemeChoice, ViewChange},
     },
     parameter::Value,
     parameters,
@@ -89,7 +89,8 @@ fn words(bench: &mut Bench) -> Vec<String> {
     bench.shapes().into_iter().filter_map(text).collect()
 }
 
-const LETTERS: [&str; 5] = ["N", "L", "V", "H", "R"];
+/// Those that every model has.
+const LETTERS: [&str; 3] = ["N", "L", "V"];
 
 fn has_vectors(bench: &mut Bench) -> bool {
     let words = words(bench);
@@ -386,6 +387,26 @@ fn vertices_can_be_chosen_and_per_pixel_shading_compared() {
     let at = bench.tree.iter().find(|s| s.label.starts_with(light)).expect("there").rect.center();
     bench.click_at(at, PointerButton::Primary);
     assert!(!bench.says("light to the observer"), "a click folds it");
+}
+
+#[test]
+fn only_vectors_of_the_equation_are_drawn() {
+    for (model, expected) in [
+        ("lambert", "NLV"),
+        ("phong", "NLVR"),
+        ("blinn_phong", "NLVH"),
+        ("microfacet", "NLVH"),
+        ("disney", "NLVH"),
+        ("oren_nayar", "NLV"),
+    ] {
+        let mut bench = bench(scene(model, "phong"));
+        bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
+        bench.settle();
+        let words = words(&mut bench);
+        let found: String =
+            ["N", "L", "V", "H", "R"].into_iter().filter(|letter| words.iter().any(|w| w == letter)).collect();
+        assert_eq!(found, expected, "{model}");
+    }
 }
 
 parameters! {

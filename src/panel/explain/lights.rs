@@ -141,12 +141,17 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// All about one light.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if let Some(geometry) = &lit.geometry {
-        rows::vectors(ui, &seen.model, &[("L", geometry.l), ("H", geometry.h), ("R", geometry.r)]);
+        // Half vector and mirror direction where the equation has them.
+        let all = [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)];
+        let belongs = |letter: &str| pairs::belongs(&seen.model, letter);
+        let all: Vec<_> = all.into_iter().filter(|(letter, _)| belongs(letter)).collect();
+        rows::vectors(ui, &seen.model, &all);
         let all: &[usize] =
             if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 14.0;
-            for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]) {
+            let mine = |name: &str| name.split('·').all(belongs);
+            for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]).filter(|(name, _)| mine(name)) {
                 let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
                 let ends: Vec<_> = name.split('·').collect();
                 let lit = |ctx: &Context| pairs::are_lit(ctx, &seen.model, &ends);

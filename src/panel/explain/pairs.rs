@@ -6,7 +6,7 @@ use crate::{
     explain::Model,
     panel::{
         linked::{Domain, lit_in},
-        maths::{definition, same_symbol},
+        maths::{definition, has_symbol, same_symbol},
     },
 };
 
@@ -37,6 +37,22 @@ pub(super) fn angles(a: &str, b: &str) -> impl Iterator<Item = &'static str> {
 fn is_own(model: &Model, letter: &str) -> bool {
     definition(model.declaration.equation, letter).is_some()
         || model.settings.iter().any(|setting| same_symbol(setting.parameter.symbol, letter))
+}
+
+/// True if a vector belongs to the explanation of a model: normal, light and viewer always, the half vector and the
+/// mirror direction where its equation has them, or an angle to them. An equation that was not told may have any.
+pub(super) fn belongs(model: &Model, letter: &str) -> bool {
+    let equation = model.declaration.equation;
+    if !matches!(letter, "H" | "R") || equation.is_empty() || is_own(model, letter) {
+        return true;
+    }
+    // The distribution of microfacets is one of half vectors.
+    let distribution = |symbol: &str| letter == "H" && (symbol == "D" || symbol.starts_with("D_"));
+    let angle = |symbol: &str| {
+        ANGLES.iter().any(|(angle, pair)| pair.contains(&letter) && same_symbol(symbol, angle))
+    };
+    let is = |symbol: &str| same_symbol(symbol, letter) || angle(symbol) || distribution(symbol);
+    has_symbol(equation, is)
 }
 
 /// The letters of vectors that are their symbols in the equation of a model.

@@ -10,14 +10,19 @@ use crate::{explain::Seen, panel::theme, shading::Stage};
 pub(super) fn point(ui: &mut Ui, seen: &Seen) {
     rows::close(ui);
     rows::named_triple(ui, "point at the pixel's centre", seen.position, " m");
-    rows::named_triple(ui, &format!("normal of polygon {}", seen.polygon), seen.face_normal, "");
-    if seen.shading.stage == Stage::Pixel {
+    // The normal at which the equation was evaluated: per pixel that of the vertices, or that of the polygon.
+    let per_pixel = seen.shading.stage == Stage::Pixel;
+    let of_polygon = seen.spots.first().is_some_and(|spot| per_pixel && is_along(spot.normal, seen.face_normal))
+        && !is_along(seen.interpolated_normal, seen.face_normal);
+    let used = if of_polygon { ", used here" } else { "" };
+    rows::named_triple(ui, &format!("normal of polygon {}{used}", seen.polygon), seen.face_normal, "");
+    if per_pixel && !of_polygon {
         let n = seen.interpolated_normal;
         let length = n.length();
         rows::named_triple(ui, "interpolated normal", n, "");
         rows::named(ui, "its length", &rows::short(length), &rows::all(length));
         if n != Vec3::ZERO {
-            rows::named_triple(ui, "renormalised", n.normalize_or_zero(), "");
+            rows::named_triple(ui, "renormalised, used here", n.normalize_or_zero(), "");
         }
     }
     if seen.shading.stage == Stage::Vertex {
@@ -29,6 +34,11 @@ pub(super) fn point(ui: &mut Ui, seen: &Seen) {
         rows::light(ui, "per-pixel shading would give", per_pixel.colour, false);
         rows::light(ui, "instead of", seen.light, false);
     }
+}
+
+/// True for one direction, on either side of a surface.
+fn is_along(a: Vec3, b: Vec3) -> bool {
+    a.cross(b).length() < 1e-4 * a.length() * b.length()
 }
 
 /// The colours of the vertices, weighted.

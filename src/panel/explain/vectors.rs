@@ -32,6 +32,8 @@ const DIM: f32 = 0.5;
 /// The pointer is at a line that is this near, points. All of them are near their origin.
 const GRASP: f32 = 6.0;
 const ORIGIN: f32 = 16.0;
+/// Height of the caption below a picture, points.
+const CAPTION: f32 = 36.0;
 /// Height of letters, points.
 const LETTER: f32 = 13.0;
 /// A vector that is seen shorter than this points at the eye, or away from it, points.
@@ -110,9 +112,10 @@ impl Drawing {
         let lens = self.ink.lens();
         let Some(origin) = lens.project(spot.position) else { return };
         let reach = lens.metres(spot.position, LENGTH);
-        let all = arrows(spot, lit);
+        let mut all = arrows(spot, lit);
+        all.retain(|arrow| pairs::belongs(&seen.model, arrow.letter));
         self.lit = pairs::lit(ui.ctx(), &seen.model);
-        self.angles(&lens, spot, lit, reach);
+        self.angles(&lens, spot, lit, reach, &all);
         for arrow in &all {
             self.arrow(&lens, spot.position, origin, arrow, reach);
         }
@@ -221,7 +224,7 @@ impl Drawing {
     }
 
     /// Arcs between the vectors, where they are seen apart.
-    fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32) {
+    fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32, shown: &[Arrow]) {
         let Some(geometry) = lit.and_then(|lit| lit.geometry) else { return };
         let n = spot.normal;
         let all = [
@@ -229,7 +232,11 @@ impl Drawing {
             (["N", "H"], [n, geometry.h], GREEN, 0.4),
             (["R", "V"], [geometry.r, spot.view], BLUE, 0.8),
         ];
+        let is_shown = |letter: &&str| shown.iter().any(|arrow| arrow.letter == *letter);
         for (letters, [a, b], colour, part) in all {
+            if !letters.iter().all(|letter| is_shown(letter)) {
+                continue;
+            }
             let angle = a.angle_between(b);
             let ends = [a, b].map(|way| lens.project(spot.position + way * reach));
             let origin = lens.project(spot.position);
@@ -287,8 +294,10 @@ impl Drawing {
                 let way = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_4);
                 place(at + way * (18.0 * (k as f32 / 8.0).ceil()))
             });
+            // The caption of the picture is at its lower edge.
+            let room = self.rect.with_max_y(self.rect.bottom() - CAPTION);
             let free =
-                |plate: &Rect| self.rect.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(*plate));
+                |plate: &Rect| room.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(*plate));
             let plate = turns.into_iter().find(free).unwrap_or(place(at));
             painter.rect_filled(plate, 4.0, OUTLINE.gamma_multiply(0.78));
             painter.galley(plate.center() - 0.5 * text.size(), text, colour);

@@ -109,6 +109,13 @@ fn defines(text: &str) -> bool {
     })
 }
 
+/// True if an equation has a symbol that fits.
+#[must_use]
+pub fn has_symbol(parts: &[EquationPart], fits: impl Fn(&str) -> bool) -> bool {
+    let of = |text: &str| parse(text).iter().filter_map(Atom::symbol).any(|symbol| fits(&symbol));
+    parts.iter().any(|part| of(part.text))
+}
+
 /// The definition of a symbol in an equation: it begins with the symbol, or the symbol of something in brackets, and an
 /// equals sign.
 #[must_use]

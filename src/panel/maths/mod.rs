@@ -18,7 +18,7 @@ mod prose;
 
 pub use crate::text::mathematics::{Atom, parse, parse_symbol, same_symbol};
 pub(super) use laid::{Laid, lay_out};
-pub use meaning::{definition, definitions, meaning};
+pub use meaning::{definition, definitions, has_symbol, meaning};
 pub use prose::prose;
 
 /// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
