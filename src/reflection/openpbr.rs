@@ -1,9 +1,6 @@
 // The CPU's half: the model is not in the list of built-in ones before it has a shader.
 
-use std::{
-    f32::consts::{FRAC_1_PI, PI},
-    sync::LazyLock,
-};
+use std::{f32::consts::PI, sync::LazyLock};
 
 use glam::{Vec2, Vec3, Vec4};
 
