@@ -45,6 +45,7 @@
 //! - [`render`]: drawing with Bevy.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
 //! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
+//! - [`lesson`]: lessons: text, scene states, and tasks with conditions on the scene, a pixel or a curve.
 //!
 //! The program:
 //!
@@ -107,6 +108,8 @@ pub mod render;
 pub mod export;
 
 pub mod curves;
+
+pub mod lesson;
 
 pub mod panel;
 pub mod window;

@@ -17,6 +17,9 @@ pub const AWAY: [u8; 3] = [213, 94, 0];
 /// Stripes on what is cut off; the others are black.
 pub const CLIPPED: [u8; 3] = [240, 228, 66];
 
+/// The edges of polygons.
+pub const EDGE: [u8; 3] = [240; 3];
+
 /// Display codes from 0 to 1.
 #[must_use]
 pub fn codes(colour: [u8; 3]) -> Vec3 {

@@ -2,7 +2,7 @@
 
 use super::{
     DebugChannel, Setting,
-    colours::{AWAY, BELOW, CLIPPED, INFINITE, NAN, NEGATIVE, TOWARDS},
+    colours::{AWAY, BELOW, CLIPPED, EDGE, INFINITE, NAN, NEGATIVE, TOWARDS},
 };
 use crate::{registry::Registry, scene::Scene};
 
@@ -25,6 +25,9 @@ impl Setting {
         let title = match self.channel {
             DebugChannel::Normals => "Interpolated normals, as (1 + N)/2".to_owned(),
             DebugChannel::FaceNormals => "Face normals, as (1 + N)/2".to_owned(),
+            DebugChannel::VertexNormals => "Vertex normals".to_owned(),
+            DebugChannel::Wireframe => "Wireframe: visible edges of polygons".to_owned(),
+            DebugChannel::Vertices => "Vertices: Gouraud colour or normal".to_owned(),
             DebugChannel::NDotL | DebugChannel::NDotH => {
                 let light = self.light_name(scene, registry);
                 let light = light.unwrap_or_else(|| "no light has a direction".to_owned());
@@ -52,7 +55,11 @@ impl Setting {
         let axes: &[_] =
             &[([255, 128, 128], "right (+x)"), ([128, 255, 128], "up (+y)"), ([128, 128, 255], "out (+z)")];
         let colours = match self.channel {
-            DebugChannel::Normals | DebugChannel::FaceNormals => axes,
+            DebugChannel::Normals
+            | DebugChannel::FaceNormals
+            | DebugChannel::VertexNormals
+            | DebugChannel::Vertices => axes,
+            DebugChannel::Wireframe => &[(EDGE, "edge"), (NAN, "not a number")],
             DebugChannel::NDotL | DebugChannel::NDotH | DebugChannel::NDotV => &[(BELOW, "below 0")],
             DebugChannel::Facing => &[(TOWARDS, "towards the observer"), (AWAY, "away")],
             DebugChannel::Luminance => &[([0; 3], "none"), (NAN, "not a number")],

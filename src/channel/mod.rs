@@ -40,6 +40,12 @@ pub enum DebugChannel {
     Normals,
     /// The normals of the triangles.
     FaceNormals,
+    /// The normals of the vertices, as lines.
+    VertexNormals,
+    /// The edges of the polygons.
+    Wireframe,
+    /// The vertices, as dots.
+    Vertices,
     /// The cosine between normal and light.
     NDotL,
     /// The cosine between normal and observer.
@@ -62,9 +68,12 @@ pub enum DebugChannel {
 
 impl DebugChannel {
     /// Every channel, in the order of presentation.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 14] = [
         Self::Normals,
         Self::FaceNormals,
+        Self::VertexNormals,
+        Self::Wireframe,
+        Self::Vertices,
         Self::NDotL,
         Self::NDotV,
         Self::NDotH,
@@ -82,6 +91,9 @@ impl DebugChannel {
         match self {
             Self::Normals => "normals",
             Self::FaceNormals => "face_normals",
+            Self::VertexNormals => "vertex_normals",
+            Self::Wireframe => "wireframe",
+            Self::Vertices => "vertices",
             Self::NDotL => "n_dot_l",
             Self::NDotV => "n_dot_v",
             Self::NDotH => "n_dot_h",
@@ -100,6 +112,9 @@ impl DebugChannel {
         match self {
             Self::Normals => "Interpolated normals",
             Self::FaceNormals => "Face normals",
+            Self::VertexNormals => "Vertex normals",
+            Self::Wireframe => "Wireframe",
+            Self::Vertices => "Vertices",
             Self::NDotL => "N·L",
             Self::NDotV => "N·V",
             Self::NDotH => "N·H",
@@ -124,6 +139,21 @@ impl DebugChannel {
             Self::FaceNormals => {
                 "The normal of the triangle in each pixel: (1 + N)/2 as display codes. Derivative shading calculates \
                  with it, flat shading with that of the whole polygon. The true shape of the mesh shows."
+            }
+            Self::VertexNormals => {
+                "A line at each visible vertex along its normal, which is the mean of those of its polygons or comes \
+                 from the file of the mesh; its colour is (1 + N)/2 as display codes. The surface is dim and grey. \
+                 Where the lines stand askew on the polygons, smooth shading and true shape differ."
+            }
+            Self::Wireframe => {
+                "The visible edges of the polygons over the dim grey surface; the diagonals along which quadrangles \
+                 are cut into triangles are left out. The tessellation shows, and with it where Gouraud shading can \
+                 miss a highlight."
+            }
+            Self::Vertices => {
+                "A dot at each visible vertex over the dim grey surface: with Gouraud shading in the colour that is \
+                 calculated there, between which the picture interpolates; otherwise in that of its normal, \
+                 (1 + N)/2 as display codes."
             }
             Self::NDotL => {
                 "The cosine of the angle between the interpolated normal and the direction to the light, pixel by \
@@ -171,14 +201,15 @@ impl DebugChannel {
         Self::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture.
+    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture. Lines and dots are drawn over the dim
+    /// grey surface of [`NotANumber`](Self::NotANumber).
     #[must_use]
     pub const fn code(self) -> u32 {
         match self {
             Self::Light => 0,
             Self::Luminance => 1,
             Self::Clipped => 2,
-            Self::NotANumber => 3,
+            Self::NotANumber | Self::VertexNormals | Self::Wireframe | Self::Vertices => 3,
             Self::FaceNormals => 4,
             Self::Normals => 5,
             Self::NDotL => 6,
@@ -195,10 +226,16 @@ impl DebugChannel {
         matches!(self, Self::Light)
     }
 
-    /// True if it shows the light that leaves the surface, and not geometry.
+    /// True if it shows the light that leaves the surface, and not geometry; lines and dots lie over such a picture.
     #[must_use]
     pub const fn is_of_light(self) -> bool {
-        matches!(self, Self::Light | Self::Luminance | Self::Clipped | Self::NotANumber)
+        matches!(self, Self::Light | Self::Luminance | Self::Clipped | Self::NotANumber) || self.has_wires()
+    }
+
+    /// True if lines or dots of the meshes are drawn over its picture.
+    #[must_use]
+    pub const fn has_wires(self) -> bool {
+        matches!(self, Self::VertexNormals | Self::Wireframe | Self::Vertices)
     }
 
     /// True if it is about one light.
@@ -336,7 +373,13 @@ mod tests {
         for (i, channel) in DebugChannel::ALL.into_iter().enumerate() {
             assert_eq!(DebugChannel::from_id(channel.id()), Some(channel));
             assert!(channel.explanation().ends_with('.') && !channel.name().is_empty());
-            assert!(DebugChannel::ALL[..i].iter().all(|other| other.code() != channel.code()), "{channel:?}");
+            // Lines and dots have no numbers of their own.
+            let before = || DebugChannel::ALL[..i].iter().filter(|other| !other.has_wires());
+            assert!(
+                channel.has_wires() || before().all(|other| other.code() != channel.code()),
+                "{channel:?}"
+            );
+            assert!(!channel.has_wires() || channel.code() == DebugChannel::NotANumber.code());
         }
         assert_eq!(DebugChannel::from_id("normal"), None);
     }

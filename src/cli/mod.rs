@@ -34,6 +34,7 @@ mod custom;
 mod evaluate;
 mod explain;
 mod export;
+mod lesson;
 mod matching;
 mod models;
 mod new;
@@ -160,6 +161,9 @@ enum Command {
     /// Prints a worked example: where the equation was evaluated, directions and cosines, the intensity of each light, each
     /// term, their sum, exposure, tone mapping, encoding and code. One sample, at the pixel's centre, by the CPU renderer.
     Explain(explain::Arguments),
+    /// List, check and print lessons
+    #[command(subcommand)]
+    Lesson(lesson::Command),
     /// Find the parameters of a view that come nearest to view A
     Match(matching::Arguments),
     /// List the reflection models with their laws and parameters; write and check custom models
@@ -315,6 +319,7 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Command::Explain(arguments)) => {
             explain::run(&arguments, options, &mut places.open(options, known)?)
         }
+        Some(Command::Lesson(command)) => lesson::run(&command, options, places.open(options, known)?.list()),
         Some(Command::Match(arguments)) => {
             matching::run(&arguments, options, &mut places.open(options, known)?)
         }

@@ -9,14 +9,23 @@ use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::P
 use crate::{
     failure::Failure,
     files,
+    lesson::{Lesson, shipped::LESSONS},
+    panel::state::LessonSource,
     registry::Registry,
     scene::{Scene, error::LoadError, load::Defaults},
+    text::{did_you_mean, listed, quoted},
 };
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Scene file; `-` is standard input; without one, the default scene
     scene: Option<PathBuf>,
+    /// Open a lesson: the name of one that comes with the program, or a file
+    #[arg(long, value_name = "NAME_OR_FILE")]
+    lesson: Option<PathBuf>,
+    /// Begin at this step of the lesson
+    #[arg(long, value_name = "NUMBER", requires = "lesson", value_parser = clap::value_parser!(u32).range(1..))]
+    step: Option<u32>,
     /// Close the window after this many frames
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
     exit_after: Option<u32>,
@@ -50,7 +59,7 @@ pub(super) fn run(
 ) -> Outcome {
     let mut workshop = places.open_for_window(options, known)?;
     let source = Source::of(arguments.scene.as_deref(), &workshop);
-    let Arguments { exit_after, capture, no_scene, size, .. } = arguments;
+    let Arguments { exit_after, capture, no_scene, size, lesson, step, .. } = arguments;
     if let Some(capture) = &capture {
         outputs::picture(capture, &outputs::inputs(source.file(), &workshop.registry))?;
         let _ = files::tidy(files::folder_of(capture));
@@ -73,6 +82,8 @@ pub(super) fn run(
         file: None,
         stamp: None,
         open: None,
+        lesson: lesson.as_deref().map(|lesson| lesson_source(lesson, &workshop.registry)).transpose()?,
+        step: step.map(|step| step as usize - 1),
         examples: source == Source::Default,
         use_defaults: options.defaults() == Defaults::Use,
         size: size.map(|s| [s.width, s.height]).or(wanted),
@@ -137,4 +148,31 @@ fn meant_command(path: &Path) -> Outcome {
         ))),
         None => Ok(()),
     }
+}
+
+/// The lesson of that name among those that come with the program, or else the file.
+fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Failure> {
+    let shipped = lesson.to_str().and_then(|name| LESSONS.iter().position(|lesson| lesson.id == name));
+    if let Some(i) = shipped {
+        return Ok(LessonSource::Shipped(i));
+    }
+    let name = lesson.display().to_string();
+    if !lesson.exists() {
+        let known: Vec<_> = LESSONS.iter().map(|lesson| lesson.id.as_str()).collect();
+        let near = did_you_mean(&name, known.iter().map(|id| (*id, *id)));
+        let shipped = if known.is_empty() {
+            String::new()
+        } else {
+            format!("; the lessons are {}", listed(&known, "and"))
+        };
+        return Err(Failure::Invalid(format!(
+            "there is no lesson {}, and no file of that name{shipped}{near}",
+            quoted(&name)
+        )));
+    }
+    Lesson::read(lesson, registry).map_err(|problems| {
+        let all: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
+        Failure::Invalid(all.join("\n"))
+    })?;
+    Ok(LessonSource::File(lesson.to_owned()))
 }

@@ -25,6 +25,7 @@ pub mod data;
 pub mod draw;
 mod format;
 mod kind;
+pub mod lobe;
 mod sample;
 mod sheet;
 mod slice;
@@ -37,6 +38,7 @@ use crate::progress::Cancelled;
 
 pub use format::Format;
 pub use kind::{Channel, Kind};
+pub use lobe::Lobe;
 pub use sample::curve;
 pub use sheet::{Sheet, Style};
 pub use slice::{Slice, slice};

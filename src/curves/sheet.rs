@@ -243,35 +243,37 @@ impl Sheet {
 
     /// The axis of the values, wide enough for those up to the limit.
     fn axis(&self, from_centre: bool) -> Axis {
-        let kind = self.setup.kind;
         let limit = if from_centre || self.log { 90.0 } else { self.limit() };
-        let values = || {
-            let points = self.curves.iter().flat_map(|curve| &curve.points);
-            let shown = points.filter(move |p| p.angle.abs() <= limit);
-            shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite())
-        };
-        let top = values().fold(f64::NEG_INFINITY, f64::max);
-        if self.log {
-            let least = values().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
-            if !least.is_finite() {
-                return Axis::log(kind.quantity(), 0.001, 1.0);
-            }
-            let to = round_up(top, &[1.0, 2.0, 5.0, 10.0]);
-            let from = least.max(to / 10f64.powf(DECADES)).min(to / 10.0);
-            return Axis::log(kind.quantity(), 10f64.powf((from.log10() + 1e-9).floor()), to);
-        }
-        let whole = matches!(kind, Kind::Albedo | Kind::Fresnel | Kind::Masking);
-        let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
-        let to = match () {
-            () if whole => top.max(1.0),
-            () if top > 0.0 => top,
-            () => 1.0,
-        };
-        let to = if to <= 1.0 && whole { 1.0 } else { round_up(to, &steps) };
-        let bottom = values().fold(0.0, f64::min);
-        let from = if bottom < 0.0 && !from_centre { -round_up(-bottom, &steps) } else { 0.0 };
-        Axis::new(kind.quantity(), from, to, 6)
+        let points = self.curves.iter().flat_map(|curve| &curve.points);
+        let shown = points.filter(|p| p.angle.abs() <= limit);
+        let values: Vec<_> = shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite()).collect();
+        span(self.setup.kind, self.log, from_centre, &values)
     }
+}
+
+/// The axis of a quantity that is wide enough for some finite values; `from_centre` has no room for those below 0.
+pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> Axis {
+    let top = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if log {
+        let least = values.iter().copied().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+        if !least.is_finite() {
+            return Axis::log(kind.quantity(), 0.001, 1.0);
+        }
+        let to = round_up(top, &[1.0, 2.0, 5.0, 10.0]);
+        let from = least.max(to / 10f64.powf(DECADES)).min(to / 10.0);
+        return Axis::log(kind.quantity(), 10f64.powf((from.log10() + 1e-9).floor()), to);
+    }
+    let whole = matches!(kind, Kind::Albedo | Kind::Fresnel | Kind::Masking);
+    let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    let to = match () {
+        () if whole => top.max(1.0),
+        () if top > 0.0 => top,
+        () => 1.0,
+    };
+    let to = if to <= 1.0 && whole { 1.0 } else { round_up(to, &steps) };
+    let bottom = values.iter().copied().fold(0.0, f64::min);
+    let from = if bottom < 0.0 && !from_centre { -round_up(-bottom, &steps) } else { 0.0 };
+    Axis::new(kind.quantity(), from, to, 6)
 }
 
 /// The next number that is one of some times a power of ten.

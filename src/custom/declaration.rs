@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     parameter::{BLOCK_BYTES, Parameter, layout},
-    reflection::{EquationPart, Laws, ModelEntry, Term},
+    reflection::{EquationPart, Group, Laws, ModelEntry, Term},
     registry::Registry,
     text::{
         did_you_mean,
@@ -21,8 +21,18 @@ use crate::{
 };
 
 /// The keys of a declaration.
-const MODEL_KEYS: &[&str] =
-    &["name", "author", "source", "summary", "equation", "laws", "anisotropic", "lobe", "parameters"];
+const MODEL_KEYS: &[&str] = &[
+    "name",
+    "author",
+    "source",
+    "summary",
+    "equation",
+    "laws",
+    "anisotropic",
+    "lobe",
+    "parameters",
+    "groups",
+];
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// Other words for keys, for suggestions.
@@ -51,6 +61,7 @@ pub(super) struct Said {
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
     pub parameters: &'static [Parameter],
+    pub groups: &'static [Group],
     /// The byte after the comment.
     pub end: usize,
 }
@@ -155,6 +166,7 @@ impl Reader<'_> {
         let summary = self
             .words(&fields, "summary", LONGEST_TEXT)
             .unwrap_or_else(|| intern::text(&format!("A custom model, in {file}.")));
+        let parameters = self.parameters(&fields);
         Some(Said {
             name,
             author,
@@ -163,7 +175,8 @@ impl Reader<'_> {
             equation: self.equation(&fields),
             laws: self.laws(&fields),
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
-            parameters: self.parameters(&fields),
+            parameters,
+            groups: self.groups(&fields, parameters),
             lobe: self.lobe(&fields),
             end,
         })
@@ -304,6 +317,44 @@ impl Reader<'_> {
             self.check_conditions(value, &parameters);
         }
         intern::parameters(parameters)
+    }
+
+    /// The groups by their names, each with the names of its parameters.
+    fn groups(&mut self, fields: &Fields, parameters: &[Parameter]) -> &'static [Group] {
+        const RULE: &str = "it must be an object of lists: { \"Coat\": [\"coat_weight\", \"coat_colour\"] }";
+        let Some(value) = fields.get("groups") else { return intern::groups(Vec::new()) };
+        let Some(properties) = value.properties() else {
+            self.wrong(value, RULE);
+            return intern::groups(Vec::new());
+        };
+        let mut groups = Vec::new();
+        let mut starts = Vec::new();
+        for property in properties {
+            let list = value.holding(&property.value);
+            let Some(elements) = list.list() else {
+                self.wrong(list, RULE);
+                continue;
+            };
+            let name = property.name.as_str();
+            if name.chars().count() > LONGEST_NAME || name.contains(char::is_control) {
+                let rule = format!("the name of a group must have at most {LONGEST_NAME} characters");
+                self.mistake(property.start(), format!("groups: {rule}"));
+            }
+            let names: Vec<_> = elements.filter_map(|e| e.text().map(intern::text)).collect();
+            if list.list().is_none_or(|all| all.len() != names.len()) {
+                self.wrong(list, RULE);
+                continue;
+            }
+            starts.push(property.start());
+            groups.push(Group { name: intern::text(name), parameters: intern::names(names) });
+        }
+        // Of parameters that were refused, nothing is said twice.
+        if self.mistakes.is_empty()
+            && let Some((i, problem)) = Group::problem(&groups, parameters)
+        {
+            self.mistake(starts[i], problem);
+        }
+        intern::groups(groups)
     }
 
     fn built_in_models(&self) -> impl Iterator<Item = &ModelEntry> {

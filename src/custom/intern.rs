@@ -8,7 +8,7 @@ use std::{
 
 use crate::{
     parameter::Parameter,
-    reflection::{Declaration, EquationPart},
+    reflection::{Declaration, EquationPart, Group},
 };
 
 /// The stored values of one type.
@@ -56,6 +56,12 @@ pub(super) fn names(names: Vec<&'static str>) -> &'static [&'static str] {
 pub(super) fn equation(parts: Vec<EquationPart>) -> &'static [EquationPart] {
     static ALL: Kept<[EquationPart]> = Mutex::new(Vec::new());
     kept(&ALL, parts, |new| new.leak())
+}
+
+/// The groups of parameters of a model.
+pub(super) fn groups(groups: Vec<Group>) -> &'static [Group] {
+    static ALL: Kept<[Group]> = Mutex::new(Vec::new());
+    kept(&ALL, groups, |new| new.leak())
 }
 
 /// The parameters of a model.

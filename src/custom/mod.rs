@@ -114,7 +114,8 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| vec![*found])?;
     }
-    let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module);
+    let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module)
+        .grouped(model.entry.groups);
     Ok(CustomModel { entry, ..model })
 }
 
@@ -153,7 +154,7 @@ fn declared(
         wgsl: Source { path: intern::text(&source_path(id)), text: stand_in(ambient) },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
-    let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref());
+    let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref()).grouped(said.groups);
     Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, lobe))
 }
 

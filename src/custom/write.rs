@@ -200,7 +200,15 @@ pub fn duplicate(
             declare(&mut out, p);
         }
     }
-    out.push_str("    ],\n}\n*/\n\n");
+    out.push_str("    ],\n");
+    if !entry.groups.is_empty() {
+        out.push_str("    \"groups\": {\n");
+        for group in entry.groups {
+            let _ = writeln!(out, "        {}: {},", text(group.name), spaced(&json!(group.parameters)));
+        }
+        out.push_str("    },\n");
+    }
+    out.push_str("}\n*/\n\n");
     if d.ambient == Ambient::Albedo {
         out.push_str(
             "// The model answers uniform light by its directional albedo, which is calculated.\n\n",

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Corner, Geometry, Lit, Model, Part, Place, Seen, Setting, Spot};
+use super::{Asked, Corner, Geometry, Lit, Model, Part, Place, Seen, Setting, Spot};
 use crate::{
     light::Incident,
     optics::geometry::{half_vector, mirror},
@@ -55,6 +55,7 @@ impl Explain<'_> {
             spots: at_corners.chain(at_pixel).collect(),
             per_pixel: found.phong.as_ref().map(|point| spot(Place::Pixel, point)),
             light: found.light.truncate(),
+            surface: Asked(found.surface.clone()),
             // Asked last: an endless function shows only when it runs.
             model: self.model(model, object),
         })
@@ -93,6 +94,7 @@ impl Explain<'_> {
             place,
             position: point.position,
             normal: point.normal,
+            frame: run.frame,
             eye: run.eye,
             view: run.v,
             distance: self.scene.observer.position.distance(point.position),

@@ -15,15 +15,17 @@
 //! assert!(explained.to_text().contains("max(0, N·L)"));
 //! ```
 
+use std::sync::Arc;
+
 use glam::{Vec3, Vec4};
 use thiserror::Error;
 
 use crate::{
     light::Factor,
-    optics::{TermSelection, Terms, colour::luminance},
+    optics::{Frame, TermSelection, Terms, colour::luminance},
     parameter::{Parameter, Value},
     reference::{DisplaySteps, Picture, Settings, meshes::MeshStore, probe::probe},
-    reflection::Declaration,
+    reflection::{Declaration, Surface},
     registry::Registry,
     scene::{Display, Scene},
     shading,
@@ -120,6 +122,18 @@ pub struct Seen {
     pub per_pixel: Option<Spot>,
     /// The light of the pixel: the result of the shading model.
     pub light: Vec3,
+    /// Its reflection model with its parameters, to be asked for other directions.
+    pub surface: Asked,
+}
+
+/// A reflection model with its parameters.
+#[derive(Clone)]
+pub struct Asked(pub Arc<dyn Surface>);
+
+impl std::fmt::Debug for Asked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Asked")
+    }
 }
 
 /// A reflection model with its parameters.
@@ -187,6 +201,8 @@ pub struct Spot {
     pub position: Vec3,
     /// The normal `N`.
     pub normal: Vec3,
+    /// The frame around it: anisotropic models are brushed along its tangent.
+    pub frame: Frame,
     /// The direction to the observer.
     pub eye: Vec3,
     /// The direction `V` that the model got: that to the observer, mirrored in the surface if the normal faces away from

@@ -10,7 +10,7 @@ use crate::{
 
 const CONE_ANGLE: Parameter = Parameter {
     name: "cone_angle",
-    symbol: "θ",
+    symbol: "θ_c",
     label: "cone angle",
     unit: "°",
     help: "Half the opening of the cone: the angle between its axis and its edge.",
@@ -20,7 +20,7 @@ const CONE_ANGLE: Parameter = Parameter {
 
 const PENUMBRA: Parameter = Parameter {
     name: "penumbra",
-    symbol: "p",
+    symbol: "s",
     label: "penumbra",
     unit: "",
     help: "The fraction of the cone taken by the soft edge: 0 is a hard edge, 1 fades from the axis outwards.",
@@ -29,7 +29,7 @@ const PENUMBRA: Parameter = Parameter {
 };
 
 parameters! {
-    /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`
+    /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ, θ_c, s) / |p − p₀|²`
     /// ([`cone`]), I in candela, on the axis. Its luminous flux is `Φ = I ∫ cone dω` lumen
     /// ([`cone_solid_angle`]).
     pub struct Spot {
@@ -60,7 +60,7 @@ impl LightType for Spot {
         default_intensity: 20.0,
         slider_max: 200.0,
         cone_parameter: Some(CONE_ANGLE.name),
-        equation: "I(p) = I cone(θ) / d^2",
+        equation: "I(p) = I cone(θ, θ_c, s) / d^2",
         wgsl: wgsl!("light/spot.wgsl"),
     };
 
@@ -76,7 +76,7 @@ impl LightType for Spot {
         let (profile, cos_angle) = self.profile(light, to_light.normalize_or_zero());
         vec![
             Factor::intensity(light, Self::DECLARATION.unit),
-            Factor::new("cone(θ)", "1 inside the cone, 0 outside, smooth in its soft edge", profile)
+            Factor::new("cone(θ, θ_c, s)", "1 inside the cone, 0 outside, smooth in its soft edge", profile)
                 .given("θ", cos_angle.clamp(-1.0, 1.0).acos().to_degrees(), "°")
                 .given("inner edge", self.cone_angle * (1.0 - self.penumbra), "°")
                 .given("outer edge", self.cone_angle, "°"),

@@ -41,6 +41,11 @@ fn specular(surface: &dyn Surface, light: Light, viewer: f64) -> f32 {
 /// The angle from the peak of the highlight to where it falls to a half, on the side of the normal and on the other,
 /// degrees; `None` where it does not fall so far above the surface. None of both if there is no highlight.
 fn half_widths(surface: &dyn Surface, light: Light) -> Option<[Option<f64>; 2]> {
+    peak_and_sides(surface, light).map(|(_, sides)| sides)
+}
+
+/// The angle of the viewer at the peak, and the same.
+fn peak_and_sides(surface: &dyn Surface, light: Light) -> Option<(f64, [Option<f64>; 2])> {
     // Dense about the mirror direction.
     let offset = |i: i32| 90.0 * f64::from(i.signum()) * (f64::from(i) / f64::from(TRIED)).powi(2);
     let inside = |viewer: &f64| viewer.abs() <= HORIZON;
@@ -73,7 +78,18 @@ fn half_widths(surface: &dyn Surface, light: Light) -> Option<[Option<f64>; 2]> 
         }
         None
     };
-    Some([side(&mut tried[..peak].iter().rev()), side(&mut tried[peak..].iter())])
+    Some((at, [side(&mut tried[..peak].iter().rev()), side(&mut tried[peak..].iter())]))
+}
+
+/// The full width of the specular term at half its maximum, over the angle of the viewer in the plane of incidence along
+/// the tangent, degrees, for light at an angle from the normal in degrees. A side on which it does not fall to a half ends at the
+/// horizon. None if there is no highlight.
+#[must_use]
+pub fn highlight_width(surface: &dyn Surface, light: f64) -> Option<f64> {
+    let light = Light { azimuth: 0.0, angle: light };
+    let (at, sides) = peak_and_sides(surface, light)?;
+    let horizons = [HORIZON + at, HORIZON - at];
+    Some(sides.iter().zip(horizons).map(|(side, horizon)| side.unwrap_or(horizon)).sum())
 }
 
 /// The highlights of the objects' materials.
@@ -169,5 +185,22 @@ mod tests {
         }
         assert_eq!(of("phong", 0, 0.0), Some([None, None]), "it is bright everywhere");
         assert_eq!(of("lambert", 0, 0.0), None);
+    }
+
+    #[test]
+    fn the_full_width_is_that_of_both_sides_and_ends_at_the_horizon() {
+        let registry = Registry::builtin();
+        let of = |id: &str, alpha: i64| {
+            let mut values = Values::default();
+            values.set("alpha", Value::Integer(alpha));
+            let surface = registry.model(id).expect("built in").instantiate(&values, Encoding::Srgb);
+            highlight_width(&*surface, 30.0)
+        };
+        // cos^α = 1/2 on both sides of the mirror direction.
+        let expected = 2.0 * 0.5f64.powf(0.01).acos().to_degrees();
+        let found = of("phong", 100).expect("it has one");
+        assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+        assert_eq!(of("phong", 0).map(f64::round), Some(180.0), "it is bright everywhere");
+        assert_eq!(of("lambert", 0), None);
     }
 }

@@ -42,6 +42,7 @@ mod picture;
 mod search;
 mod sides;
 
+pub use highlight::highlight_width;
 pub use lobe::directions;
 pub use picture::{HEIGHT, WIDTH};
 

@@ -8,6 +8,7 @@ use bevy_egui::egui::{
 use super::{
     state::{Action, CompareCommand, Session, ViewChange},
     theme::{self, Palette},
+    wires,
 };
 use crate::{
     channel::{DebugChannel, Legend, Setting},
@@ -59,7 +60,10 @@ pub(super) fn legend(
     if !session.document.variants.is_empty() {
         legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
     }
-    let place = plate(ui, rect, top, &legend);
+    if let Some(remark) = wires::remark(ui.ctx(), view).filter(|_| channel.has_wires()) {
+        legend.title = format!("{} ({remark})", legend.title);
+    }
+    let place = plate(ui, rect, Align2::LEFT_TOP, top, &legend);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
     let said = format!("Channel: {}. Show the picture", legend.title);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
@@ -84,8 +88,8 @@ pub(super) fn legend(
     Some((place, actions))
 }
 
-/// Paints a legend, and returns its place.
-fn plate(ui: &Ui, rect: Rect, top: f32, legend: &Legend) -> Rect {
+/// Paints a legend at a side of the picture, and returns its place.
+pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend) -> Rect {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let padding = vec2(10.0, 6.0) * scale;
@@ -106,7 +110,8 @@ fn plate(ui: &Ui, rect: Rect, top: f32, legend: &Legend) -> Rect {
     let line = |text: &egui::Galley| text.size().y.max(swatch) + 0.5 * gap;
     let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
     let height = title.size().y + of_scale + colours.iter().map(|(_, text)| line(text)).sum::<f32>();
-    let place = Rect::from_min_size(pos2(rect.left() + 8.0, top), vec2(width, height) + 2.0 * padding);
+    let corner = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
+    let place = side.anchor_size(corner, vec2(width, height) + 2.0 * padding);
     painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
     let mut at = place.min + padding;
     let below = title.size().y;

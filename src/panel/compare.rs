@@ -251,11 +251,11 @@ fn header(
     let palette = Palette::here(ui);
     let active = session.active() == view;
     ui.painter().rect_filled(rect, 0.0, palette.panel);
-    let edge = if active && several { palette.accent } else { palette.line };
+    let rule = if active && several { palette.accent } else { palette.line };
     ui.painter().hline(
         rect.x_range(),
         rect.bottom() - 1.0,
-        Stroke::new(if active { 2.0 } else { 1.0 }, edge),
+        Stroke::new(if active { 2.0 } else { 1.0 }, rule),
     );
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let parts = in_parts(session, view, registry);

@@ -13,7 +13,10 @@ use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
     preview::{self, Preview, Source},
-    state::{Action, Effect, ExportCommand, ModelCommand, PictureCommand, PlotCommand, Session},
+    state::{
+        Action, Effect, ExportCommand, LessonCommand, LessonSource, ModelCommand, PictureCommand,
+        PlotCommand, Session,
+    },
     theme::{self, Palette},
 };
 use crate::{
@@ -44,6 +47,8 @@ pub struct Dialogs {
     folder: FileDialog,
     /// Chooses files for parameters of lights and objects.
     file: FileDialog,
+    /// Chooses a lesson.
+    lesson: FileDialog,
     /// Chooses places for exports.
     export: FileDialog,
     /// What a place is chosen for.
@@ -96,6 +101,7 @@ impl Default for Dialogs {
             save: dialog("Save the scene as", "save dialog"),
             folder,
             file: FileDialog::new(),
+            lesson: lesson_dialog(),
             export: FileDialog::new(),
             exporting: None,
             wanted: None,
@@ -104,6 +110,19 @@ impl Default for Dialogs {
             blank: 0,
         }
     }
+}
+
+fn lesson_dialog() -> FileDialog {
+    let filter = "Lessons (*.md)";
+    let mut dialog = FileDialog::new()
+        .title("Open a lesson")
+        .id("lesson dialog")
+        .add_file_filter_extensions(filter, vec!["md"])
+        .default_file_filter(filter)
+        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
+    dialog.config_mut().show_new_folder_button = false;
+    dialog.config_mut().keybindings.new_folder.clear();
+    dialog
 }
 
 /// Lets a dialog offer the formats of scenes, first that of a file, which may not exist yet.
@@ -184,7 +203,7 @@ impl Dialogs {
     /// True if one is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        [&self.open, &self.save, &self.folder, &self.file, &self.export]
+        [&self.open, &self.save, &self.folder, &self.file, &self.lesson, &self.export]
             .into_iter()
             .any(|d| *d.state() == DialogState::Open)
     }
@@ -222,6 +241,13 @@ impl Dialogs {
                     self.file = file_dialog(format);
                 }
                 (&mut self.file, false)
+            }
+            Effect::PickLesson => {
+                if let Some(folder) = session.lesson_folder().or(folder).filter(|folder| folder.is_dir()) {
+                    self.lesson.config_mut().initial_directory = folder.to_owned();
+                }
+                self.lesson.pick_file();
+                return true;
             }
             Effect::PickShaderFolder => {
                 self.folder.pick_directory();
@@ -273,7 +299,14 @@ impl Dialogs {
         let screen = ctx.content_rect().size();
         let narrow = screen.x < NARROW;
         let size = if narrow { ALL } else { SHARE } * screen;
-        for dialog in [&mut self.open, &mut self.save, &mut self.folder, &mut self.file, &mut self.export] {
+        for dialog in [
+            &mut self.open,
+            &mut self.save,
+            &mut self.folder,
+            &mut self.file,
+            &mut self.lesson,
+            &mut self.export,
+        ] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             // So much that the buttons below the list keep their room.
@@ -305,6 +338,10 @@ impl Dialogs {
         if let (Some(path), Some((part, parameter))) = (self.file.take_picked(), self.wanted) {
             actions.extend(session.file_chosen(part, parameter, &path).map(Action::Edit));
         }
+        self.lesson.update(ctx);
+        if let Some(path) = self.lesson.take_picked() {
+            actions.push(Action::Lesson(LessonCommand::Open(LessonSource::File(path))));
+        }
         self.export.update(ctx);
         if let (Some(path), Some(what)) = (self.export.take_picked(), self.exporting) {
             actions.push(match what {
@@ -313,7 +350,7 @@ impl Dialogs {
                 Exported::Plot => Action::Plot(PlotCommand::To(path)),
             });
         }
-        for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.export] {
+        for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.lesson, &self.export] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
             lighten(ctx, layer, &palette);
             // It keeps the pointer to itself, but not the keys.

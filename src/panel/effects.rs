@@ -2,10 +2,10 @@
 
 use super::{
     files::{Files, Opened, Saved},
-    reload, settings,
-    state::{Effect, Question, Session, Severity},
+    progress, reload, settings,
+    state::{Effect, LessonSource, Question, Session, Severity},
 };
-use crate::registry::Registry;
+use crate::{lesson::Lesson, registry::Registry};
 
 /// Carries out an effect that needs files. Returns the effects that follow, among them the one given
 /// when it is none of this module's.
@@ -34,6 +34,24 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 Vec::new()
             }
         },
+        Effect::SaveFile { path, overwrite } if session.lesson.is_some() => {
+            session.settle_comparison();
+            match files.save_copy(&path, &session.document.named(registry), registry, overwrite) {
+                Saved::Done => session.copy_saved(&path),
+                Saved::ChangedOnDisk => {
+                    session.questions.ask(Question::ReplaceScene { path });
+                    Vec::new()
+                }
+                Saved::OtherFormat(why) => {
+                    session.say(Severity::Warning, why);
+                    vec![Effect::PickSave]
+                }
+                Saved::Failed(why) => {
+                    session.say(Severity::Error, why);
+                    Vec::new()
+                }
+            }
+        }
         Effect::SaveFile { path, overwrite } => {
             session.settle_comparison();
             match files.save(&path, &session.document.named(registry), registry, overwrite) {
@@ -61,6 +79,21 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
         }
         Effect::SaveSettings => {
             settings::save_settings(session);
+            Vec::new()
+        }
+        Effect::OpenLesson(path) => {
+            let read = Lesson::read(&path, registry);
+            session.lesson_read(path, read, registry)
+        }
+        Effect::LookAtLesson => match session.lesson.as_ref().map(|open| open.source.clone()) {
+            Some(LessonSource::File(path)) => {
+                let read = Lesson::read(&path, registry);
+                session.lesson_edited(read, registry)
+            }
+            _ => Vec::new(),
+        },
+        Effect::SaveProgress(name) => {
+            progress::save_progress(session, &name);
             Vec::new()
         }
         other => vec![other],

@@ -15,6 +15,9 @@ pub trait Files: Send + Sync + 'static {
     /// Writes a scene file, all or nothing. Without `overwrite`, a file that changed on disk since it
     /// was opened or saved is left alone.
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
+    /// Writes a scene file that is not the document's, all or nothing. Without `overwrite`, a file that is there is left
+    /// alone.
+    fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
     /// Reads a scene file if its content is another one than when it was opened or saved.
     fn look(&mut self, path: &Path, registry: &Registry) -> Looked;
     /// Sets the state of the file that saving may replace: its content, or its absence.

@@ -25,7 +25,10 @@ fn memory() -> Id {
 
 /// Begins to collect the parts of the window.
 pub(super) fn forget_regions(ctx: &Context) {
-    ctx.data_mut(|d| d.insert_temp(memory().with("next"), Regions::default()));
+    ctx.data_mut(|d| {
+        d.insert_temp(memory().with("next"), Regions::default());
+        d.insert_temp(memory().with("next firsts"), Vec::<Id>::new());
+    });
 }
 
 /// A part of the window was shown here.
@@ -39,12 +42,14 @@ pub(super) fn remember_regions(ctx: &Context) {
         let mut regions: Regions = d.get_temp(memory().with("next")).unwrap_or_default();
         regions.0.sort_by_key(|(region, _)| *region);
         d.insert_temp(memory(), regions);
+        let firsts: Vec<Id> = d.get_temp(memory().with("next firsts")).unwrap_or_default();
+        d.insert_temp(memory().with("firsts"), firsts);
     });
 }
 
-/// The target of F6 in its part of the window, instead of the first: the selected row.
+/// The target of F6 in its part of the window, instead of the first: the selected row. The last one that is named counts.
 pub(super) fn first(ctx: &Context, id: Id) {
-    ctx.data_mut(|d| d.insert_temp(memory().with("first"), id));
+    ctx.data_mut(|d| d.get_temp_mut_or_default::<Vec<Id>>(memory().with("next firsts")).insert(0, id));
 }
 
 /// The widgets that can have the focus, in the order of the Tab key, as shown last; also those scrolled out of sight.
@@ -88,7 +93,7 @@ fn picture() -> Id {
 /// and from there it goes to what is over the picture.
 pub(super) fn next_region(ctx: &Context, back: bool) {
     let Regions(regions) = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
-    let selected: Option<Id> = ctx.data(|d| d.get_temp(memory().with("first")));
+    let wanted: Vec<Id> = ctx.data(|d| d.get_temp(memory().with("firsts"))).unwrap_or_default();
     let firsts: Vec<Option<WidgetRect>> = regions
         .iter()
         .map(|(region, rect)| {
@@ -101,7 +106,8 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
             };
             // From the first one over the picture, Tab reaches all of them.
             let all = if *region == Region::Picture { drawn(ctx, within) } else { stops(ctx, within) };
-            all.iter().find(|w| Some(w.id) == selected).or(all.first()).copied()
+            let wanted = wanted.iter().find_map(|id| all.iter().find(|w| w.id == *id));
+            wanted.or(all.first()).copied()
         })
         .collect();
     let here = focused(ctx).and_then(|w| regions.iter().position(|(_, r)| r.contains(w.rect.center())));

@@ -41,6 +41,8 @@ pub enum Icon {
     Reset,
     /// Into view.
     Target,
+    /// Done, right.
+    Check,
 }
 
 /// Draws an icon into a square.
@@ -113,6 +115,7 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
             line(&[(0.12, 0.34), (0.36, 0.1), (0.9, 0.1), (0.66, 0.34)]);
             line(&[(0.9, 0.1), (0.9, 0.64), (0.66, 0.9)]);
         }
+        Icon::Check => line(&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)]),
         Icon::Reset => {
             let arc: Vec<Pos2> = (0..=14)
                 .map(|i| {

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::{
     focus,
     state::{
-        Action, CompareCommand, HandleChange, ModelCommand, PLOTS_TAB, PictureArea, PictureCommand,
-        SHADER_TAB, Session, Steer, ViewChange,
+        Action, CompareCommand, HandleChange, LessonCommand, ModelCommand, PLOTS_TAB, PictureArea,
+        PictureCommand, SHADER_TAB, Session, Steer, ViewChange,
     },
 };
 use crate::{channel::DebugChannel, registry::Registry, scene::Comparison};
@@ -26,6 +26,8 @@ pub struct Binding {
     pub ctrl: bool,
     /// Shift must be held.
     pub shift: bool,
+    /// Alt must be held.
+    pub alt: bool,
     /// The key.
     pub key: Key,
     /// The heading in the list of keys.
@@ -50,7 +52,8 @@ impl Binding {
             Key::Minus => "−",
             key => key.name(),
         };
-        format!("{ctrl}{}{key}", if self.shift { "Shift+" } else { "" })
+        let alt = if self.alt { "Alt+" } else { "" };
+        format!("{ctrl}{alt}{}{key}", if self.shift { "Shift+" } else { "" })
     }
 
     fn matches(&self, key: Key, modifiers: Modifiers) -> bool {
@@ -58,7 +61,7 @@ impl Binding {
         let same_key = key == self.key || (plus(key) && plus(self.key));
         // `+` needs Shift on many keyboards and none on others.
         let shift = plus(self.key) || modifiers.shift == self.shift;
-        same_key && shift && modifiers.command == self.ctrl && !modifiers.alt
+        same_key && shift && modifiers.command == self.ctrl && modifiers.alt == self.alt
     }
 
     /// True if it works while text is being typed.
@@ -73,7 +76,7 @@ impl Binding {
 pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     let mut all = Vec::new();
     let mut add = |group, ctrl, shift, key, label: &str, action| {
-        all.push(Binding { ctrl, shift, key, group, label: label.to_owned(), action });
+        all.push(Binding { ctrl, shift, alt: false, key, group, label: label.to_owned(), action });
     };
     add("File", true, false, Key::N, "New default scene", Action::New);
     add("File", true, false, Key::O, "Open…", Action::OpenDialog);
@@ -175,6 +178,8 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         "Explain the pixel at the pointer; again: let go of it",
         Action::Pin,
     );
+    let lobe = Action::View(ViewChange::Lobe(session.view.lobe.next()));
+    add("Picture", false, true, Key::E, "Lobe at the explained point: linear, logarithmic, off", lobe);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
     add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
@@ -233,6 +238,30 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     };
     add("Window", false, false, Key::F7, "Plots: curves of the model", tab(PLOTS_TAB));
     add("Window", false, false, Key::F9, "Shader: files and errors", tab(SHADER_TAB));
+    let steps = [
+        (Key::ArrowRight, "Next step", LessonCommand::Next),
+        (Key::ArrowLeft, "Previous step", LessonCommand::Previous),
+    ];
+    all.extend(steps.map(|(key, label, command)| Binding {
+        ctrl: false,
+        shift: false,
+        alt: true,
+        key,
+        group: "Lessons",
+        label: label.to_owned(),
+        action: Action::Lesson(command),
+    }));
+    // Remote controls of lecturers send these.
+    if session.view.presenting && session.lesson.is_some() {
+        for binding in all.iter_mut().filter(|binding| !binding.ctrl) {
+            match binding.key {
+                Key::PageDown => binding.action = Action::Lesson(LessonCommand::Next),
+                Key::PageUp => binding.action = Action::Lesson(LessonCommand::Previous),
+                _ => continue,
+            }
+            binding.group = "Lessons";
+        }
+    }
     all
 }
 
@@ -241,6 +270,11 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
     ("Window", "F10, Alt and a letter", "The menus; arrows walk, Enter chooses"),
     ("In the scene list", "↑ ↓", "Select the part above, the one below"),
+    (
+        "Lessons",
+        "Page Up, Page Down",
+        "Scroll the text, with the focus in the lesson; in a presentation: the steps",
+    ),
     ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
     ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
     ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),

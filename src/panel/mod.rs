@@ -61,6 +61,8 @@ pub mod keys;
 pub mod knob;
 mod labels;
 pub mod laws;
+pub mod lesson;
+mod linked;
 pub mod marks;
 mod matching;
 pub mod maths;
@@ -74,6 +76,7 @@ mod placing;
 pub mod plots;
 pub mod presentation;
 pub mod preview;
+pub mod progress;
 pub mod question;
 pub mod reload;
 pub mod segmented;
@@ -90,6 +93,7 @@ pub mod tree;
 pub mod typeset;
 pub mod welcome;
 mod widths;
+pub mod wires;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {
@@ -100,6 +104,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add_own(shader::Shader);
     to.add_own(history::History);
     to.add_own(explain::Explain);
+    to.add_own(lesson::LessonPanel);
     to.add_own(tree::Tree);
     to.add_own(inspector::Inspector);
 }
@@ -146,11 +151,17 @@ pub fn show(
         }
     }
     author::notice_shaders(&mut session, registry);
+    let mut effects = Vec::new();
+    if session.is_lesson_due() {
+        effects.extend(session.resume_lesson());
+    }
     let palette = Palette::of(&session.view);
     menu::walk(&ctx);
     chooser::closed(&ctx, &session);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
+    linked::begin(&ctx);
+    lesson::point::begin(&ctx, &session);
     let mut context = PanelContext::new(&session, registry, world);
     let actions = &mut context.actions;
     if !dialogs.is_open() {
@@ -160,6 +171,7 @@ pub fn show(
     actions.extend(explain::clicked(&ctx, &session, area));
     actions.extend(explain::left(&ctx, &session, area));
     explain::look(&ctx, &session, area, registry);
+    actions.extend(lesson::check::look(&ctx, &session, registry));
     actions.extend(presentation::left(&ctx, &session, area));
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
@@ -186,17 +198,33 @@ pub fn show(
     let zoom = zoom_percent(&ctx);
     let widths = Widths::of(&ctx, &session, whole.width());
     let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
-    if session.view.bottom_open && !presenting {
+    if presenting && session.lesson.is_some() && session.view.left_open {
+        let frame = theme::panel_frame(&palette, vec2(0.0, 4.0));
+        let panel = egui::Panel::left("lesson presented").frame(frame).resizable(false);
+        let shown = panel.exact_size(lesson::SHARE * whole.width()).show(ui, |ui| {
+            sides::side(ui, Place::Left, &session, panels, &mut context);
+        });
+        focus::region(&ctx, Region::Panel(Place::Left), shown.response.rect);
+    }
+    // The picture of a presentation has the rest.
+    let whole = if presenting { ui.available_rect_before_wrap() } else { whole };
+    // A lesson has the whole height: it is read while the strip explains.
+    let learning = session.lesson.is_some();
+    if session.view.bottom_open && !presenting && !learning {
         sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
     }
     if session.view.left_open && !presenting {
-        let panel = egui::Panel::left(Id::new(("left", zoom)))
+        let side = if session.lesson.is_some() { "lesson at the left" } else { "left" };
+        let panel = egui::Panel::left(Id::new((side, zoom)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
             .default_size(widths.left.default)
             .size_range(widths.left.range);
         let response = panel.show(ui, |ui| sides::side(ui, Place::Left, &session, panels, &mut context));
         focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
         sizes.0 = response.response.rect.width();
+    }
+    if session.view.bottom_open && !presenting && learning {
+        sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
     }
     if session.view.right_open && !presenting {
         let panel = egui::Panel::right(Id::new(("right", zoom)))
@@ -235,7 +263,7 @@ pub fn show(
     };
     let (asked, places) = compare::show(ui, &arrangement, &session, registry);
     if let Some(footer) = footer {
-        footer.paint(ui, whole, &session);
+        footer.paint(ui, whole, &session, registry);
     }
     over.places.extend(places);
     actions.append(&mut over.actions);
@@ -265,9 +293,10 @@ pub fn show(
     }
     *area = now;
     focus::remember_regions(&ctx);
+    linked::end(&ctx);
+    lesson::point::show(&ctx, &palette);
     focus::show(&ctx, &palette, frame);
 
-    let mut effects = Vec::new();
     for action in actions {
         effects.extend(session.apply(action, registry));
     }

@@ -14,6 +14,7 @@ use super::{
     presentation::Stage,
     state::{Action, Badge, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
+    wires,
 };
 use crate::{
     document::Selection,
@@ -55,13 +56,14 @@ pub fn overlays(
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return all;
     }
+    wires::paint(ui, rect, rect, session.active(), session, registry);
     clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
-    explain::vectors(ui, rect, session.active(), session);
+    all.written.extend(explain::vectors(ui, rect, session.active(), session));
     ui.scope(|ui| {
-        let free = stage.map_or(rect, |stage| stage.paint(ui, session));
+        let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
@@ -126,7 +128,12 @@ pub fn views(
     let mut all = Overlaid::default();
     let shown = arrangement.cells.iter().filter(|cell| cell.part.is_positive());
     // One over the other, two views have the same marks.
-    let apart = session.document.comparison.layout == Layout::SideBySide;
+    let layout = session.document.comparison.layout;
+    let apart = layout == Layout::SideBySide;
+    // A difference has no lines of its own.
+    for cell in arrangement.cells.iter().filter(|_| layout != Layout::Difference) {
+        wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
+    }
     for cell in shown.take(if apart { usize::MAX } else { 1 }) {
         ui.push_id(("view", cell.view), |ui| {
             marked(ui, cell.rect, written, session, registry, &mut all);
@@ -135,7 +142,7 @@ pub fn views(
     }
     for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
         // Views that lie over each other have the same rectangle.
-        explain::vectors(ui, cell.rect, cell.view, session);
+        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session));
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
     let mut stale_in = None;

@@ -12,6 +12,7 @@ use bevy_egui::egui::{
 
 use super::{
     caption::{self, Lines, models_shown},
+    inspector::model::meaning,
     keys,
     marks::Lens,
     maths::{self, Sizes},
@@ -21,7 +22,11 @@ use super::{
     theme::Palette,
     typeset::Break,
 };
-use crate::{reflection::Term, registry::Registry, scene::variant::LETTERS};
+use crate::{
+    reflection::{ModelEntry, Term},
+    registry::Registry,
+    scene::variant::LETTERS,
+};
 
 /// The size of the caption, as a fraction of the height of the screen. The capitals of its font are 0.727 of it high.
 const CAPTION: f32 = 0.036;
@@ -156,7 +161,7 @@ impl Stage {
 
     /// Paints equation and caption, each on a ground of its own, so that they can be read on any picture. Returns the
     /// part of the picture that is free; what is shown there is as large.
-    pub(super) fn paint(&self, ui: &mut Ui, session: &Session) -> Rect {
+    pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Rect {
         let palette = Palette::here(ui);
         let height = self.whole.height();
         let padding = padding(self.whole);
@@ -169,7 +174,8 @@ impl Stage {
         let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
-            columns(ui, &self.block, &self.equation, self.plate.min + padding, height);
+            let model = model_of(session, registry);
+            columns(ui, &self.block, &self.equation, model, self.plate.min + padding, height);
             let above = self.plate.left() < free.center().x && self.plate.top() <= free.top();
             if above && self.plate.right() > free.left() {
                 free.min.y = free.min.y.max(self.plate.bottom());
@@ -225,13 +231,13 @@ impl Footer {
     }
 
     /// Paints it at the lower end of the screen.
-    pub(super) fn paint(&self, ui: &mut Ui, whole: Rect, session: &Session) {
+    pub(super) fn paint(&self, ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) {
         let palette = Palette::here(ui);
         let (height, padding) = (whole.height(), padding(whole));
         let place = whole.with_min_y(whole.bottom() - self.height);
         ui.painter().rect_filled(place, 0.0, palette.panel);
         let at = place.min + padding;
-        columns(ui, &self.block, &self.equation, at, height);
+        columns(ui, &self.block, &self.equation, model_of(session, registry), at, height);
         let width = whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
         let gap = if self.equation.is_empty() { 0.0 } else { self.block.size.y + padding.y };
@@ -242,9 +248,12 @@ impl Footer {
 
 /// The equation of the model that the active view shows. Among several models, it would say of all what is true of one.
 fn equation_shown(session: &Session, registry: &Registry) -> Vec<Definition> {
+    model_of(session, registry).map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation))
+}
+
+fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEntry> {
     let models = models_shown(session);
-    let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
-    model.map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation))
+    models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
 }
 
 /// What was made in an earlier frame, if it was made from the same.
@@ -263,14 +272,21 @@ fn kept<T: Clone + Send + Sync + 'static>(
     made
 }
 
-/// Sets an equation in its columns from a corner on.
-fn columns(ui: &mut Ui, block: &Block, equation: &[Definition], at: Pos2, height: f32) {
+/// Sets the equation of a model in its columns from a corner on.
+fn columns(
+    ui: &mut Ui,
+    block: &Block,
+    equation: &[Definition],
+    model: Option<&ModelEntry>,
+    at: Pos2,
+    height: f32,
+) {
     for (i, (which, start, width)) in block.columns.iter().enumerate() {
         let place = Rect::from_min_size(at + vec2(*start, 0.0), vec2(*width, block.size.y));
         let mut ui = ui.new_child(UiBuilder::new().id_salt(("column", i)).max_rect(place));
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
         let sizes = Sizes { column: true, even: block.even };
-        maths::equation_of(&mut ui, &equation[which.clone()], sizes, |_| None);
+        maths::equation_of(&mut ui, &equation[which.clone()], sizes, |symbol| meaning(model?, symbol));
     }
 }
 

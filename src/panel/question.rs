@@ -101,6 +101,12 @@ fn words(session: &Session, question: &Question) -> Words {
             Vec::new(),
             vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
         ),
+        Question::ReplaceScene { path } => (
+            "Replace it?",
+            format!("{} exists. Replace it with a copy of this scene?", path.display()),
+            Vec::new(),
+            vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
+        ),
         Question::ReplacePicture { path, .. } => (
             "Replace it?",
             format!("{} exists. Replace it with the new picture?", path.display()),

@@ -28,6 +28,8 @@ pub struct Settings {
     pub scale: u16,
     /// Width of the tree, points.
     pub left_width: f32,
+    /// Width of a lesson, points.
+    pub lesson_width: f32,
     /// Width of the inspector, points.
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
@@ -70,6 +72,7 @@ impl Default for Settings {
             theme: view.theme,
             scale: view.scale,
             left_width: view.left_width,
+            lesson_width: view.lesson_width,
             right_width: view.right_width,
             bottom_height: view.bottom_height,
             hidden_panels: view.hidden_panels,
@@ -158,6 +161,7 @@ impl Session {
             theme: self.view.theme,
             scale: self.view.scale,
             left_width: self.view.left_width,
+            lesson_width: self.view.lesson_width,
             right_width: self.view.right_width,
             bottom_height: self.view.bottom_height,
             hidden_panels: self.view.hidden_panels.clone(),
@@ -173,6 +177,7 @@ impl Session {
         self.view.theme = settings.theme;
         self.view.scale = settings.scale;
         self.view.left_width = settings.left_width;
+        self.view.lesson_width = settings.lesson_width;
         self.view.right_width = settings.right_width;
         self.view.bottom_height = settings.bottom_height;
         self.view.hidden_panels = settings.hidden_panels;
@@ -194,6 +199,7 @@ impl Settings {
             }
         };
         tidy(&mut self.left_width, default.left_width);
+        tidy(&mut self.lesson_width, default.lesson_width);
         tidy(&mut self.right_width, default.right_width);
         tidy(&mut self.bottom_height, default.bottom_height);
         self

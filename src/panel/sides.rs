@@ -2,7 +2,7 @@
 //! others leave; these are sections below it, which fold, and scroll where they are long. At the bottom they are tabs.
 
 use bevy_egui::egui::{
-    self, Button, Frame, Id, Margin, Rect, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2,
+    self, Button, Frame, Id, Margin, Rect, Response, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::{
@@ -10,11 +10,20 @@ use super::{
     focus::{self, Region},
     glyphs,
     icon::{self, Icon},
+    lesson::point,
     shares::shared,
-    state::{Action, EXPLAIN_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
+    state::{
+        Action, EXPLAIN_TAB, LessonCommand, OpenLesson, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, Session,
+        ViewChange,
+    },
     theme::{self, Palette},
 };
 
+/// Id of the panel with the lesson.
+const LESSON: &str = "lesson";
+/// The part of the left side that the scene list takes below a lesson, and the height of its rows, points.
+const TREE: f32 = 0.42;
+const ROW: f32 = 26.0;
 /// The part of a side that the sections of others may take together.
 const GUESTS: f32 = 0.5;
 /// Height of the title of a section, points.
@@ -34,6 +43,7 @@ pub(super) fn side(
     panels: &mut Panels,
     context: &mut PanelContext<'_>,
 ) {
+    let mut lessons = Vec::new();
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
     let wanted = |ui: &Ui, info: &PanelInfo| match session.view.folds(info.id) {
         true => TITLE,
@@ -53,9 +63,58 @@ pub(super) fn side(
             ui.ctx().request_repaint();
         }
     }
-    for (_, panel) in own {
+    for (info, panel) in own {
+        let lesson = session.lesson.as_ref().filter(|_| place == Place::Left);
+        match (lesson, info.id) {
+            (Some(_), LESSON) => lessons.push(panel),
+            (Some(open), _) if !session.view.presenting => tree_below(ui, open, panel, context),
+            (Some(_), _) | (None, LESSON) => {}
+            (None, _) => panel.show(ui, context),
+        }
+    }
+    // In the room that is left.
+    for panel in lessons {
         panel.show(ui, context);
     }
+}
+
+/// The scene list below a lesson, which a click on its title unfolds.
+fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut dyn Panel, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let unfolded = open.tree_open || point::at_part(session);
+    let rows = 4 + session.document.lights.len() + session.document.objects.len();
+    let list = (rows as f32 * ROW).min(TREE * ui.available_height()).max(3.0 * ROW);
+    let height = TITLE + LINE + if unfolded { list } else { 0.0 };
+    let strip = egui::Panel::bottom("scene list below a lesson").frame(Frame::NONE).resizable(false);
+    strip.exact_size(height).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), Sense::hover());
+        let inside = rect.with_min_x(rect.left() + 8.0);
+        let response = ui.interact(inside, Id::new("title of the scene list"), Sense::click());
+        let says = "Scene list";
+        response.widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, unfolded, says));
+        fold_title(ui, &response, says, unfolded);
+        let way = if unfolded { "Fold the scene list" } else { "Unfold the scene list" };
+        if response.on_hover_text(way).clicked() {
+            context.act(Action::Lesson(LessonCommand::Tree(!unfolded)));
+        }
+        if unfolded {
+            panel.show(ui, context);
+        }
+    });
+}
+
+/// The arrow and the words of a title that folds what is below it.
+fn fold_title(ui: &mut Ui, response: &Response, text: &str, unfolded: bool) {
+    let palette = Palette::here(ui);
+    let rect = response.rect;
+    let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
+    let openness = if unfolded { 1.0 } else { 0.0 };
+    egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
+    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let galley = theme::elided(ui, text, font, palette.text, rect.width() - 16.0);
+    let at = rect.left_center() + vec2(16.0, -0.5 * galley.size().y);
+    ui.painter().galley(at, galley, palette.text);
 }
 
 /// A panel of others: its title, which folds it, and what it shows. Returns the height of all of it, if it is unfolded.
@@ -90,7 +149,6 @@ fn section(
 }
 
 fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {
-    let palette = Palette::here(ui);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.set_min_height(TITLE);
@@ -101,14 +159,8 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
         let response = ui.interact(rect, Id::new(("title of a section", info.id)), Sense::click());
         response
             .widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, info.title));
-        let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
-        let openness = if folded { 0.0 } else { 1.0 };
-        egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
         let text = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
-        let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-        let galley = theme::elided(ui, &text, font, palette.text, rect.width() - 16.0);
-        let at = rect.left_center() + vec2(16.0, -0.5 * galley.size().y);
-        ui.painter().galley(at, galley, palette.text);
+        fold_title(ui, &response, &text, !folded);
         let way = if folded { "Unfold the panel" } else { "Fold the panel" };
         if response.on_hover_text(way).clicked() {
             context.act(Action::View(ViewChange::Fold(info.id.to_owned(), !folded)));
@@ -170,7 +222,9 @@ pub(super) fn bottom(
                 if let Some((severity, note)) = panel.note(session) {
                     button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
                 }
-                if ui.add(button).clicked() {
+                let button = ui.add(button);
+                point::tab(ui, info.id, button.rect);
+                if button.clicked() {
                     context.act(Action::View(ViewChange::BottomTab(info.id.to_owned())));
                 }
             }

@@ -3,10 +3,14 @@
 use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare, export, glyphs,
+    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare,
+    explain::lobe_entries,
+    export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
-    labels, maths, menu, model_override, pictures,
+    labels,
+    lesson::{list, point},
+    maths, menu, model_override, pictures,
     segmented::{segment_width, segmented},
     state::{
         Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, PLOTS_TAB, SHADER_TAB, Session,
@@ -54,16 +58,26 @@ impl Panel for TopBar {
             if captioned {
                 caption(ui, CAPTIONS[0]);
             }
+            let from = ui.cursor().left();
             actions.extend(chooser::show(ui, session, registry));
+            pointed(ui, "reflection", from);
             ui.add_space(8.0);
             if captioned {
                 caption(ui, CAPTIONS[1]);
             }
+            let from = ui.cursor().left();
             shading(ui, session, registry, &names, apart, actions);
+            pointed(ui, "shading", from);
             model_override::whose(ui, session, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
         });
     }
+}
+
+/// A choice of this name is in the bar, from this place to the cursor.
+fn pointed(ui: &Ui, name: &str, from: f32) {
+    let to = ui.cursor().left() - ui.spacing().item_spacing.x;
+    point::button(ui, name, ui.min_rect().with_min_x(from + 2.0).with_max_x(to - 2.0));
 }
 
 fn divider(ui: &mut Ui) {
@@ -80,6 +94,9 @@ fn caption(ui: &mut Ui, text: &str) {
 /// The captions of the choices.
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
 
+/// What stands in the place of the scene's name while a lesson is open.
+const LESSON: &str = "Lesson";
+
 /// The part of the title that is left for the scene's name beside a long name of its file.
 const NAME: f32 = 0.45;
 
@@ -95,7 +112,11 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let line = |text: &str, room: f32| theme::elided(ui, text, font.clone(), palette.text, room);
-    let (title, whole, room) = (session.title(), session.window_title(), width - 8.0);
+    let (mut title, mut whole, room) = (session.title(), session.window_title(), width - 8.0);
+    // The lesson says its title itself.
+    if session.lesson.is_some() && session.view.left_open {
+        (title, whole) = (LESSON.to_owned(), LESSON.to_owned());
+    }
     // The file has its share where both do not fit, unless it repeats the name.
     let mut file = whole.strip_prefix(&title).unwrap_or_default();
     if line(&title, f32::INFINITY).size().x + line(file, f32::INFINITY).size().x > room
@@ -112,6 +133,7 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         at.x = rect.right();
     }
     let state = if session.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
+    let own = session.own_title();
     response.widget_info(|| {
         WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.window_title()))
     });
@@ -124,11 +146,15 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             ui.label(maths::prose(ui, description, egui::TextStyle::Body));
         }
         let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
-        ui.label(theme::small(ui, format!("{file}; {state}")));
+        let said = match session.lesson {
+            Some(_) => format!("a scene of the lesson; “{own}” {state}, and comes back when you leave"),
+            None => format!("{file}; {state}"),
+        };
+        ui.label(theme::small(ui, said));
     });
     // The place of the dot is kept, so that nothing moves when it comes and goes.
     let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0), egui::Sense::hover());
-    if session.is_dirty() {
+    if session.shows_unsaved() {
         ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
         dot.on_hover_text("Unsaved changes");
     }
@@ -277,6 +303,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                             actions.push(Action::View(ViewChange::Terms(terms)));
                         }
                     }
+                    ui.separator();
+                    menu::submenu(ui, "Lobe at the explained point", |ui| lobe_entries(ui, session, actions));
                 });
                 menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
                 ui.separator();
@@ -324,7 +352,9 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 menu::submenu(ui, "Panels", |ui| {
                     ui.set_width(0.8 * MENU_WIDTH);
                     let (left, right) = (ViewChange::Left(!v.left_open), ViewChange::Right(!v.right_open));
-                    check(ui, "Scene list", v.left_open, "", view(left), actions);
+                    let left_name =
+                        if session.lesson.is_some() { "Lesson and scene list" } else { "Scene list" };
+                    check(ui, left_name, v.left_open, "", view(left), actions);
                     check(ui, "Properties", v.right_open, "", view(right), actions);
                     let examples = ViewChange::Examples(!v.examples_open);
                     check(ui, "Examples", v.examples_open, "", view(examples), actions);
@@ -380,9 +410,13 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
         let help = ui.menu_button("Help", |ui| {
             ui.set_width(MENU_WIDTH);
             item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!session.view.keys_open)), actions);
+            menu::submenu(ui, "Lessons", |ui| list::entries(ui, session, actions));
             item(ui, "About", Action::View(ViewChange::About(true)), actions);
         });
         let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
+        for ((_, menu), name) in bar.iter().zip(["File", "Edit", "View", "Help"]) {
+            point::menu(ui, name, menu.response.rect);
+        }
         menu::bar(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
     });
 }

@@ -9,6 +9,7 @@ use super::{
     Panel, PanelContext, Place, focus, glyphs,
     icon::{self, Icon},
     knob,
+    lesson::point,
     state::{Action, Session},
     theme::{self, Palette},
 };
@@ -198,6 +199,7 @@ fn part_row(
     let response = ui.interact(rect, row_id(part), Sense::click());
     response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
     let hovered = ui.rect_contains_pointer(rect);
+    point::part(ui, session, part, rect);
     let painter = ui.painter_at(rect);
     let ground = rect.shrink2(vec2(4.0, 0.0));
     if selected {

@@ -1,22 +1,39 @@
-//! The examples: a menu of them, and the strip below the picture that shows them when the window opens without a file.
+//! The start without a file: a strip below the picture with three doors, to a lesson, to an example scene and to a model
+//! of one's own. And the menu of the examples.
+
+use std::sync::Arc;
 
 use bevy_egui::egui::{
-    self, Align, Context, Label, Layout, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind, TextStyle,
-    Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Button, Context, FontId, Galley, Label, Layout, Popup, Rect, Response, ScrollArea, Sense,
+    Stroke, StrokeKind, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, text::LayoutJob, vec2,
 };
 
 use super::{
     focus::{self, Region},
     icon::{self, Icon},
-    keys, maths,
+    keys,
+    lesson::list,
+    maths,
     preview::{self, Source},
-    state::{Action, PictureArea, Session, ViewChange},
+    state::{Action, LessonCommand, LessonSource, ModelCommand, PictureArea, Session, ViewChange},
     theme::{self, Palette},
 };
-use crate::{registry::Registry, scene::examples::EXAMPLES};
+use crate::{lesson::shipped::LESSONS, registry::Registry, scene::examples::EXAMPLES};
 
 /// The size of a picture in the strip, points.
 const CARD: egui::Vec2 = vec2(112.0, 63.0);
+/// Height of the headings of the doors, points.
+const HEADING: f32 = 24.0;
+/// The widths of the doors to lessons and to a model, and the space between doors, points.
+const LESSON: f32 = 184.0;
+const MODEL: f32 = 148.0;
+const GAP: f32 = 24.0;
+/// In a narrower strip, the door to a model is a button below that to lessons, which is as wide as this, points.
+const WIDE: f32 = 600.0;
+const NARROW: f32 = 150.0;
+/// The tooltip of the door to a model.
+const MODEL_TIP: &str =
+    "A model of your own is one file in WGSL: equation and knobs. The picture follows while you write it.";
 /// The room of the scroll bar below the titles, points.
 const BAR: f32 = 10.0;
 /// The size of one in the menu.
@@ -26,58 +43,194 @@ const LEAST: f32 = 320.0;
 /// Width of the menu, at most and at least.
 const MENU: [f32; 2] = [580.0, 260.0];
 
-/// The strip below the picture.
+/// The strip below the picture: three doors.
 pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
-    // The picture comes first; the menu has the examples too.
+    // The picture comes first; the menus have all of it too.
     if !session.view.examples_open || ui.available_height() < LEAST {
         return actions;
     }
     let palette = Palette::here(ui);
     let panel = egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0)));
     let shown = panel.show(ui, |ui| {
-        ui.horizontal(|ui| {
-            ui.label(theme::strong(ui, "Examples"));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if icon::button(ui, Icon::Cross, "Close the examples (Esc); they stay under File › Examples")
-                    .clicked()
-                {
-                    actions.push(Action::View(ViewChange::Examples(false)));
+        let font = TextStyle::Small.resolve(ui.style());
+        let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), palette.text, CARD.x);
+        let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
+        let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
+        let whole = Rect::from_min_size(
+            ui.available_rect_before_wrap().min,
+            vec2(ui.available_width(), HEADING + 4.0 + CARD.y + below),
+        );
+        let wide = whole.width() >= WIDE;
+        let lessons = if wide { LESSON } else { NARROW };
+        let model = if wide { MODEL } else { 0.0 };
+        let first = whole.left() + lessons + GAP;
+        let last = whole.right() - if wide { model + GAP } else { 0.0 };
+        let column = |ui: &mut Ui, from: f32, to: f32, show: &mut dyn FnMut(&mut Ui)| {
+            let place = Rect::from_x_y_ranges(from..=to, whole.y_range());
+            if from > whole.left() {
+                let line = Stroke::new(1.0, palette.line);
+                ui.painter().vline(from - 0.5 * GAP, place.shrink(4.0).y_range(), line);
+            }
+            show(&mut ui.new_child(UiBuilder::new().id_salt(from as i32).max_rect(place)));
+        };
+        column(ui, whole.left(), whole.left() + lessons, &mut |ui| {
+            lesson_door(ui, session, &mut actions);
+            if !wide && small_button(ui, "New model…").on_hover_text(MODEL_TIP).clicked() {
+                actions.push(Action::Model(ModelCommand::New));
+            }
+        });
+        column(ui, first, last, &mut |ui| {
+            heading(ui, "Examples", |ui| {
+                if !wide {
+                    return close(ui, &mut actions);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let hint = theme::small(ui, "open as new scenes; also in the File menu");
                     ui.add(Label::new(hint).truncate());
                 });
             });
+            cards(ui, &titles, below, registry, &mut actions);
         });
-        let font = TextStyle::Small.resolve(ui.style());
-        let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), palette.text, CARD.x);
-        let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
-        let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
-        // Wheels turn up and down.
-        ui.style_mut().always_scroll_the_only_direction = true;
-        ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
-            ui.horizontal_top(|ui| {
-                for ((i, example), galley) in EXAMPLES.iter().enumerate().zip(titles) {
-                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
-                    let picture = Rect::from_min_size(rect.min, CARD);
-                    face(ui, i, picture, &response, registry);
-                    ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley, palette.text);
-                    frame(ui, picture, &response);
-                    if response.clicked() {
-                        actions.push(Action::OpenExample(i));
-                    }
-                    response.on_hover_ui(|ui| {
-                        ui.set_max_width(320.0);
-                        ui.label(theme::strong(ui, &example.name));
-                        ui.label(maths::prose(ui, &example.description, TextStyle::Body));
-                    });
-                }
+        if wide {
+            column(ui, whole.right() - model, whole.right(), &mut |ui| {
+                heading(ui, "Your own model", |ui| close(ui, &mut actions));
+                model_door(ui, &mut actions);
             });
-        });
+        }
+        ui.advance_cursor_after_rect(whole);
     });
     focus::region(ui.ctx(), Region::Examples, shown.response.rect);
     actions
+}
+
+/// The heading of a door, and what stands at its right.
+fn heading(ui: &mut Ui, text: &str, right: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.set_height(HEADING);
+        ui.label(theme::strong(ui, text));
+        ui.with_layout(Layout::right_to_left(Align::Center), right);
+    });
+}
+
+fn close(ui: &mut Ui, actions: &mut Vec<Action>) {
+    let says = "Close this strip (Esc); its parts stay in the menus File, Edit and Help";
+    if icon::button(ui, Icon::Cross, says).clicked() {
+        actions.push(Action::View(ViewChange::Examples(false)));
+    }
+}
+
+/// The examples, side by side.
+fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    // Wheels turn up and down.
+    ui.style_mut().always_scroll_the_only_direction = true;
+    ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            for ((i, example), galley) in EXAMPLES.iter().enumerate().zip(titles) {
+                let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
+                let picture = Rect::from_min_size(rect.min, CARD);
+                face(ui, i, picture, &response, registry);
+                ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley.clone(), palette.text);
+                frame(ui, picture, &response);
+                if response.clicked() {
+                    actions.push(Action::OpenExample(i));
+                }
+                response.on_hover_ui(|ui| {
+                    ui.set_max_width(320.0);
+                    ui.label(theme::strong(ui, &example.name));
+                    ui.label(maths::prose(ui, &example.description, TextStyle::Body));
+                });
+            }
+        });
+    });
+}
+
+/// The lesson to go on with, and below it all of them.
+fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    heading(ui, "Lessons", |_| ());
+    let Some(source) = session.progress.next() else { return };
+    let past = session.progress.of(&source.name()).filter(|past| past.step > 0);
+    let shipped = match source {
+        LessonSource::Shipped(i) => LESSONS.get(i),
+        LessonSource::File(_) => None,
+    };
+    let title = shipped.map(|lesson| lesson.title.as_str()).or(past.map(|past| past.title.as_str()));
+    let title = title.unwrap_or_default();
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CARD.y), Sense::click());
+    let begun = past.map(|past| format!("Go on: {}", past.words()));
+    let minutes = shipped.and_then(|lesson| lesson.minutes);
+    let small = begun.unwrap_or_else(|| match minutes {
+        Some(minutes) => format!("Begin here: {minutes} min"),
+        None => "Begin here".to_owned(),
+    });
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{small}, {title}")));
+    focus::first(ui.ctx(), response.id);
+    card(ui, rect, &response);
+    let inside = rect.shrink2(vec2(10.0, 7.0));
+    let font = TextStyle::Small.resolve(ui.style());
+    let line = theme::elided(ui, &small, font, palette.weak, inside.width());
+    let at = inside.min + vec2(0.0, line.size().y + 1.0);
+    ui.painter().galley(inside.min, line, palette.weak);
+    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let mut job = LayoutJob::simple(title.to_owned(), font, palette.text, inside.width());
+    job.wrap.max_rows = 2;
+    ui.painter().galley(at, ui.painter().layout_job(job), palette.text);
+    if let Some(past) = past {
+        let bar = Rect::from_min_max(pos2(rect.left() + 2.0, rect.bottom() - 4.0), rect.max - vec2(2.0, 1.0));
+        let part = bar.with_max_x(bar.left() + past.fraction() * bar.width());
+        ui.painter().rect_filled(bar, 1.5, palette.line);
+        ui.painter().rect_filled(part, 1.5, palette.accent);
+    }
+    if response.clicked() {
+        actions.push(Action::Lesson(LessonCommand::Continue));
+    }
+    if let Some(lesson) = shipped {
+        response.on_hover_ui(|ui| {
+            ui.set_max_width(320.0);
+            ui.label(theme::strong(ui, title));
+            ui.label(maths::prose(ui, &lesson.summary, TextStyle::Body));
+        });
+    }
+    let all = small_button(ui, "All lessons ▾");
+    Popup::menu(&all).show(|ui| list::entries(ui, session, actions));
+}
+
+fn small_button(ui: &mut Ui, text: &str) -> Response {
+    ui.spacing_mut().interact_size.y = 0.0;
+    ui.add(Button::new(egui::RichText::new(text).small()).small())
+}
+
+/// The way to a model of one's own.
+fn model_door(ui: &mut Ui, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CARD.y), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "New reflection model…"));
+    card(ui, rect, &response);
+    let size = 22.0;
+    let signs = ["f_r", "(", "L", ",", "V", ")"];
+    let widths = signs.map(|sign| maths::symbol_width(ui, sign, size));
+    let mut at = pos2(rect.center().x - 0.5 * widths.iter().sum::<f32>(), rect.center().y + 0.32 * size);
+    for (sign, width) in signs.into_iter().zip(widths) {
+        maths::paint_symbol(ui, at, sign, size, palette.text);
+        at.x += width;
+    }
+    let font = TextStyle::Small.resolve(ui.style());
+    let words = theme::elided(ui, "New reflection model…", font, palette.text, rect.width());
+    ui.painter().galley(rect.left_bottom() + vec2(0.0, 4.0), words, palette.text);
+    if response.clicked() {
+        actions.push(Action::Model(ModelCommand::New));
+    }
+    response.on_hover_text(MODEL_TIP);
+}
+
+/// The ground of a door that has no picture.
+fn card(ui: &Ui, rect: Rect, response: &Response) {
+    let palette = Palette::here(ui);
+    let fill = if response.hovered() || response.has_focus() { palette.hovered } else { palette.raised };
+    ui.painter().rect_filled(rect, 2.0, fill);
+    frame(ui, rect, response);
 }
 
 /// Escape closes the strip, unless it is another's.

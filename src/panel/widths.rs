@@ -46,9 +46,14 @@ impl Widths {
             least: least.min(most),
             most,
         };
+        // Beside a lesson there is so little room that each knob counts.
+        let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
         let sides = [
-            side(view.left_open, view.left_width, usual.left_width, 120.0, 0.26 * whole),
-            side(view.right_open, view.right_width, usual.right_width, 280.0, 0.45 * whole),
+            match session.lesson {
+                Some(_) => side(view.left_open, view.lesson_width, usual.lesson_width, 264.0, 0.45 * whole),
+                None => side(view.left_open, view.left_width, usual.left_width, 120.0, 0.26 * whole),
+            },
+            side(view.right_open, view.right_width, usual.right_width, least, 0.45 * whole),
         ];
         // One that is dragged takes nothing from the other.
         let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
@@ -69,10 +74,11 @@ impl Widths {
     pub(super) fn dragged(&self, ctx: &Context, session: &Session, sizes: (f32, f32, f32)) -> Option<Action> {
         let v = &session.view;
         let kept = |size: f32, given: f32, known: f32| if (size - given).abs() > 1.0 { size } else { known };
-        let left = kept(sizes.0, self.left.default, v.left_width);
+        let known = if session.lesson.is_some() { v.lesson_width } else { v.left_width };
+        let left = kept(sizes.0, self.left.default, known);
         let right = kept(sizes.1, self.right.default, v.right_width);
         let bottom = kept(sizes.2, v.bottom_height, v.bottom_height);
-        let moved = (left, right, bottom) != (v.left_width, v.right_width, v.bottom_height);
+        let moved = (left, right, bottom) != (known, v.right_width, v.bottom_height);
         let down = ctx.input(|i| i.pointer.any_down());
         if down && ctx.dragged_id().is_some() && moved {
             ctx.data_mut(|d| d.insert_temp(dragging(), true));

@@ -30,7 +30,7 @@ use glam::Vec4;
 use rayon::prelude::*;
 
 use crate::{
-    channel::Setting,
+    channel::{DebugChannel, Setting},
     optics::TermSelection,
     registry::Registry,
     scene::{Display, Scene, observer::clip_from_room},
@@ -44,6 +44,8 @@ pub(crate) mod meshes;
 mod object;
 pub(crate) mod probe;
 mod raster;
+mod vertices;
+mod wires;
 
 pub use crate::optics::colour::BACKGROUND;
 use channel::Sight;
@@ -54,6 +56,8 @@ use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
 use raster::{Screen, TILE, Tile, Triangle};
+pub use vertices::brightest_vertex;
+pub use wires::{Dot, Line, WireDrawer, Wires, draw_wires};
 
 /// The settings of a picture, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,9 +157,15 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
     }
     let display = DisplayTransform::new(&Display::default());
     let background = display.apply(Vec4::ZERO);
-    let sight = Sight::new(scene, registry, settings, *setting);
+    let wires = setting.channel.has_wires();
+    let ground = if wires { DebugChannel::NotANumber } else { setting.channel };
+    let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
     let finish = |pixel| display.apply(pixel);
-    draw(scene, registry, settings, Some(&sight), None, background, finish).into_flattened()
+    let mut rgb8 = draw(scene, registry, settings, Some(&sight), None, background, finish).into_flattened();
+    if wires {
+        draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
+    }
+    rgb8
 }
 
 /// Polygons held at a time: bounds the memory for scenes of any size.

@@ -3,8 +3,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Readout, ReflectionModel,
+    Term, preset,
 };
 use crate::{
     optics::{
@@ -189,6 +189,13 @@ fn flattened(cos_l: f32, cos_v: f32, cos_d: f32, roughness: f32) -> f32 {
 }
 
 impl ReflectionModel for Disney {
+    const GROUPS: &'static [Group] = &[
+        Group::new("Base", &["base_colour", "metallic", "subsurface"]),
+        Group::new("Specular", &["specular", "specular_tint", "roughness", "anisotropic"]),
+        Group::new("Sheen", &["sheen", "sheen_tint"]),
+        Group::new("Clear coat", &["clearcoat", "clearcoat_gloss"]),
+    ];
+
     const DECLARATION: Declaration = Declaration {
         id: "disney",
         name: "Disney",

@@ -14,6 +14,7 @@ use glam::{Vec3, Vec4};
 
 use super::{
     declaration::{Ambient, Declaration},
+    group::Group,
     model::ReflectionModel,
     preset::{self, Measured},
     surface::{Instance, Surface},
@@ -34,6 +35,8 @@ pub struct ModelEntry {
     pub declaration: &'static Declaration,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// See [`ReflectionModel::GROUPS`].
+    pub groups: &'static [Group],
     /// See [`ReflectionModel::preset`].
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
     lobe: Lobe,
@@ -97,6 +100,7 @@ impl ModelEntry {
         Self {
             declaration: const { &M::DECLARATION },
             parameters: M::PARAMETERS,
+            groups: M::GROUPS,
             preset: M::preset,
             lobe: if M::LOBE || !M::CURVES.is_empty() { Lobe::Own } else { Lobe::None },
             curves: M::CURVES,
@@ -120,8 +124,24 @@ impl ModelEntry {
     ) -> Self {
         let preset = preset::by_names(parameters);
         let identity = Identity::new(declaration, parameters);
-        let kept = Arc::default();
-        Self { declaration, parameters, preset, lobe, curves, instantiate, on_cpu, identity, kept }
+        let groups = &[];
+        Self {
+            declaration,
+            parameters,
+            groups,
+            preset,
+            lobe,
+            curves,
+            instantiate,
+            on_cpu,
+            identity,
+            kept: Arc::default(),
+        }
+    }
+
+    /// The same with its parameters in groups.
+    pub(crate) fn grouped(self, groups: &'static [Group]) -> Self {
+        Self { groups, ..self }
     }
 
     /// A number that changes whenever the file of the model is read again.

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
-use super::{declaration::Declaration, factor::Factor, preset::Measured, readout::Readout};
+use super::{declaration::Declaration, factor::Factor, group::Group, preset::Measured, readout::Readout};
 use crate::{
     optics::{
         Frame, Terms,
@@ -15,6 +15,9 @@ use crate::{
 pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
+
+    /// Its parameters in groups, such as one for each layer of the surface. Those in none stand before the groups.
+    const GROUPS: &'static [Group] = &[];
 
     /// True if the model has a [`lobe`](Self::lobe); then its WGSL may call
     /// `lobe_albedo(mu)` and `average_lobe_albedo()`.

@@ -4,7 +4,7 @@ use super::error::LoadError;
 use crate::text::place::Lines;
 
 /// The text of the bytes, or a guess at their encoding.
-pub(super) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadError> {
+pub(crate) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadError> {
     let not_text = |at: usize, what: String| {
         // Everything before the first wrong byte is valid text.
         let before = std::str::from_utf8(&bytes[..at]).unwrap_or_default();

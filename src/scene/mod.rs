@@ -22,7 +22,7 @@ use glam::Vec3;
 mod beyond_room;
 pub mod check;
 pub mod comparison;
-mod encoding;
+pub(crate) mod encoding;
 pub mod error;
 pub mod examples;
 mod format;
@@ -36,7 +36,7 @@ pub mod rotation;
 pub mod save;
 pub mod schema;
 mod serialise;
-mod syntax;
+pub(crate) mod syntax;
 pub mod variant;
 
 pub use comparison::Comparison;

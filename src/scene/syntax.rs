@@ -6,7 +6,7 @@ use serde::{Deserialize as _, de::IgnoredAny};
 const MAX_DEPTH: usize = 64;
 
 /// Strict JSON, or the first wrong byte and the expectation there.
-pub(super) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
+pub(crate) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
     let mut json = serde_json::Deserializer::from_str(text);
     let strict = IgnoredAny::deserialize(&mut json).and_then(|_| json.end());
     strict.map_err(|e| explain(text, &e))?;

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, Session, Steer},
+    panel::state::{Action, CameraChange, Session, Steer},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, observer::rotation},
@@ -181,6 +181,14 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     }
 }
 
+/// A camera that waits: its place, the point that it looks at, and true if it stands at the observer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    place: Transform,
+    focus: Vec3,
+    follows_observer: bool,
+}
+
 /// The movements of the camera that panels ask for.
 #[derive(SystemParam)]
 pub(super) struct CameraControl<'w, 's> {
@@ -191,9 +199,25 @@ pub(super) struct CameraControl<'w, 's> {
         (&'static mut PanOrbitCamera, &'static mut Transform, &'static mut PictureCamera),
         With<WindowView>,
     >,
+    waiting: Local<'s, Option<Waiting>>,
 }
 
 impl CameraControl<'_, '_> {
+    /// Makes room for the view of another document, or exchanges both.
+    pub(super) fn change(&mut self, change: CameraChange) {
+        let Some((mut orbit, mut transform, mut picture)) = self.cameras.iter_mut().next() else { return };
+        let now =
+            Waiting { place: *transform, focus: orbit.focus, follows_observer: picture.follows_observer };
+        let before = self.waiting.replace(now);
+        match (change, before) {
+            (CameraChange::Exchange, Some(Waiting { place, focus, follows_observer: false })) => {
+                picture.follows_observer = false;
+                put_at(&mut orbit, &mut transform, place, focus);
+            }
+            _ => picture.follows_observer = true,
+        }
+    }
+
     /// Back to the observer.
     pub(super) fn home(&mut self) {
         for (_, _, mut picture) in &mut self.cameras {

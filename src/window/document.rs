@@ -15,11 +15,12 @@ use super::{
     exports::Exports,
     files::DiskFiles,
     laws::LawChecks,
+    lessons::follow_lesson,
     matching::Matches,
     order::Loading,
     plots::PlotFiles,
     views::ShownChannels,
-    watching::{FilesChanged, complain},
+    watching::{FileWatch, FilesChanged, complain},
 };
 use crate::{
     custom::folder::declare_folder,
@@ -28,8 +29,9 @@ use crate::{
         effects,
         files::Files as _,
         follow::follow_registry,
+        progress::load_progress,
         settings::load_settings,
-        state::{Effect, LabEffect, Session, Severity},
+        state::{Action, Effect, LabEffect, LessonCommand, Session, Severity},
     },
     registry::Registry,
     render::{
@@ -62,6 +64,7 @@ impl Plugin for DocumentPlugin {
         session.view.examples_open = options.examples;
         if self.for_user {
             load_settings(&mut session);
+            load_progress(&mut session);
         } else {
             app.insert_resource(Unattended);
         }
@@ -94,6 +97,11 @@ impl Plugin for DocumentPlugin {
                         .after(Loading::Shaders)
                         .before(Loading::Follow)
                         .in_set(LabSystems::Load),
+                    follow_lesson
+                        .after(Loading::Follow)
+                        .before(Loading::Effects)
+                        .in_set(LabSystems::Load)
+                        .run_if(resource_exists::<FileWatch>),
                     carry_out.in_set(Loading::Effects),
                     publish.in_set(Loading::Publish).run_if(resource_changed::<Session>),
                     take_over.in_set(LabSystems::Edit).after(absorb),
@@ -114,17 +122,29 @@ impl Plugin for DocumentPlugin {
                 None => {}
             }
             session.model_slots.fill(&registry);
+            let mut effects = Vec::new();
             if let Some(file) = &self.options.open {
                 let registry = registry.clone();
-                let effects = open(
+                effects = open(
                     file,
                     &mut session,
                     &registry,
                     &mut world.resource_mut::<DiskFiles>(),
                     self.for_user,
                 );
-                world.write_message_batch(effects.into_iter().map(LabEffect));
             }
+            if let Some(source) = &self.options.lesson {
+                let registry = world.resource::<Registry>().clone();
+                let mut files = world.resource_mut::<DiskFiles>();
+                let open = LessonCommand::Open(source.clone());
+                let go = self.options.step.map(LessonCommand::GoTo);
+                for command in [Some(open), go].into_iter().flatten() {
+                    for effect in session.apply(Action::Lesson(command), &registry) {
+                        effects.extend(effects::run(&mut session, &registry, effect, &mut *files));
+                    }
+                }
+            }
+            world.write_message_batch(effects.into_iter().map(LabEffect));
         });
         // Systems spawn parts before the first frame.
         know_types(world);

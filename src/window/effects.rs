@@ -58,6 +58,7 @@ pub(super) fn carry_out(
             Effect::HomeView => camera.home(),
             Effect::FocusSelection => camera.focus(&session),
             Effect::Steer(steer) => camera.steer(steer),
+            Effect::Camera(change) => camera.change(change),
             Effect::ObserverFromView => camera.place_observer(&mut session, &registry),
             Effect::DocumentChanged => {
                 files.document_changed(session.path.as_deref());
@@ -79,7 +80,7 @@ pub(super) fn carry_out(
                     watch.0.report_later(&path, watching::GRACE);
                 }
             }
-            Effect::SaveSettings if unattended.is_some() => {}
+            Effect::SaveSettings | Effect::SaveProgress(_) if unattended.is_some() => {}
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
@@ -91,6 +92,7 @@ pub(super) fn carry_out(
             | Effect::PickExport(_)
             | Effect::PickPicture(_)
             | Effect::PickPlot
+            | Effect::PickLesson
             | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }

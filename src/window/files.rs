@@ -80,6 +80,14 @@ impl Files for DiskFiles {
         }
     }
 
+    fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved {
+        // What is known of the document's own file stays.
+        let seen = self.seen.take();
+        let saved = self.save(path, scene, registry, overwrite);
+        self.seen = seen;
+        saved
+    }
+
     fn look(&mut self, path: &Path, registry: &Registry) -> Looked {
         match files::kind(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,

@@ -21,6 +21,7 @@ mod frames;
 mod gizmos;
 mod input;
 pub mod laws;
+mod lessons;
 mod matching;
 mod open;
 mod options;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::{
+    panel::state::LessonSource,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
@@ -19,6 +20,10 @@ pub struct ViewOptions {
     pub stamp: Option<Stamp>,
     /// A file that the window opens itself, and asks about where there is something to ask.
     pub open: Option<PathBuf>,
+    /// A lesson that the window opens.
+    pub lesson: Option<LessonSource>,
+    /// The step of the lesson, from 0; else the one that the user was at.
+    pub step: Option<usize>,
     /// True if the window shows the examples: it begins without a scene of the user's.
     pub examples: bool,
     /// True if the defaults are used when the file comes to lack parts.

@@ -200,10 +200,10 @@ impl Recovery {
 
 fn about(session: &Session, files: &DiskFiles) -> About {
     About {
-        title: session.title(),
+        title: session.own_title(),
         // The next window may be started somewhere else.
-        path: session.path.as_ref().map(|path| path::absolute(path).unwrap_or_else(|_| path.clone())),
-        stamp: session.path.as_deref().and_then(|path| files.known(path)),
+        path: session.own_path().map(|path| path::absolute(path).unwrap_or_else(|_| path.to_owned())),
+        stamp: session.own_path().and_then(|path| files.known(path)),
         process: 0,
     }
 }
@@ -275,5 +275,5 @@ fn keep(
         return;
     }
     let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
-    recovery.farewell.keeper.keep(&session.document, about(&session, &files), registry);
+    recovery.farewell.keeper.keep(session.own_document(), about(&session, &files), registry);
 }

@@ -54,7 +54,7 @@ impl Plugin for ShellPlugin {
 }
 
 fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
-    let mark = if session.is_dirty() { " •" } else { "" };
+    let mark = if session.shows_unsaved() { " •" } else { "" };
     let title = format!("{}{mark} – Lights, Camera, Models!", session.window_title());
     if window.title != title {
         window.title = title;

@@ -11,7 +11,10 @@ use lights_camera_models::{
         colours::{BELOW, NAN, TOWARDS},
     },
     optics::{colour::luminance, tone::ToneMapping, viridis::viridis},
-    panel::state::{Action, Session, ViewChange},
+    panel::{
+        state::{Action, Session, ViewChange},
+        wires,
+    },
     reference::{self, render_channel},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
@@ -263,6 +266,116 @@ fn keys_menu_and_legend_show_a_channel_and_the_picture_again() {
 }
 
 #[test]
+fn both_renderers_draw_the_same_lines_and_dots_over_a_dim_surface() {
+    let mut renderer = renderer();
+    for (shape, shading) in [("torus", "flat"), ("sphere", "gouraud"), ("cube", "phong")] {
+        let mut scene = close_up(shape, "point");
+        scene.shading_model = shading.to_owned();
+        let ground = on_cpu(&scene, DebugChannel::NotANumber);
+        let wires: Vec<_> = DebugChannel::ALL.into_iter().filter(|channel| channel.has_wires()).collect();
+        assert_eq!(wires.len(), 3);
+        let cpu: Vec<_> = wires.iter().map(|channel| on_cpu(&scene, *channel)).collect();
+        for (i, channel) in wires.iter().enumerate() {
+            let gpu = on_gpu(&mut renderer, &scene, Some(*channel));
+            let right = share(&gpu, &cpu[i], 3);
+            assert!(right < 0.01, "{shape}, {channel:?}: {right} of the pixels differ");
+            let over = share(&gpu, &ground, 30);
+            assert!((0.005..0.8).contains(&over), "{shape}, {channel:?}: {over} of the picture are lines");
+            // Wrong twins: the others.
+            for other in (0..3).filter(|other| *other != i) {
+                let wrong = share(&gpu, &cpu[other], 3);
+                assert!(
+                    wrong > 2.0 * right + 0.005,
+                    "{shape}, {channel:?}: {:?} goes unnoticed",
+                    wires[other]
+                );
+            }
+        }
+    }
+}
+
+/// Lets the lines of a view be finished; with the number of times that they were calculated.
+fn lines(bench: &mut Bench, view: usize) -> (std::sync::Arc<reference::Wires>, u64) {
+    let mut before = None;
+    for _ in 0..500 {
+        bench.settle();
+        std::thread::sleep(std::time::Duration::from_millis(4));
+        let found = wires::shown(&bench.ctx, view);
+        match (&before, &found) {
+            (Some(Some((old, count))), Some((new, now)))
+                if count == now && std::sync::Arc::ptr_eq(old, new) =>
+            {
+                return found.expect("there");
+            }
+            _ => before = Some(found),
+        }
+    }
+    panic!("the lines are never finished");
+}
+
+/// The largest mesh without a texture over the picture: its vertices, and the middle of those that are not transparent.
+fn drawn(bench: &mut Bench) -> (usize, bevy_egui::egui::Vec2) {
+    let meshes = bench.shapes().into_iter().filter_map(|shape| match shape {
+        bevy_egui::egui::Shape::Mesh(mesh) => Some(mesh),
+        _ => None,
+    });
+    let Some(mesh) = meshes.max_by_key(|mesh| mesh.vertices.len()) else { return Default::default() };
+    let seen: Vec<_> = mesh.vertices.iter().filter(|v| v.color.a() > 0).map(|v| v.pos.to_vec2()).collect();
+    (
+        mesh.vertices.len(),
+        seen.iter().fold(bevy_egui::egui::Vec2::ZERO, |sum, at| sum + *at) / seen.len() as f32,
+    )
+}
+
+#[test]
+fn the_window_draws_lines_over_each_view_and_follows_the_camera() {
+    let mut bench = Bench::new(Session::new(head_on()));
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.settle();
+    let (before, _) = drawn(&mut bench);
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Wireframe))));
+    let (wires, first) = lines(&mut bench, 0);
+    assert!(wires.lines.len() > 1000 && wires.dots.is_empty() && wires.remark().is_none());
+    let (vertices, at) = drawn(&mut bench);
+    assert!(vertices >= 6 * 1000 && vertices > before);
+    let (same, count) = lines(&mut bench, 0);
+    assert!(std::sync::Arc::ptr_eq(&wires, &same) && count == first, "nothing changed");
+
+    bench.session.facts.eye += Vec3::new(0.4, 0.0, 0.0);
+    let (moved, count) = lines(&mut bench, 0);
+    assert!(count > first && !std::sync::Arc::ptr_eq(&wires, &moved));
+    assert!(drawn(&mut bench).1.x < at.x - 5.0, "the camera went to the right");
+    bench.key(Key::X, Modifiers::NONE);
+    let (dots, _) = lines(&mut bench, 0);
+    assert!(bench.session.channel_of(0) == Some(DebugChannel::Vertices) && dots.dots.len() > 500);
+    bench.key(Key::X, Modifiers::SHIFT);
+    bench.settle();
+    assert!(wires::shown(&bench.ctx, 0).is_none() && drawn(&mut bench).0 < 6000);
+}
+
+#[test]
+fn with_very_many_objects_the_window_draws_the_nearest_and_says_so() {
+    let mut scene = head_on();
+    let cube = Object {
+        object_type: "cube".to_owned(),
+        size: 0.05,
+        tessellation: Some(8),
+        ..scene.objects[0].clone()
+    };
+    let at = |i: usize| {
+        Vec3::new(4.0 + 0.1 * (i % 20) as f32, 4.0 + 0.1 * (i / 20 % 20) as f32, 5.0 - 0.1 * (i / 400) as f32)
+    };
+    scene.objects = (0..1600).map(|i| Object { position: at(i), ..cube.clone() }).collect();
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Wireframe))));
+    let (wires, _) = lines(&mut bench, 0);
+    assert!(wires.drawn < wires.objects && wires.objects > 400, "{} of {}", wires.drawn, wires.objects);
+    bench.settle();
+    assert!(bench.says(&format!("only the {} nearest of {} objects", wires.drawn, wires.objects)));
+}
+
+#[test]
 fn every_view_has_a_channel_of_its_own() {
     let scene = Scene { variants: vec![Variant::default()], ..Scene::default() };
     let mut bench = Bench::new(Session::new(scene));
@@ -295,7 +408,7 @@ fn the_command_line_draws_channels_with_legends_and_says_what_is_wrong() {
     assert_eq!(dark("x.png"), 0);
     for (arguments, status, said) in [
         (&["--channel", "normal"][..], 2, "did you mean normals?"),
-        (&["--channel", "x"], 2, "it must be normals, face_normals, n_dot_l"),
+        (&["--channel", "x"], 2, "it must be normals, face_normals, vertex_normals"),
         (&["--light", "1"], 2, "--channel"),
         (&["--channel", "n_dot_l", "--light", "77"], 1, "there is no light \"77\"; it must be "),
         (

@@ -120,6 +120,16 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"parameters\": [{ \"name\": \"rim_color\" }] }", "but scene files spell rim_colour"),
         ("{ \"parameters\": [{ \"name\": \"loop\" }] }", "\"loop\", but that is a reserved word in WGSL"),
         ("{ \"parameters\": [\"k_s\", { \"name\": \"k_s\" }] }", "there are two parameters k_s"),
+        ("{ \"groups\": [\"k_s\"] }", "groups is [\"k_s\"], but it must be an object of lists"),
+        ("{ \"groups\": { \"Coat\": 1 } }", "groups is 1, but it must be an object of lists"),
+        (
+            "{ \"parameters\": [\"k_s\"],\n \"groups\": { \"Coat\": [\"k_d\"] } }",
+            "2:14: group \"Coat\": \"k_d\" is no parameter of the model; did you mean \"k_s\"?",
+        ),
+        (
+            "{ \"parameters\": [\"k_s\"], \"groups\": { \"A\": [\"k_s\"], \"B\": [\"k_s\"] } }",
+            "group \"B\": \"k_s\" is in a group already",
+        ),
         (
             "{ \"parameters\": [{ \"name\": \"base_colour\", \"type\": \"number\" }] }",
             "parameters[0].name is \"base_colour\", but lambert has a parameter of that name with type colour",

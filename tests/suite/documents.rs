@@ -6,7 +6,7 @@ use std::{fs, io};
 use glam::Vec3;
 use lights_camera_models::{
     channel::DebugChannel,
-    explain,
+    explain, lesson,
     matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{Parameter, Value, Values},
@@ -118,6 +118,18 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
         ),
         ("docs/command-line.md", vec![("explain", explained())]),
+        (
+            "docs/lessons.md",
+            vec![
+                ("lesson.md", {
+                    let text = fs::read_to_string(root().join("examples/lesson.md")).expect("there");
+                    format!("````markdown\n{text}````\n")
+                }),
+                ("view settings", view_settings()),
+                ("controls", lesson_controls()),
+                ("quantities", quantities()),
+            ],
+        ),
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
             "docs/extending.md",
@@ -420,6 +432,55 @@ fn modules() -> String {
         assert!(table.contains(&code(module)), "the documentation of lib.rs lacks {module}");
     }
     table
+}
+
+/// The settings of a block `view` of a lesson.
+fn view_settings() -> String {
+    let rows = lesson::SETTINGS
+        .iter()
+        .map(|(key, values, meaning)| vec![code(key), (*values).to_owned(), (*meaning).to_owned()]);
+    table(&["setting", "values", "meaning"], rows)
+}
+
+/// What a lesson can point at.
+fn lesson_controls() -> String {
+    let all = |names: &[&str]| names.iter().map(|name| code(name)).collect::<Vec<_>>().join(", ");
+    let rows = [
+        (
+            "knob",
+            "the name of a parameter in scene files, or one of ".to_owned() + &all(lesson::KNOBS),
+            "its knob at the right",
+        ),
+        ("menu", all(lesson::MENUS), "a menu at the top"),
+        ("button", all(lesson::BUTTONS), "the buttons above the picture"),
+        ("tab", all(lesson::TABS), "a tab below the picture"),
+        (
+            "part",
+            "`room`, `observer`, `object 1`, `light \"key light\"`, …".to_owned(),
+            "its line in the list at the left",
+        ),
+    ];
+    let rows = rows.map(|(kind, names, what)| vec![code(kind), names, what.to_owned()]);
+    table(&["control", "names", "what is highlighted"], rows.into_iter())
+}
+
+/// The quantities of conditions.
+fn quantities() -> String {
+    let rows =
+        lesson::QUANTITIES.iter().map(|q| vec![code(q.name), q.kind.name().to_owned(), q.meaning.to_owned()]);
+    table(&["quantity", "type", "value"], rows)
+}
+
+#[test]
+fn the_lesson_of_the_manual_is_sound() {
+    let registry = Registry::builtin();
+    let lesson = lesson::Lesson::read(&root().join("examples/lesson.md"), &registry).expect("sound");
+    assert!(lesson.steps.len() > 2 && lesson.steps.iter().filter(|step| step.task.is_some()).count() > 1);
+    // Every kind of block is in the manual.
+    let manual = fs::read_to_string(root().join("docs/lessons.md")).expect("there");
+    for block in ["equation", "scene", "view", "point", "predict", "do", "find"] {
+        assert!(manual.contains(&format!("```{block}\n")), "{block}");
+    }
 }
 
 #[test]

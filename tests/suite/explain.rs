@@ -265,7 +265,7 @@ fn each_light_has_its_own_formula() {
     // The first light is off: the indices are those of the scene all the same.
     assert_eq!(spot.lights.iter().map(|lit| lit.light.index).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
     assert_eq!(factors(0), ["I", "1/d^2"]);
-    assert_eq!(factors(1), ["I", "cone(θ)", "1/d^2"]);
+    assert_eq!(factors(1), ["I", "cone(θ, θ_c, s)", "1/d^2"]);
     assert_eq!(factors(2), ["I", "w", "1/d^2"]);
     assert_eq!((factors(3), factors(4)), (vec!["I"], vec!["I"]));
     assert!(spot.lights[3].distance.is_none() && spot.lights[3].geometry.is_some());
@@ -276,7 +276,7 @@ fn each_light_has_its_own_formula() {
     assert!(order.windows(2).all(|pair| pair[0] >= pair[1]), "{order:?}");
     let text = explained.to_text();
     for expected in [
-        "I(p) = I cone(θ) / d^2 = ",
+        "I(p) = I cone(θ, θ_c, s) / d^2 = ",
         "outer edge = 30°",
         "γ = ",
         "Light from everywhere",

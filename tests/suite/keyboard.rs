@@ -26,6 +26,10 @@ pub enum Key {
     Z = 52,
     X = 53,
     S = 39,
+    H = 43,
+    Alt = 64,
+    Right = 114,
+    Down = 116,
     F5 = 71,
 }
 

@@ -1,12 +1,13 @@
 //! The lines of the knobs: what can be seen without scrolling, and that there is more where there is.
 
-use bevy_egui::egui::{PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
-    document::{Edit, Selection},
+    document::{Edit, ObjectField, Selection},
     panel::{
         state::{Action, ThemeChoice, ViewChange},
         theme,
     },
+    parameter::Value,
     registry::Registry,
 };
 
@@ -203,4 +204,68 @@ fn derived_values_stand_in_line() {
     let left = |word: &str| texts.iter().find(|(text, ..)| text == word).map(|(_, at, _)| at.x);
     assert!(left("equivalent GGX α").is_some());
     assert_eq!(left("equivalent GGX α"), left("equivalent roughness"));
+}
+
+/// True if a knob of that name is there to be turned.
+fn has_knob(bench: &Bench, label: &str) -> bool {
+    bench.tree.iter().any(|s| s.role == Role::TextInput && s.label.starts_with(label))
+}
+
+#[test]
+fn the_groups_of_a_model_fold_and_say_how_much_is_changed() {
+    let mut bench = Bench::with_model("disney");
+    let order = ["Base", "metallic", "Specular", "roughness", "Sheen", "Clear coat", "clear coat"];
+    let tops: Vec<_> = order
+        .map(|label| {
+            let found = bench.tree.iter().find(|s| s.label.starts_with(label));
+            found.unwrap_or_else(|| panic!("no “{label}”")).rect.top()
+        })
+        .to_vec();
+    assert!(tops.is_sorted(), "each knob below the heading of its group: {tops:?}");
+    assert!(!bench.tree.iter().any(|s| s.label.starts_with("Sheen") && s.label.contains("changed")));
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.settle();
+    let heading = bench.tree.iter().find(|s| s.label.starts_with("Sheen") && s.label.contains("1 changed"));
+    let at = heading.expect("the heading counts").rect.center();
+    assert!(has_knob(&bench, "sheen tint"));
+    bench.click_at(at, PointerButton::Primary);
+    for _ in 0..20 {
+        bench.frame(Vec::new());
+    }
+    assert!(!has_knob(&bench, "sheen tint") && has_knob(&bench, "roughness"), "folded");
+    // A model without groups has no headings and no filter.
+    let bench = Bench::with_model("phong");
+    assert!(bench.find("Only changed").is_none());
+}
+
+#[test]
+fn the_filter_shows_what_differs_and_keeps_what_is_being_changed() {
+    let mut bench = Bench::with_model("disney");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.settle();
+    bench.click("Only changed");
+    bench.settle();
+    assert!(has_knob(&bench, "sheen") && !has_knob(&bench, "sheen tint") && !has_knob(&bench, "roughness"));
+    // Dragged to its default, the knob stays until it is let go of.
+    let slider = widget(&bench, Role::Slider, "sheen").rect;
+    let press = |pressed, pos| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::default(),
+    };
+    let end = slider.left_center() - vec2(30.0, 0.0);
+    bench.frame(vec![Event::PointerMoved(slider.center()), press(true, slider.center())]);
+    bench.frame(vec![Event::PointerMoved(end)]);
+    bench.frame(Vec::new());
+    assert!(has_knob(&bench, "sheen"), "it is being dragged");
+    bench.frame(vec![press(false, end)]);
+    bench.key(Key::Escape, Modifiers::default());
+    bench.frame(vec![Event::PointerMoved(Pos2::new(2.0, 2.0))]);
+    bench.settle();
+    assert!(!has_knob(&bench, "sheen"), "it has its default");
+    assert!(bench.says("Every parameter has its default."));
+    bench.click("Only changed");
+    bench.settle();
+    assert!(has_knob(&bench, "sheen") && has_knob(&bench, "roughness"));
 }

@@ -20,7 +20,8 @@ use lights_camera_models::{
     panel::{
         plots::{Request, file_of, write},
         state::{
-            Action, Effect, LabEffect, Of, PLOTS_TAB, PlotCommand, Session, Severity, ThemeChoice, ViewChange,
+            Action, EXPLAIN_TAB, Effect, LabEffect, Of, PLOTS_TAB, PlotCommand, Session, Severity,
+            ThemeChoice, ViewChange,
         },
         theme,
     },
@@ -537,11 +538,16 @@ fn a_key_opens_the_plots_and_folds_them_away() {
 #[ignore = "a measurement, of the panels alone: without anything that is drawn by the GPU"]
 fn the_time_of_a_frame_while_a_knob_is_dragged() {
     for round in 0..3 {
-        for tab in ["history", PLOTS_TAB] {
+        for tab in ["history", PLOTS_TAB, EXPLAIN_TAB] {
             let mut bench = plots("phong", Kind::Polar);
             ask(&mut bench, PlotCommand::Pin);
             bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
             bench.session.view.bottom_height = 312.0;
+            if tab == EXPLAIN_TAB {
+                let sphere = bench.area.rect.center() + vec2(13.0, 7.0);
+                bench.frame(vec![Event::PointerMoved(sphere)]);
+                bench.letter(Key::E, "e");
+            }
             let mut times = Vec::new();
             for i in 0..200 {
                 let alpha = Value::Integer(10 + i);

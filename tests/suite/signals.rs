@@ -276,6 +276,27 @@ fn other_signals_end_at_once_and_keep_the_latest_change() {
 }
 
 #[test]
+fn a_window_killed_within_a_lesson_leaves_the_own_scene() {
+    let desk = Desk::new();
+    let mut window = desk.open(&[]);
+    window.change(Key::Two);
+    // Help › Lessons › the first one.
+    for keys in [&[Key::Alt, Key::H][..], &[Key::Down], &[Key::Right], &[Key::Return]] {
+        desk.press(keys);
+        thread::sleep(Duration::from_secs(1));
+    }
+    // It is wider than the scene list.
+    window.until("the lesson", |p| p.count(216..330, 560..640, |c| c == [21; 3]) > 5000);
+    // This changes a scene of the lesson.
+    desk.press(&[Key::Three]);
+    thread::sleep(Duration::from_secs(3));
+    window.signal("TERM");
+    let (_, said) = window.ended();
+    let copy = desk.copy("mod_lambert");
+    assert!(said.contains(&copy.display().to_string()), "{said}");
+}
+
+#[test]
 fn signals_work_while_the_window_hangs() {
     for (name, number) in [("TERM", 15), ("INT", SIGINT)] {
         let desk = Desk::new();

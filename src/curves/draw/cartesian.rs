@@ -40,9 +40,11 @@ pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) -> Ground {
     pen.stroke(&[[left, top], [left, bottom], [right, bottom]], Ink::Text, 1.0, &[]);
     pen.text([layout::text_left(), label_top + FONT], Anchor::Start, FONT, &plot.y.label);
     pen.text([0.5 * (left + right), bottom + 2.0 * FONT + 13.0], Anchor::Middle, FONT, &plot.x.label);
-    for series in &plot.series {
+    for (i, series) in plot.series.iter().enumerate() {
+        pen.series(Some(i));
         let points: Vec<_> = series.points.iter().map(|p| [x(p.0), y(p.1)]).collect();
         layout::curve(pen, &points, [left, top, right, bottom], series);
     }
+    pen.series(None);
     Ground::Plot([left, top, right, bottom])
 }

@@ -47,6 +47,8 @@ pub trait Pen {
     fn text(&mut self, at: [f64; 2], anchor: Anchor, px: f64, text: &str);
     /// A picture of RGB bytes in a rectangle: left, top, width, height.
     fn picture(&mut self, to: [f64; 4], size: [u32; 2], rgb8: &[u8]);
+    /// What follows is drawn for a series, counted from 0, or for none. Most pens draw all alike.
+    fn series(&mut self, _series: Option<usize>) {}
     /// The room that a line of text takes at most.
     fn width(&self, px: f64, text: &str) -> f64;
 

@@ -84,7 +84,8 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
     };
     pen.fill(&[tip, wing(18.0), wing(-18.0)], Ink::Text);
     let area = [left, top, right, bottom];
-    for series in &plot.series {
+    for (i, series) in plot.series.iter().enumerate() {
+        pen.series(Some(i));
         let mut last = f64::NEG_INFINITY;
         let mut points = Vec::new();
         for (angle, value) in &series.points {
@@ -103,6 +104,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
             layout::mark(pen, *point, series);
         }
     }
+    pen.series(None);
     Ground::Polar { centre: [centre, floor], radius: full }
 }
 

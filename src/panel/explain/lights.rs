@@ -1,16 +1,22 @@
 //! The equation at a point, light by light: as it is written, with numbers, and its result. One light is unfolded.
 
-use bevy_egui::egui::{Id, Label, Ui};
+use bevy_egui::egui::{Context, Id, Label, Ui};
 use glam::Vec3;
 
 use super::{
+    pairs,
     probe::{self, Choice, Unfolded},
     rows,
 };
 use crate::{
     explain::{Explanation, Lit, Place, Seen, Spot, angle},
     optics::TermSelection,
-    panel::{maths, segmented::segmented},
+    panel::{
+        linked::{self, Domain, linked},
+        maths,
+        segmented::{segment_width, segmented},
+        theme,
+    },
     reflection::Term,
     text::plural,
 };
@@ -29,9 +35,10 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice
         return;
     };
     if spots.len() > 1 {
-        let names: Vec<_> = spots.iter().map(|spot| name_of(spot)).collect();
+        let names = names(ui, &spots);
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         let tip = |ui: &mut Ui, i: usize| {
+            ui.label(theme::strong(ui, name_of(spots[i], LONGEST)));
             ui.label(if i < seen.spots.len() {
                 "A point at which the equation was evaluated"
             } else {
@@ -75,10 +82,27 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice
     }
 }
 
-fn name_of(spot: &Spot) -> String {
+/// The longest of the names of points, and the shortest.
+const LONGEST: usize = 0;
+const SHORTEST: usize = 2;
+
+/// The names of points in the room that there is, the longest that fit.
+fn names(ui: &Ui, spots: &[&Spot]) -> Vec<String> {
+    // The frame around them, and the scroll bar.
+    let room = ui.available_width() - 8.0;
+    let all = |short: usize| spots.iter().map(|spot| name_of(spot, short)).collect::<Vec<_>>();
+    let fits = |names: &Vec<String>| names.iter().map(|name| segment_width(ui, name)).sum::<f32>() <= room;
+    (LONGEST..SHORTEST).map(all).find(fits).unwrap_or_else(|| all(SHORTEST))
+}
+
+fn name_of(spot: &Spot, short: usize) -> String {
     match spot.place {
         Place::Polygon => "polygon".to_owned(),
-        Place::Vertex { vertex, weight } => format!("vertex {vertex} · {}", rows::short(weight)),
+        Place::Vertex { vertex, weight } => match short {
+            LONGEST => format!("vertex {vertex} · {}", rows::short(weight)),
+            SHORTEST => vertex.to_string(),
+            _ => format!("vertex {vertex}"),
+        },
         Place::Pixel => "per pixel".to_owned(),
     }
 }
@@ -96,7 +120,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     if spot.position != seen.position {
         rows::named_triple(ui, "position", spot.position, " m");
     }
-    rows::vectors(ui, &[("N", spot.normal), ("V", spot.view)]);
+    rows::vectors(ui, &seen.model, &[("N", spot.normal), ("V", spot.view)]);
     if spot.is_mirrored() {
         rows::note(
             ui,
@@ -109,18 +133,22 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// All about one light.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if let Some(geometry) = &lit.geometry {
-        rows::vectors(ui, &[("L", geometry.l), ("H", geometry.h), ("R", geometry.r)]);
+        rows::vectors(ui, &seen.model, &[("L", geometry.l), ("H", geometry.h), ("R", geometry.r)]);
         let all: &[usize] =
             if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 14.0;
             for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]) {
                 let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
-                ui.add(Label::new(text).extend()).on_hover_text(rows::all(cosine));
+                let ends: Vec<_> = name.split('·').collect();
+                let lit = |ctx: &Context| pairs::are_lit(ctx, &seen.model, &ends);
+                let symbols = pairs::symbols(&seen.model, &ends);
+                linked(ui, &symbols, lit, |ui| ui.add(Label::new(text).extend()))
+                    .on_hover_text(rows::all(cosine));
             }
         });
     }
-    arriving(ui, lit);
+    linked::within(ui, Domain::Light, |ui| arriving(ui, lit));
     if lit.is_dark() {
         rows::note(ui, "None of its light reaches the point.");
         return;

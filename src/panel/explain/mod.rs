@@ -26,15 +26,21 @@ use crate::{
 
 mod display;
 mod lights;
+mod lobe;
+mod pairs;
 mod point;
 mod probe;
 mod rows;
+mod surface;
 mod vectors;
 
+pub(super) use lobe::entries as lobe_entries;
+pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown};
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
+pub use surface::LightLobe;
 pub(super) use vectors::vectors;
 
-/// The least width of a column, points; in less there is one column.
+/// The least width of a column, points; in less there are fewer.
 const COLUMN: f32 = 272.0;
 /// Between columns, points.
 const GAP: f32 = 24.0;
@@ -121,6 +127,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);
                 actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
+            lobe::button(ui, session, actions);
         });
     });
 }
@@ -181,56 +188,83 @@ fn remark(ui: &mut Ui, severity: Severity, text: &str) {
     });
 }
 
-/// A part of the explanation.
-type Part<'a> = (&'a str, f32, Box<dyn FnOnce(&mut Ui) + 'a>);
+/// A part of the explanation: its share of the width in columns, and how it is shown.
+type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 
-/// The explanation in columns, as light goes: from the surface and the lights to the display. In little room, one below
-/// the other.
+/// The explanation in columns, as light goes: from the surface and the lights to the display. In less room the lights
+/// stand beside the two others, and in little room one is below the other.
 fn columns(ui: &mut Ui, explained: &Arc<Explained>, session: &Session, registry: &Registry) {
     let explanation = &explained.explanation;
     let choice = probe::choice(ui.ctx());
-    let mut parts: Vec<Part> = Vec::new();
-    match &explanation.seen {
-        Some(seen) => {
-            parts.push(("surface", 0.3, Box::new(|ui| surface(ui, seen, session, registry))));
-            parts.push(("lights", 0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice))));
-        }
-        None => parts.push(("background", 0.6, Box::new(background))),
-    }
-    parts.push(("display", 0.28, Box::new(|ui| display::display(ui, explanation))));
+    let end: Part = (0.28, Box::new(|ui| display::display(ui, explanation)));
+    let parts: Vec<Part> = match &explanation.seen {
+        Some(seen) => vec![
+            (0.3, Box::new(|ui| surface(ui, seen, session, registry))),
+            (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice))),
+            end,
+        ],
+        None => vec![(0.36, Box::new(background)), end],
+    };
     let room = ui.available_rect_before_wrap();
-    let whole: f32 = parts.iter().map(|(_, share, _)| share).sum();
-    let width = room.width() - GAP * (parts.len() - 1) as f32;
-    let least = parts.iter().map(|(_, share, _)| width * share / whole).fold(f32::INFINITY, f32::min);
-    let scroll = |id: &str| ScrollArea::vertical().id_salt(("explain", id)).auto_shrink(false);
-    if least < COLUMN {
-        scroll("all").show(ui, |ui| {
-            ui.set_max_width(ui.available_width() - 10.0);
-            for (_, _, part) in parts {
-                part(ui);
-                ui.add_space(10.0);
-            }
-        });
-        return;
+    let shares: Vec<_> = parts.iter().map(|(share, _)| *share).collect();
+    let places = places(&shares, room.width());
+    let mut columns: Vec<Vec<_>> = places.iter().map(|_| Vec::new()).collect();
+    for (part, column) in parts.into_iter().zip(column_of(places.len(), shares.len())) {
+        columns[column].push(part.1);
     }
-    let mut left = room.left();
-    for (i, (id, share, part)) in parts.into_iter().enumerate() {
-        let right = left + width * share / whole;
-        let place = Rect::from_min_max(pos2(left, room.top()), pos2(right, room.bottom()));
+    for (i, (parts, [left, width])) in columns.into_iter().zip(places).enumerate() {
+        let left = room.left() + left;
+        let place = Rect::from_min_max(pos2(left, room.top()), pos2(left + width, room.bottom()));
         if i > 0 {
             let line = egui::Stroke::new(1.0, Palette::here(ui).line);
             ui.painter().vline(left - 0.5 * GAP, room.y_range(), line);
         }
-        let mut column = ui.new_child(UiBuilder::new().max_rect(place).id_salt(id));
+        let mut column = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("column", i)));
         column.set_clip_rect(column.clip_rect().intersect(place.expand2(vec2(4.0, 0.0))));
-        scroll(id).show(&mut column, |ui| {
+        let scroll = ScrollArea::vertical().id_salt(("explain", i)).auto_shrink(false);
+        scroll.show(&mut column, |ui| {
             ui.set_max_width(ui.available_width() - 10.0);
-            part(ui);
+            for (k, part) in parts.into_iter().enumerate() {
+                if k > 0 {
+                    ui.add_space(10.0);
+                }
+                // Parts set distances between lines of their own.
+                ui.scope(part);
+            }
             ui.add_space(8.0);
         });
-        left = right + GAP;
     }
     ui.advance_cursor_after_rect(room);
+}
+
+/// The column of each of some parts: of three parts in two columns, the middle one has a column of its own.
+fn column_of(columns: usize, parts: usize) -> Vec<usize> {
+    match (columns, parts) {
+        (2, 3) => vec![0, 1, 0],
+        (columns, parts) => (0..parts).map(|part| part.min(columns - 1)).collect(),
+    }
+}
+
+/// The columns for parts with these shares of a width: where each begins, and its width. As many as have room.
+fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
+    let of = |count: usize| {
+        let mut wanted = vec![0.0; count];
+        for (share, column) in shares.iter().zip(column_of(count, shares.len())) {
+            // Of what stands below each other, the wider one counts.
+            wanted[column] = f32::max(wanted[column], *share);
+        }
+        let whole: f32 = wanted.iter().sum();
+        let rest = width - GAP * (count - 1) as f32;
+        let mut left = 0.0;
+        let place = |share: f32| {
+            let at = [left, rest * share / whole];
+            left += at[1] + GAP;
+            at
+        };
+        wanted.into_iter().map(place).collect::<Vec<_>>()
+    };
+    let fits = |all: &Vec<[f32; 2]>| all.len() == 1 || all.iter().all(|[_, width]| *width >= COLUMN);
+    (1..=shares.len()).rev().map(of).find(fits).unwrap_or_default()
 }
 
 /// The object, and where and how its light is calculated.
@@ -258,4 +292,27 @@ fn background(ui: &mut Ui) {
         )
         .wrap(),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_as_many_columns_as_have_room() {
+        let count = |shares: &[f32], width| places(shares, width).len();
+        let three = [0.3, 0.42, 0.28];
+        assert_eq!([1200.0, 1019.0, 1000.0, 800.0, 500.0].map(|w| count(&three, w)), [3, 2, 2, 2, 1]);
+        assert_eq!([1000.0, 700.0, 560.0].map(|w| count(&[0.36, 0.28], w)), [2, 2, 1]);
+        for width in [300.0, 700.0, 1300.0] {
+            let places = places(&three, width);
+            let [left, last] = places[places.len() - 1];
+            assert!((left + last - width).abs() < 0.01, "{places:?} in {width}");
+            assert!(places.windows(2).all(|two| (two[0][0] + two[0][1] + GAP - two[1][0]).abs() < 0.01));
+        }
+        assert_eq!(
+            (column_of(2, 3), column_of(3, 3), column_of(1, 3)),
+            (vec![0, 1, 0], vec![0, 1, 2], vec![0, 0, 0])
+        );
+    }
 }

@@ -12,7 +12,7 @@ use crate::{
     optics::TermSelection,
     panel::{
         is_in_sight, keys,
-        state::{Action, PictureArea, Pin, Session, ViewChange},
+        state::{Action, LessonCommand, PictureArea, Pin, Session, ViewChange},
     },
     reference::{Settings, ignored_edits},
     registry::Registry,
@@ -170,8 +170,12 @@ pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Actio
 
 /// Pins the pixel that was clicked with Alt held, or lets go of it.
 pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
-    let click = ctx.input(|i| i.modifiers.alt && i.pointer.primary_clicked());
-    let pin = pointed(ctx, session, area).filter(|_| click && !session.view.presenting)?;
+    let (clicked, alt) = ctx.input(|i| (i.pointer.primary_clicked(), i.modifiers.alt));
+    if clicked && !alt && session.seeks_pixel() {
+        // What is to be found is clicked, and nothing more.
+        return pointed(ctx, session, area).map(|pin| Action::Lesson(LessonCommand::Point(pin)));
+    }
+    let pin = pointed(ctx, session, area).filter(|_| clicked && alt && !session.view.presenting)?;
     let near = |pinned: &Pin| {
         let Some(rect) = rect_of(area, pin.view) else { return false };
         let (size, _) = pixels(ctx, rect);
@@ -193,12 +197,12 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
 /// has changed.
 pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) {
     let shared = shared(ctx);
-    if !session.explains() {
+    if !session.explains() && !session.needs_probe() {
         let mut probe = lock(&shared);
         (probe.hovered, probe.asked, probe.answer) = (false, None, None);
         return;
     }
-    let pointed = pointed(ctx, session, area);
+    let pointed = pointed(ctx, session, area).filter(|_| session.explains());
     let mut probe = lock(&shared);
     let probe = &mut *probe;
     probe.hovered = pointed.is_some();

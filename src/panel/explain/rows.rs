@@ -6,9 +6,11 @@ use bevy_egui::egui::{
 };
 use glam::Vec3;
 
+use super::pairs;
 use crate::{
-    explain::{number, rounded, rounded_triple, triple},
+    explain::{Model, number, rounded, rounded_triple, triple},
     panel::{
+        linked::{self, linked},
         maths::{self, Sizes},
         theme::{self, Palette},
     },
@@ -131,26 +133,43 @@ fn text(ui: &Ui, text: impl Into<String>) -> RichText {
 
 /// A symbol, an equals sign and a value, with all digits under the pointer.
 pub(super) fn value(ui: &mut Ui, symbol: &str, shown: &str, all: &str) -> Response {
-    let row = ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        maths::symbol(ui, symbol, SYMBOL * theme::scale_here(ui));
-        let shown = text(ui, format!("= {shown}"));
-        ui.add(Label::new(shown).selectable(true));
+    linked_value(ui, symbol, &[symbol], |ctx| linked::is_lit(ctx, symbol), shown, all)
+}
+
+/// The same with the symbols to which it is linked, and if these light.
+fn linked_value(
+    ui: &mut Ui,
+    symbol: &str,
+    symbols: &[&str],
+    lit: impl FnOnce(&egui::Context) -> bool,
+    shown: &str,
+    all: &str,
+) -> Response {
+    let row = linked(ui, symbols, lit, |ui| {
+        let row = ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            maths::symbol(ui, symbol, SYMBOL * theme::scale_here(ui));
+            let shown = text(ui, format!("= {shown}"));
+            ui.add(Label::new(shown).selectable(true));
+        });
+        row.response
     });
     let help = maths::meaning(symbol).map_or_else(String::new, |meaning| format!("\n{symbol}: {meaning}"));
-    row.response.on_hover_text(format!("{all}{help}"))
+    row.on_hover_text(format!("{all}{help}"))
 }
 
 /// Vectors by their symbols, as many in a line as fit.
-pub(super) fn vectors(ui: &mut Ui, all: &[(&str, Vec3)]) {
+pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
     let width = VECTOR * theme::scale_here(ui);
     let in_line = ((ui.available_width() / width) as usize).max(1);
     for line in all.chunks(in_line) {
-        ui.horizontal(|ui| {
+        ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             for (symbol, v) in line {
                 let left = ui.cursor().left();
-                value(ui, symbol, &short_triple(*v), &rounded_triple(*v, ALL));
+                let symbols = pairs::symbols(model, &[symbol]);
+                let lit = |ctx: &egui::Context| pairs::lit(ctx, model).contains(symbol);
+                linked_value(ui, symbol, &symbols, lit, &short_triple(*v), &rounded_triple(*v, ALL));
                 ui.add_space((left + width - ui.cursor().left()).max(8.0));
             }
         });

@@ -3,10 +3,11 @@
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use super::{probe, rows};
+use super::{lobe, pairs, probe, rows, surface::LENGTH};
 use crate::{
-    explain::{Explanation, Lit, Place, Seen, Spot},
+    explain::{Explanation, Lit, Model, Place, Seen, Spot},
     panel::{
+        is_in_sight, linked,
         marks::{Ink, Lens, OUTLINE},
         state::Session,
         theme,
@@ -21,10 +22,14 @@ const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
 const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
-/// Length of a vector that lies in the plane of the picture, points.
-const LENGTH: f32 = 96.0;
-/// Width of a line, points.
+/// Width of a line, points, and of one that lights.
 const LINE: f32 = 2.25;
+const LIT: f32 = 4.5;
+/// The part of the opacity of a line that it keeps while others light.
+const DIM: f32 = 0.5;
+/// The pointer is at a line that is this near, points. All of them are near their origin.
+const GRASP: f32 = 6.0;
+const ORIGIN: f32 = 16.0;
 /// Height of letters, points.
 const LETTER: f32 = 13.0;
 /// A vector that is seen shorter than this points at the eye, or away from it, points.
@@ -60,26 +65,36 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
-pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) {
+/// Returns the place of the legend of their lobe.
+pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
-    let Some(explained) = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && session.explains() && rect.size().min_elem() >= SMALLEST)
-    else {
-        return;
-    };
-    let mut drawing = Drawing { ink: Ink::new(Lens::of(session, rect)), words: Vec::new(), rect };
-    if let Some(seen) = &explained.explanation.seen {
+    let explained = probe::explained(ui.ctx())
+        .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)?;
+    // With the panel closed, a lesson wants to see which pixel it is about, and no more.
+    let explains = session.explains();
+    let legend = if explains { lobe::paint(ui, rect, &explained, session) } else { None };
+    let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
+    let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
+    let ink = Ink::new(Lens::of(session, rect));
+    let mut drawing = Drawing { ink, words: Vec::new(), rect, pointer, lit: Vec::new(), near: None };
+    if let Some(seen) = explained.explanation.seen.as_ref().filter(|_| explains) {
         drawing.seen(ui, seen);
     }
     drawing.cross(&explained.explanation, session.view.pinned.is_some());
-    drawing.paint(ui);
+    drawing.paint(ui, legend, explained.explanation.seen.as_ref().map(|seen| &seen.model));
+    legend
 }
 
 struct Drawing {
     ink: Ink,
-    /// Letters and degrees, each with its place.
-    words: Vec<(Pos2, String, Color32)>,
+    /// Letters and degrees, each with its place, and the symbols that it stands for.
+    words: Vec<(Pos2, String, Color32, Vec<&'static str>)>,
     rect: Rect,
+    pointer: Option<Pos2>,
+    /// The vectors that light.
+    lit: Vec<&'static str>,
+    /// The symbols of what is nearest to the pointer, and how far it is.
+    near: Option<(f32, Vec<&'static str>)>,
 }
 
 impl Drawing {
@@ -93,6 +108,7 @@ impl Drawing {
         let Some(origin) = lens.project(spot.position) else { return };
         let reach = lens.metres(spot.position, LENGTH);
         let all = arrows(spot, lit);
+        self.lit = pairs::lit(ui.ctx(), &seen.model);
         self.angles(&lens, spot, lit, reach);
         for arrow in &all {
             self.arrow(&lens, spot.position, origin, arrow, reach);
@@ -142,8 +158,26 @@ impl Drawing {
             );
             let out = (at.to_vec2() - middle).normalized();
             if roomy {
-                self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE));
+                self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE, Vec::new()));
             }
+        }
+    }
+
+    /// The width and the colour of what stands for these vectors.
+    fn look(&self, ends: &[&str], width: f32, colour: Color32) -> (f32, Color32) {
+        match () {
+            () if self.lit.is_empty() => (width, colour),
+            () if ends.iter().all(|end| self.lit.contains(end)) => (width * LIT / LINE, colour),
+            () => (width, colour.gamma_multiply(DIM)),
+        }
+    }
+
+    /// Notes how near the pointer is to a line that begins at the origin, or around it.
+    fn approach(&mut self, origin: Pos2, line: &[Pos2], symbols: &[&'static str]) {
+        let Some(at) = self.pointer.filter(|at| at.distance(origin) > ORIGIN) else { return };
+        let off = linked::distance(at, line);
+        if off < GRASP && self.near.as_ref().is_none_or(|(nearest, _)| off < *nearest) {
+            self.near = Some((off, symbols.to_vec()));
         }
     }
 
@@ -153,40 +187,46 @@ impl Drawing {
             return;
         };
         let along = tip - origin;
+        let (width, colour) = self.look(&[arrow.letter], LINE, arrow.colour);
+        self.approach(origin, &[origin, tip], &[arrow.letter]);
         if along.length() < END_ON {
             // As in textbooks: a dot is the point of an arrow, a cross its feathers.
             let ahead = lens.metres(to, 1.0) < lens.metres(from, 1.0);
             let ring: Vec<Pos2> = (0..=24)
                 .map(|k| origin + 9.0 * Vec2::angled(k as f32 / 24.0 * std::f32::consts::TAU))
                 .collect();
-            self.ink.stroke(ring, LINE, arrow.colour);
+            self.ink.stroke(ring, width, colour);
             if !ahead {
                 for turn in [1.0, 3.0] {
                     let arm = 6.0 * Vec2::angled(turn * std::f32::consts::FRAC_PI_4);
-                    self.ink.stroke(vec![origin - arm, origin + arm], LINE, arrow.colour);
+                    self.ink.stroke(vec![origin - arm, origin + arm], width, colour);
                 }
             }
-            self.words.push((origin + vec2(-15.0, 15.0), arrow.letter.to_owned(), arrow.colour));
+            let at = origin + vec2(-15.0, 15.0);
+            self.words.push((at, arrow.letter.to_owned(), colour, vec![arrow.letter]));
             return;
         }
         let ahead = along.normalized();
-        let head = 8.0f32.min(0.6 * along.length());
+        let head = (8.0 * (width / LINE).sqrt()).min(0.6 * along.length());
         for dash in dashes(origin, tip - 0.6 * head * ahead, arrow.dashes) {
-            self.ink.stroke(dash.to_vec(), LINE, arrow.colour);
+            self.ink.stroke(dash.to_vec(), width, colour);
         }
         let back = tip - head * ahead;
         let side = ahead.rot90() * (0.5 * head);
-        self.ink.fill(vec![tip, back + side, back - side], arrow.colour);
-        self.words.push((tip + 12.0 * ahead, arrow.letter.to_owned(), arrow.colour));
+        self.ink.fill(vec![tip, back + side, back - side], colour);
+        self.words.push((tip + 12.0 * ahead, arrow.letter.to_owned(), colour, vec![arrow.letter]));
     }
 
     /// Arcs between the vectors, where they are seen apart.
     fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32) {
         let Some(geometry) = lit.and_then(|lit| lit.geometry) else { return };
         let n = spot.normal;
-        let pairs =
-            [(n, geometry.l, YELLOW, 0.62), (n, geometry.h, GREEN, 0.4), (geometry.r, spot.view, BLUE, 0.8)];
-        for (a, b, colour, part) in pairs {
+        let all = [
+            (["N", "L"], [n, geometry.l], YELLOW, 0.62),
+            (["N", "H"], [n, geometry.h], GREEN, 0.4),
+            (["R", "V"], [geometry.r, spot.view], BLUE, 0.8),
+        ];
+        for (letters, [a, b], colour, part) in all {
             let angle = a.angle_between(b);
             let ends = [a, b].map(|way| lens.project(spot.position + way * reach));
             let origin = lens.project(spot.position);
@@ -205,11 +245,14 @@ impl Drawing {
                 spot.position + turned / angle.sin() * (part * reach)
             };
             let arc: Vec<Vec3> = (0..=count).map(|k| between(k as f32 / count as f32)).collect();
+            let (width, colour) = self.look(&letters, 1.25, colour);
+            let symbols: Vec<_> = letters.into_iter().chain(pairs::angles(letters[0], letters[1])).collect();
             for run in lens.path(&arc) {
-                self.ink.stroke(run, 1.25, colour);
+                origin.into_iter().for_each(|origin| self.approach(origin, &run, &symbols));
+                self.ink.stroke(run, width, colour);
             }
             if let Some(middle) = lens.project(between(0.5)) {
-                self.words.push((middle, format!("{:.0}°", angle.to_degrees()), colour));
+                self.words.push((middle, format!("{:.0}°", angle.to_degrees()), colour, symbols));
             }
         }
     }
@@ -227,12 +270,13 @@ impl Drawing {
         }
     }
 
-    fn paint(self, ui: &Ui) {
+    fn paint(self, ui: &Ui, legend: Option<Rect>, model: Option<&Model>) {
         let painter = ui.painter_at(self.rect);
         self.ink.paint(&painter);
         let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
-        let mut taken: Vec<Rect> = Vec::new();
-        for (at, word, colour) in self.words {
+        let mut taken: Vec<Rect> = legend.into_iter().collect();
+        let mut near = self.near;
+        for (at, word, colour, symbols) in self.words {
             let text = painter.layout_no_wrap(word, font.clone(), colour);
             let place = |at: Pos2| Align2::CENTER_CENTER.anchor_size(at, text.size() + vec2(8.0, 2.0));
             // Beside others, and within the picture.
@@ -245,7 +289,13 @@ impl Drawing {
             let plate = turns.into_iter().find(free).unwrap_or(place(at));
             painter.rect_filled(plate, 4.0, OUTLINE.gamma_multiply(0.78));
             painter.galley(plate.center() - 0.5 * text.size(), text, colour);
+            if self.pointer.is_some_and(|at| plate.contains(at)) {
+                near = Some((0.0, symbols));
+            }
             taken.push(plate);
+        }
+        if let (Some((_, symbols)), Some(model)) = (near, model) {
+            linked::point(ui.ctx(), &pairs::symbols(model, &symbols));
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::{
     optics::temperature,
     panel::{
         knob::{self, Caption},
+        linked::{self, Domain},
         maths,
         segmented::{segment_width, segmented},
         state::{Action, Session},
@@ -34,42 +35,45 @@ pub(super) fn light(
     let names: Vec<_> = types.iter().map(|d| d.name).collect();
     let chosen = registry.light_index(&light.light_type).map(|k| k as usize);
     section(ui, "Light", true, |ui| {
-        let help = chosen.map_or("", |k| types[k].summary);
-        let caption = Caption { label: "type", help, ..Caption::default() };
-        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-            actions.push(set(LightField::Type(types[k].id.to_owned())));
-        }
-        let Some(entry) = registry.light(&light.light_type) else {
-            ui.label("This type of light is not known here; choose another one.");
-            return;
-        };
-        let d = entry.declaration;
-        if !d.summary.is_empty() {
-            ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
-        }
-        let part = [EquationPart { term: Term::Total, text: d.equation }];
-        maths::equation(ui, &part, |symbol| match symbol {
-            "I" => Some("the intensity of the light".to_owned()),
-            other => {
-                let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
-                own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
+        linked::within(ui, Domain::Light, |ui| {
+            let help = chosen.map_or("", |k| types[k].summary);
+            let caption = Caption { label: "type", help, ..Caption::default() };
+            if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+                actions.push(set(LightField::Type(types[k].id.to_owned())));
             }
-        });
-        actions.extend(brightness(ui, light, entry).map(set));
-        actions.extend(light_colour(ui, light).map(set));
-        for p in entry.parameters {
-            let unused = usage::unused(entry.parameters, p, &light.parameters);
-            if let Value::File(file) = light.parameters.get(p) {
-                if knob::file_knob(ui, p, &file) {
-                    actions.push(Action::FileDialog(Selection::Light(i), p));
+            let Some(entry) = registry.light(&light.light_type) else {
+                ui.label("This type of light is not known here; choose another one.");
+                return;
+            };
+            let d = entry.declaration;
+            if !d.summary.is_empty() {
+                ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
+            }
+            let part = [EquationPart { term: Term::Total, text: d.equation }];
+            maths::equation(ui, &part, |symbol| match symbol {
+                "I" => Some("the intensity of the light".to_owned()),
+                other => {
+                    let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
+                    own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
                 }
-                continue;
+            });
+            actions.extend(brightness(ui, light, entry).map(set));
+            actions.extend(light_colour(ui, light).map(set));
+            for p in entry.parameters {
+                let unused = usage::unused(entry.parameters, p, &light.parameters);
+                if let Value::File(file) = light.parameters.get(p) {
+                    if knob::file_knob(ui, p, &file) {
+                        actions.push(Action::FileDialog(Selection::Light(i), p));
+                    }
+                    continue;
+                }
+                if let Some(v) =
+                    knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
+                {
+                    actions.push(set(LightField::Parameter(p.name, v)));
+                }
             }
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
-            {
-                actions.push(set(LightField::Parameter(p.name, v)));
-            }
-        }
+        })
     });
     if light.position.is_some() || light.direction.is_some() {
         section(ui, "Position", true, |ui| {

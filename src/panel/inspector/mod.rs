@@ -7,6 +7,7 @@ use crate::document::Selection;
 use {light::light, object::object, observer::observer, room::room};
 
 mod light;
+mod material;
 mod measured;
 pub(super) mod model;
 mod object;

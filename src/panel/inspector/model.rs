@@ -5,7 +5,9 @@ use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
 use crate::{
     optics::TermSelection,
     panel::{
-        chooser, icon, maths,
+        chooser, icon,
+        lesson::point,
+        maths,
         segmented::{segment_width, segmented},
         shader,
         state::{Action, SHADER_TAB, Session, Severity, ViewChange},
@@ -66,27 +68,25 @@ pub(super) fn missing_model(
 }
 
 pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
-    let d = model.declaration;
     // Custom models need not declare one.
-    if d.equation.is_empty() {
+    if model.declaration.equation.is_empty() {
         return;
     }
-    let name = |symbol: &str| -> Option<String> {
-        let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
-        match parameter {
-            Some(p) => Some(format!("{}: {}", p.label, p.help)),
-            None => {
-                let defined =
-                    maths::definition(d.equation, symbol).map(|text| format!("defined here: {text}"));
-                let general = maths::meaning(symbol).map(str::to_owned);
-                // A letter that the equation uses for something of its own does not mean what it usually does.
-                let terms = ["I", "I_a", "I_d", "I_s"];
-                if terms.contains(&symbol) { general.or(defined) } else { defined.or(general) }
-            }
-        }
-    };
-    maths::equation(ui, d.equation, name);
+    maths::equation(ui, model.declaration.equation, |symbol| meaning(model, symbol));
     ui.add_space(4.0);
+}
+
+/// The meaning of a symbol in the equation of a model.
+pub(in crate::panel) fn meaning(model: &ModelEntry, symbol: &str) -> Option<String> {
+    if let Some(p) = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol)) {
+        return Some(format!("{}: {}", p.label, p.help));
+    }
+    let defined =
+        maths::definition(model.declaration.equation, symbol).map(|text| format!("defined here: {text}"));
+    let general = maths::meaning(symbol).map(str::to_owned);
+    // A letter that the equation uses for something of its own does not mean what it usually does.
+    let terms = ["I", "I_a", "I_d", "I_s"];
+    if terms.contains(&symbol) { general.or(defined) } else { defined.or(general) }
 }
 
 /// The choice of the term that the picture shows, where there is one: among those of the equation above it.
@@ -110,7 +110,7 @@ pub(super) fn terms(
     if options.len() == 1 {
         return;
     }
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         ui.set_min_height(30.0);
         let chosen = options.iter().position(|t| *t == session.terms());
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
@@ -130,6 +130,7 @@ pub(super) fn terms(
             actions.push(Action::View(ViewChange::Terms(options[i])));
         }
     });
+    point::button(ui, "terms", row.response.rect);
     ui.add_space(4.0);
 }
 

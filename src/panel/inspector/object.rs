@@ -3,7 +3,6 @@
 use bevy_egui::egui::{Align, Layout, Ui};
 
 use super::{
-    measured::measured,
     model::{equation, missing_model, model_author, model_name, stage, terms},
     part::{header, position_limits, section, thrice},
     variant::marked,
@@ -12,6 +11,7 @@ use crate::{
     document::{Edit, ObjectField, Selection, VariantField},
     panel::{
         knob::{self, Caption},
+        linked::{self, Domain},
         model_override,
         state::{Action, Session},
         theme,
@@ -37,16 +37,18 @@ pub(super) fn object(
     let mut fields = Vec::new();
     section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
     section(ui, "Material", true, |ui| shown.material(ui, &mut fields, actions));
-    section(ui, "Shape and position", true, |ui| shown.geometry(ui, i, &mut fields, actions));
+    section(ui, "Shape and position", true, |ui| {
+        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, i, &mut fields, actions));
+    });
     actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
 }
 
 /// The object that is shown, and its surroundings. The methods show it, and add new values of its fields.
-struct Shown<'a> {
-    session: &'a Session,
-    registry: &'a Registry,
-    object: &'a Object,
-    model: Option<&'a ModelEntry>,
+pub(super) struct Shown<'a> {
+    pub(super) session: &'a Session,
+    pub(super) registry: &'a Registry,
+    pub(super) object: &'a Object,
+    pub(super) model: Option<&'a ModelEntry>,
 }
 
 impl Shown<'_> {
@@ -76,52 +78,8 @@ impl Shown<'_> {
         }
     }
 
-    /// The knobs of the parameters of the model, and the parameters that it does not use.
-    fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
-        let Self { session, registry, object, model } = *self;
-        let Some(model) = model else {
-            ui.label(theme::small(ui, "The parameters come back with the model."));
-            return;
-        };
-        if let Some(values) = measured(ui, registry, model, object) {
-            fields.push(ObjectField::Preset(values));
-        }
-        for p in model.parameters {
-            let unused = usage::unused(model.parameters, p, &object.material);
-            let own = |variant: &Variant| {
-                variant.material.0.contains_key(p.name).then_some(VariantField::Material(p.name, None))
-            };
-            let value = marked(ui, session, own, actions, |ui| {
-                knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref())
-            });
-            fields.extend(value.map(|v| ObjectField::Material(p.name, v)));
-        }
-        if model.parameters.is_empty() {
-            ui.label(theme::small(ui, "This model has no knobs."));
-        }
-        let shading = registry.shading_model(session.scene().shading_model_of(object));
-        if let Some(shading) = shading {
-            self.shading(ui, model, shading, fields);
-        }
-        self.readouts(ui, model);
-        let unused: Vec<_> = registry
-            .material_parameters()
-            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
-            .filter(|p| shading.is_none_or(|s| s.parameter(p.name).is_none()))
-            .collect();
-        if !unused.is_empty() {
-            let reason = format!("Not used by {}", model.declaration.name);
-            ui.add_space(4.0);
-            ui.label(theme::small(ui, format!("{reason} (values kept)")));
-            ui.add_space(2.0);
-            for p in unused {
-                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
-            }
-        }
-    }
-
     /// The knobs of the parameters that only the shading model has.
-    fn shading(
+    pub(super) fn shading(
         &self,
         ui: &mut Ui,
         model: &ModelEntry,
@@ -225,7 +183,7 @@ impl Shown<'_> {
     }
 
     /// The values derived from those of the knobs.
-    fn readouts(&self, ui: &mut Ui, model: &ModelEntry) {
+    pub(super) fn readouts(&self, ui: &mut Ui, model: &ModelEntry) {
         let readouts =
             model.instantiate(&self.object.material, self.session.scene().display.encoding).readouts();
         if readouts.is_empty() {

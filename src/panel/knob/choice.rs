@@ -7,7 +7,9 @@ use bevy_egui::egui::{
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::panel::{
-    chooser, maths, menu,
+    chooser,
+    lesson::point,
+    linked, menu,
     theme::{self, Palette},
 };
 
@@ -97,7 +99,7 @@ pub fn choice_with_help(
         }
     };
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         let id = ui.make_persistent_id(salt);
         let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
             ui.add_space(22.0);
@@ -132,11 +134,10 @@ pub fn choice_with_help(
                 combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
             }
         });
-        if label.hovered() && !caption.symbol.is_empty() {
-            maths::highlight(ui.ctx(), caption.symbol);
-        }
         explain(label, |ui| tooltip(ui, caption, "", ""));
         ui.add_space(4.0);
     });
+    linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out
 }

@@ -1,6 +1,6 @@
 //! Knobs for colours.
 
-use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{self, Color32, Id, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
     field::{complaint, field, text_field},
@@ -9,7 +9,7 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    panel::{maths, theme::Palette},
+    panel::{lesson::point, linked, theme::Palette},
     scene::limits::Limits,
 };
 
@@ -23,7 +23,7 @@ pub fn colour_knob(
 ) -> Option<[u8; 3]> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
@@ -39,15 +39,13 @@ pub fn colour_knob(
             text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
         });
         out = hex.value;
-        let mut hot = label.hovered();
         let rule = format!("{rule}, encoded as sRGB. Default {default_text}");
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = hex.error.map(|e| (e, hex.response));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let mut rgb = value;
-            let swatch = swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
-            hot |= swatch.hovered();
+            swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
             if rgb != value {
                 out = Some(rgb);
             }
@@ -69,19 +67,18 @@ pub fn colour_knob(
             }
             unit(ui, caption.unit);
         });
-        if hot && !caption.symbol.is_empty() {
-            maths::highlight(ui.ctx(), caption.symbol);
-        }
         if let Some((error, field)) = wrong {
             complaint(ui, &field, &capitalised(&error), &format!("{r}, {g}, {b}"));
         }
         ui.add_space(6.0);
     });
+    linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out.filter(|c| *c != value)
 }
 
 /// The colour itself; a click opens the picker, a double-click sets the default.
-fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) -> Response {
+fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::click());
     let says = format!("{name}: choose a colour");
@@ -95,7 +92,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
     {
         *rgb = default;
         egui::Popup::close_id(ui.ctx(), id);
-        return response;
+        return;
     }
     egui::Popup::from_toggle_button_response(&response)
         .id(id)
@@ -103,7 +100,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
         .show(|ui| {
             *rgb = picker(ui, id.with("picker"), name, *rgb).unwrap_or(*rgb);
         });
-    response.on_hover_text("Choose a colour. Double-click: default.")
+    response.on_hover_text("Choose a colour. Double-click: default.");
 }
 
 /// A colour that cannot be edited here.

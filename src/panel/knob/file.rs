@@ -4,7 +4,7 @@ use bevy_egui::egui::{Button, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::{
-    panel::theme::Palette,
+    panel::{linked, theme::Palette},
     parameter::{NamedFile, Parameter},
 };
 
@@ -22,6 +22,7 @@ pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile) -> bool {
         });
         button
     });
+    linked::touch(ui, label.rect.union(button.rect), &[p.symbol]);
     explain(label, |ui| tooltip(ui, &caption, "", ""));
     let place = file.path().map_or("part of the program".to_owned(), |path| path.display().to_string());
     let text = file.problem().unwrap_or(place);

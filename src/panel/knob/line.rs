@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Response, RichText, Sense, TextStyle, Ui, pos
 
 use crate::{
     panel::{
-        maths,
+        linked, maths,
         theme::{self, Palette},
     },
     scene::limits::{Limits, number},
@@ -44,8 +44,6 @@ pub(super) fn head<R>(
     right: impl FnOnce(&mut Ui) -> R,
 ) -> (Response, R) {
     let palette = Palette::here(ui);
-    let marked = !caption.symbol.is_empty()
-        && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
     let symbol_column = symbol_column(ui, caption.symbol).max(caption.indent);
     let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
     let room = match words {
@@ -68,8 +66,8 @@ pub(super) fn head<R>(
         };
         let height = galley.size().y.max(22.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
-        if marked {
-            ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
+        if linked::is_lit(ui.ctx(), caption.symbol) {
+            ui.painter().add(linked::row_ground(rect.expand2(vec2(4.0, 0.0)), &palette));
         }
         if !caption.symbol.is_empty() {
             let at = pos2(rect.left(), rect.center().y + 5.0);

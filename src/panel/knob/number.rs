@@ -8,7 +8,7 @@ use super::{
     slider::slider,
 };
 use crate::{
-    panel::{maths, menu, theme::Palette},
+    panel::{lesson::point, linked, menu, theme::Palette},
     scene::limits::{Limits, number},
 };
 
@@ -71,7 +71,7 @@ pub fn number_knob_beside(
 ) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
         let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
@@ -82,17 +82,12 @@ pub fn number_knob_beside(
             (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
         });
         out = field.value;
-        let mut hot = label.hovered() || field.response.hovered();
         let (rule, default_text) = (range(limits), default.map(number).unwrap_or_default());
         let tip = |ui: &mut Ui| tooltip(ui, caption, &rule, &default_text);
         explain(label, tip);
         if let Some((slider, new)) = slider {
             out = new.or(out);
-            hot |= slider.hovered() || slider.dragged() || slider.has_focus();
             explain(slider, tip);
-        }
-        if hot && !caption.symbol.is_empty() {
-            maths::highlight(ui.ctx(), caption.symbol);
         }
         match &field.error {
             Some(error) => complaint(ui, &field.response, &capitalised(error), &number(value)),
@@ -102,5 +97,7 @@ pub fn number_knob_beside(
         }
         ui.add_space(3.0);
     });
+    linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out
 }

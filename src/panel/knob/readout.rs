@@ -4,7 +4,10 @@ use bevy_egui::egui::{self, Align, Sense, Stroke, Ui, WidgetInfo, WidgetType, ve
 
 use super::line::{Caption, NUMBER, Words, head, unit};
 use crate::{
-    panel::theme::{self, Palette},
+    panel::{
+        linked,
+        theme::{self, Palette},
+    },
     reflection::{Readout, ReadoutValue},
 };
 
@@ -47,6 +50,7 @@ pub fn readout(ui: &mut Ui, readout: &Readout, indent: f32) {
             (label, value)
         }
     };
+    linked::touch(ui, label.rect.union(value.rect), &[readout.symbol]);
     label.on_hover_ui(tip);
     value.on_hover_ui(tip);
 }

@@ -12,7 +12,8 @@ use super::{
 };
 use crate::{
     panel::{
-        maths,
+        lesson::point,
+        linked,
         theme::{self, Palette},
     },
     scene::limits::{Limits, number},
@@ -103,7 +104,7 @@ pub fn vector_knob(
     const LETTERS: [&str; 3] = ["x", "y", "z"];
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
         let colour = Palette::here(ui).text;
@@ -139,6 +140,7 @@ pub fn vector_knob(
         });
         ui.add_space(6.0);
     });
+    point::knob(ui, salt, row.response.rect);
     out
 }
 
@@ -153,7 +155,7 @@ pub fn triple_knob(
 ) -> Option<[f32; 3]> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
@@ -166,9 +168,6 @@ pub fn triple_knob(
             text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
         });
         out = all.value;
-        if (label.hovered() || all.response.hovered()) && !caption.symbol.is_empty() {
-            maths::highlight(ui.ctx(), caption.symbol);
-        }
         let rule = format!("each {}. Default {}", limits.rule(), list(default));
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
@@ -184,5 +183,7 @@ pub fn triple_knob(
         }
         ui.add_space(6.0);
     });
+    linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
     out.filter(|v| *v != value)
 }

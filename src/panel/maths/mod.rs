@@ -3,12 +3,10 @@
 //!
 //! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
-use bevy_egui::egui::{
-    self, Color32, Id, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::{Color32, Pos2, Rect, Response, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
 use super::{
-    formula,
+    formula, linked,
     theme::{self, Palette},
     typeset::{Break, Set, Setter},
 };
@@ -47,20 +45,6 @@ pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
     lay_out(ui, &parse_symbol(symbol), size, Color32::WHITE).width
 }
 
-/// Highlights a symbol wherever it stands, until the next pass is over.
-pub fn highlight(ctx: &egui::Context, symbol: &str) {
-    let now = ctx.cumulative_pass_nr();
-    ctx.data_mut(|d| d.insert_temp(Id::new("highlighted symbol"), (now, symbol.to_owned())));
-}
-
-/// The symbol that [`highlight`] named last, if that is not long ago.
-#[must_use]
-pub fn highlighted(ctx: &egui::Context) -> Option<String> {
-    let now = ctx.cumulative_pass_nr();
-    let stored: Option<(u64, String)> = ctx.data(|d| d.get_temp(Id::new("highlighted symbol")));
-    stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
-}
-
 /// The sizes of an equation that is set.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sizes {
@@ -70,7 +54,8 @@ pub struct Sizes {
     pub even: bool,
 }
 
-/// An equation, a line for each definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. Hovering a symbol highlights it; so does [`highlight`].
+/// An equation, a line for each definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. Under the
+/// pointer a symbol lights, with all that stands for it.
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
     equation_of(ui, &definitions(parts), Sizes::default(), name)
 }
@@ -84,7 +69,6 @@ pub fn equation_of(
 ) -> Response {
     let palette = Palette::here(ui);
     let width = ui.available_width();
-    let marked = highlighted(ui.ctx());
     let (lines, height) = set(ui, parts, sizes, width);
 
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
@@ -100,12 +84,11 @@ pub fn equation_of(
             let cell = Rect::from_min_size(at + corner, size);
             let here = ui.interact(cell, response.id.with((i, k)), Sense::hover());
             if here.hovered() {
-                highlight(ui.ctx(), symbol);
+                linked::point(ui.ctx(), &[symbol]);
             }
             here.on_hover_text(meaning);
-            if marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
-                ui.painter().rect_filled(cell, 3.0, palette.chosen);
-                ui.painter().hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
+            if linked::is_lit(ui.ctx(), symbol) {
+                ui.painter().add(linked::ground(cell, &palette));
             }
         }
         line.paint(ui, at, *colour);
@@ -173,6 +156,8 @@ pub(super) fn size_of(term: Term, text: &str) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui;
+
     use super::*;
 
     /// The notation of physically based models, and more.

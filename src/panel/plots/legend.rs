@@ -1,12 +1,12 @@
 //! The list of the curves: what is shown, its colour and dash, its value where the plot is read.
 
 use bevy_egui::egui::{
-    self, Align, Button, Label, Layout, Popup, PopupCloseBehavior, RichText, ScrollArea, Sense, Ui,
+    self, Align, Button, Label, Layout, Popup, PopupCloseBehavior, RichText, ScrollArea, Sense, Shape, Ui,
     WidgetInfo, WidgetType,
 };
 
 use super::{
-    Entry, PlotPanel, Recipe, Request,
+    Entry, PlotPanel, Recipe, Request, links,
     reading::{self, Reading},
     request::Drawn,
     surface::{right_end, sample, sample_size, small_lines},
@@ -20,7 +20,7 @@ use crate::{
     panel::{
         chooser,
         icon::{self, Icon},
-        knob, menu,
+        knob, linked, menu,
         state::{Action, Of, PlotCommand, Session, Slot},
         theme::{self, Palette},
     },
@@ -45,28 +45,40 @@ fn dash_name(line: Line) -> &'static str {
     }
 }
 
-/// Shows the list in all the room that there is.
+/// Shows the list in all the room that there is, with the row of a curve that stands out. Returns the one that the pointer
+/// is at.
 pub(super) fn show(
     ui: &mut Ui,
     panel: &PlotPanel,
     request: &Request,
+    lit: Option<Slot>,
     session: &Session,
     registry: &Registry,
     actions: &mut Vec<Action>,
-) {
+) -> Option<Slot> {
     buttons(ui, session, registry, actions);
     let quantity = request.setup.kind.quantity();
     let heading = panel.reading.map_or_else(String::new, |at| format!("{quantity} {}", at.name()));
     // The line is there before it says something: nothing moves under the pointer.
     ui.label(theme::small(ui, if heading.is_empty() { " " } else { &heading }));
+    let mut pointed = None;
     ScrollArea::vertical().id_salt("curves of the plot").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 2.0;
         for entry in &request.entries {
-            ui.push_id(entry.slot, |ui| {
+            let under = ui.painter().add(Shape::Noop);
+            let row = ui.push_id(entry.slot, |ui| {
                 row(ui, panel, entry, request.setup.kind, session, registry, actions)
             });
+            let place = row.response.rect;
+            linked::touch(ui, place, links::of_slot(request, entry.slot));
+            if ui.rect_contains_pointer(place) && ui.ctx().dragged_id().is_none() {
+                pointed = Some(entry.slot);
+            }
+            if lit == Some(entry.slot) {
+                ui.painter().set(under, linked::row_ground(place, &Palette::here(ui)));
+            }
         }
         let notes = panel.figure.as_ref().map_or(&[][..], |built| &built.notes);
         if !notes.is_empty() {
@@ -74,6 +86,7 @@ pub(super) fn show(
             notes.iter().for_each(|note| small_lines(ui, note));
         }
     });
+    pointed
 }
 
 fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bevy_egui::egui::{self, Align, Layout, Rect, Ui, UiBuilder, vec2};
 
 use super::{
-    Panel, PanelContext, Place,
+    Panel, PanelContext, Place, linked,
     state::{PLOTS_TAB, Slot},
     theme::Palette,
 };
@@ -28,6 +28,7 @@ mod choices;
 mod file;
 mod handle;
 mod legend;
+mod links;
 mod pen;
 mod reading;
 mod request;
@@ -51,6 +52,9 @@ pub struct PlotPanel {
     figure: Option<Built>,
     textures: pen::Textures,
     reading: Option<Reading>,
+    /// The place in the list of the curve that the pointer is at.
+    pointed: Option<Slot>,
+    influences: Vec<links::Influence>,
 }
 
 /// A figure, and what it was made from.
@@ -82,6 +86,8 @@ impl Panel for PlotPanel {
         let request = Request::of(session, registry);
         self.follow(ui.ctx(), &request, registry);
         self.build(&request);
+        let live = links::is_live_lit(ui.ctx(), &request, &mut self.influences);
+        let lit = self.pointed.or(live.then_some(Slot::Live));
         choices::row(ui, session, actions);
         let whole = ui.available_rect_before_wrap();
         let width = (0.3 * whole.width()).clamp(230.0, 360.0);
@@ -92,11 +98,21 @@ impl Panel for PlotPanel {
             let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
             ui.scope_builder(builder, |ui| add(ui));
         };
+        let mut pointed = None;
         column(ui, plot.with_max_x(plot.right() - 8.0), &mut |ui| {
-            self.surface(ui, &request, session.plots.theta_i, actions);
+            pointed = self.surface(ui, &request, session.plots.theta_i, lit, actions);
         });
+        if let Some(slot) = pointed {
+            linked::point(ui.ctx(), links::of_slot(&request, slot));
+        }
         let list = Rect::from_min_max(list.min + vec2(12.0, 0.0), list.max);
-        column(ui, list, &mut |ui| legend::show(ui, self, &request, session, registry, actions));
+        column(ui, list, &mut |ui| {
+            let row = legend::show(ui, self, &request, lit, session, registry, actions);
+            pointed = pointed.or(row);
+        });
+        if std::mem::replace(&mut self.pointed, pointed) != pointed {
+            ui.ctx().request_repaint();
+        }
     }
 }
 

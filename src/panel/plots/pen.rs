@@ -23,7 +23,16 @@ pub(super) struct Screen<'a> {
     palette: Palette,
     textures: &'a mut Textures,
     pictures: usize,
+    /// The series that stands out from the others, by its number.
+    pub(super) lit: Option<usize>,
+    /// The series that is being drawn.
+    series: Option<usize>,
 }
+
+/// A line that stands out is so many times as wide.
+const WIDER: f32 = 2.2;
+/// The part of their opacity that the others keep.
+const DIM: f32 = 0.5;
 
 /// The pictures of a figure on the GPU, in its order.
 #[derive(Default)]
@@ -44,6 +53,8 @@ impl<'a> Screen<'a> {
             palette: Palette::here(ui),
             textures,
             pictures: 0,
+            lit: None,
+            series: None,
         }
     }
 
@@ -75,7 +86,12 @@ impl Pen for Screen<'_> {
                 points.push(point);
             }
         }
-        let stroke = Stroke::new((width as f32 * SCALE).max(1.0), self.colour(ink));
+        let (width, colour) = ((width as f32 * SCALE).max(1.0), self.colour(ink));
+        let stroke = match (self.lit, self.series) {
+            (Some(lit), Some(series)) if lit == series => Stroke::new(width * WIDER, colour),
+            (Some(_), Some(_)) => Stroke::new(width, colour.gamma_multiply(DIM)),
+            _ => Stroke::new(width, colour),
+        };
         if dash.is_empty() {
             self.painter.add(Shape::line(points, stroke));
             return;
@@ -114,6 +130,10 @@ impl Pen for Screen<'_> {
         let place = Rect::from_min_max(self.place([x, y]), self.place([x + width, y + height]));
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         self.painter.image(texture.id(), place, whole, Color32::WHITE);
+    }
+
+    fn series(&mut self, series: Option<usize>) {
+        self.series = series;
     }
 
     fn width(&self, px: f64, text: &str) -> f64 {

@@ -13,30 +13,34 @@ use super::{
 use crate::{
     curves::{
         Sheet,
-        draw::{Figure, GAP, Ground, Ink, Pen},
+        draw::{Figure, GAP, Ground, Ink, Pen, Series},
     },
     panel::{
-        state::Action,
+        linked,
+        state::{Action, Slot},
         theme::{self, Palette},
     },
 };
 
 impl PlotPanel {
-    /// Shows the plot in all the room that there is.
+    /// Shows the plot in all the room that there is, with a curve that stands out from the others. Returns the one that the
+    /// pointer is at.
     pub(super) fn surface(
         &mut self,
         ui: &mut Ui,
         request: &Request,
         theta_i: f64,
+        lit: Option<Slot>,
         actions: &mut Vec<Action>,
-    ) {
+    ) -> Option<Slot> {
         let place = ui.available_rect_before_wrap();
         let response = ui.interact(place, ui.id().with("plot"), Sense::click());
         let empty = self.nothing(request);
-        let Some(built) = &mut self.figure else { return };
+        let built = self.figure.as_mut()?;
         let mut screen = Screen::new(ui, place, &mut self.textures);
         let units = [place.width(), place.height()].map(|points| f64::from(points / SCALE));
         fit(built, units, &screen);
+        screen.lit = lit.and_then(|slot| built.slots.iter().position(|known| *known == slot));
         let ground = built.figure.draw(&mut screen);
         let axis = match &built.figure {
             Figure::Plot(plot) => [plot.x.from, plot.x.to],
@@ -73,6 +77,11 @@ impl PlotPanel {
             (None, Some(reading)) => mark(ui, &screen, &ground, built, reading),
             (None, None) => {}
         }
+        let at = response.hover_pos().filter(|_| !ui.input(|i| i.pointer.any_down()))?;
+        let lines = lines(built, &ground, &screen);
+        let off = lines.iter().map(|line| linked::distance(at, line)).zip(&built.slots);
+        let near = off.filter(|(off, _)| *off < GRASP).min_by(|(a, _), (b, _)| a.total_cmp(b));
+        near.map(|(_, slot)| *slot)
     }
 
     /// What stands in a plot without curves.
@@ -90,6 +99,36 @@ impl PlotPanel {
             () if why.len() > 1 => "None of the curves can be shown: the list says why.".to_owned(),
             () => why.iter().map(|why| format!("{why}.")).collect(),
         })
+    }
+}
+
+/// The pointer is at a curve that is this near, points.
+const GRASP: f32 = 7.0;
+
+/// The curves of a figure as they are on screen.
+fn lines(built: &Built, ground: &Ground, screen: &Screen) -> Vec<Vec<Pos2>> {
+    let of = |series: &[Series], place: &dyn Fn(f64, f64) -> [f64; 2]| {
+        let line = |series: &Series| {
+            let finite = series.points.iter().filter(|point| point.1.is_finite());
+            finite.map(|(angle, value)| screen.place(place(*angle, *value))).collect()
+        };
+        series.iter().map(line).collect()
+    };
+    match (&built.figure, ground) {
+        (Figure::Plot(plot), Ground::Plot([left, top, right, bottom])) => {
+            of(&plot.series, &|angle, value| {
+                let y = bottom - plot.y.place(value) * (bottom - top);
+                [left + plot.x.place(angle) * (right - left), y.clamp(*top, *bottom)]
+            })
+        }
+        (Figure::Polar(polar), Ground::Polar { centre: [x, y], radius }) => {
+            of(&polar.series, &|angle, value| {
+                let (sin, cos) = angle.to_radians().sin_cos();
+                let out = radius * polar.radius.place(value).max(0.0);
+                [x + out * sin, y - out * cos]
+            })
+        }
+        _ => Vec::new(),
     }
 }
 

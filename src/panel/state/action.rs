@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::{CompareCommand, Effect, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange};
+use super::{
+    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange,
+};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,
@@ -105,6 +107,8 @@ pub enum Action {
     Match(MatchCommand),
     /// Something about the plots.
     Plot(PlotCommand),
+    /// Something about lessons.
+    Lesson(LessonCommand),
     /// Say something.
     Say(Severity, String),
     /// Remove a message.
@@ -201,7 +205,8 @@ pub enum ModelCommand {
 impl Session {
     /// Carries out an action. Returns what needs files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
-        let effects = self.carry_out(action, registry);
+        let mut effects = self.carry_out(action, registry);
+        effects.extend(self.resume_lesson());
         // It would undo something else.
         self.messages.check_undo(&self.last_step());
         effects
@@ -317,6 +322,7 @@ impl Session {
             Action::Compare(command) => self.compare(command, registry),
             Action::Match(command) => return self.matching(command, registry),
             Action::Plot(command) => return self.plot(command),
+            Action::Lesson(command) => return self.lesson(command, registry),
             Action::View(change) => return self.change_view(change),
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],

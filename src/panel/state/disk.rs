@@ -60,7 +60,7 @@ impl Session {
     pub fn disk_badge(&self) -> Option<Badge> {
         let mut badge = self.disk.badge.clone()?;
         // The file cannot be read, so what is shown is the scene before it, or what became of that here.
-        if badge.severity == Severity::Error && self.is_dirty() {
+        if badge.severity == Severity::Error && self.shows_unsaved() {
             badge.text += " with your unsaved changes";
         }
         Some(badge)

@@ -17,7 +17,8 @@ pub enum Effect {
     PickFile(Selection, &'static Parameter),
     /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
-    /// Write the document; see [`effects::run`](crate::panel::effects::run).
+    /// Write the document, or a copy of the scene of the lesson that is open; see
+    /// [`effects::run`](crate::panel::effects::run).
     SaveFile {
         /// The file.
         path: PathBuf,
@@ -124,10 +125,29 @@ pub enum Effect {
     CancelExport,
     /// Show a folder in the file manager.
     Reveal(PathBuf),
+    /// Show the dialog that chooses a lesson.
+    PickLesson,
+    /// Read a lesson; see [`effects::run`](crate::panel::effects::run).
+    OpenLesson(PathBuf),
+    /// The file of the lesson that is open may have changed: read it again.
+    LookAtLesson,
+    /// Keep what was done of the lesson of this name.
+    SaveProgress(String),
+    /// The picture shows another document, and another view of it.
+    Camera(CameraChange),
     /// Show the dialog that chooses a folder for the shaders.
     PickShaderFolder,
     /// Write the shaders into a folder, to be edited there.
     ExportShaders(PathBuf),
+}
+
+/// The camera when the user's own document is put aside, and when it comes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraChange {
+    /// Keep its place, then put it where the observer is.
+    PutAside,
+    /// Exchange its place and the one that was kept.
+    Exchange,
 }
 
 /// A small movement of the camera.

@@ -45,12 +45,6 @@ fn see_from(values: &mut Values, folder: &Path) -> bool {
 }
 
 impl Session {
-    /// True if the document differs from its file.
-    #[must_use]
-    pub fn is_dirty(&self) -> bool {
-        self.disk.lacks_document() || self.document.differs()
-    }
-
     /// The scene of a file has been read: it becomes the document.
     pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
         self.view.examples_open = false;
@@ -63,7 +57,7 @@ impl Session {
     pub(super) fn save_as(&mut self, typed: &Path, registry: &Registry) -> Vec<Effect> {
         // The default scene and examples are called as their file from now on.
         let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
-        if self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
+        if self.lesson.is_none() && self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
             self.document
                 .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
         }
@@ -128,6 +122,16 @@ impl Session {
         effects
     }
 
+    /// A copy of the scene of the lesson that is open has been written.
+    pub(in crate::panel) fn copy_saved(&mut self, path: &Path) -> Vec<Effect> {
+        self.remember_file(path);
+        self.note_file(
+            format!("A copy of this scene was saved to {}; the lesson goes on.", path.display()),
+            files::folder_of(path),
+        );
+        vec![Effect::SaveSettings]
+    }
+
     pub(super) fn note_saved(&mut self, path: &Path) {
         let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.display()));
         if self.facts.camera_left {
@@ -169,6 +173,7 @@ impl Session {
     }
 
     pub(super) fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.drop_lesson();
         self.document = Document::new(scene);
         self.path = path;
         self.stashed.clear();

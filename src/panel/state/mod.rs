@@ -11,19 +11,25 @@ use bevy::ecs::resource::Resource;
 
 pub use action::{Action, Answer, ExportCommand, ModelCommand, PictureCommand};
 pub use area::{Cell, PictureArea};
+pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
 pub use compare::CompareCommand;
 pub use disk::OnDisk;
-pub use effect::{Effect, LabEffect, RecoveryChoice, Steer};
+pub use effect::{CameraChange, Effect, LabEffect, RecoveryChoice, Steer};
 pub use facts::{Clipping, Exporting, Facts, LARGEST, Matching, Numbers};
 pub use files::RECENT_FILES;
+pub use lesson::{LessonCommand, LessonSource};
+pub use lobe::{LobeChoice, LobeScale};
 pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
+pub use open_lesson::OpenLesson;
+pub(super) use open_lesson::problem_of;
 pub use pictures::PictureEnd;
 pub use place::{PanelInfo, Place};
 pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
 pub use probe::{EXPLAIN_TAB, Pin};
+pub use progress::{Past, Progress};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;
 pub use severity::Severity;
@@ -44,6 +50,7 @@ use crate::{
 
 mod action;
 mod area;
+mod aside;
 mod author;
 mod compare;
 mod disk;
@@ -52,14 +59,19 @@ mod effect;
 mod export;
 mod facts;
 mod files;
+mod learning;
+mod lesson;
+mod lobe;
 mod matching;
 mod messages;
 mod nudge;
+mod open_lesson;
 mod parts;
 mod pictures;
 mod place;
 mod plots;
 mod probe;
+mod progress;
 mod question;
 mod recovery;
 mod selection;
@@ -88,6 +100,12 @@ pub struct Session {
     pub view: View,
     /// The choices of the plots.
     pub plots: Plots,
+    /// The lesson that is open: its scene is shown, and the user's own document waits.
+    pub lesson: Option<OpenLesson>,
+    /// A lesson that waits until a question about the user's own document is settled.
+    parked: Option<Box<OpenLesson>>,
+    /// What was done of the lessons.
+    pub progress: Progress,
     /// Messages to the user.
     pub messages: Messages,
     /// Questions to the user.
@@ -137,6 +155,9 @@ impl Session {
             renaming: None,
             view: View::default(),
             plots: Plots::default(),
+            lesson: None,
+            parked: None,
+            progress: Progress::default(),
             messages: Messages::default(),
             questions: Questions::default(),
             recent_files: Vec::new(),

@@ -52,6 +52,11 @@ pub enum Question {
         /// The file or folder.
         path: PathBuf,
     },
+    /// There is a file where a copy of the scene of a lesson should go.
+    ReplaceScene {
+        /// The file.
+        path: PathBuf,
+    },
     /// There is a picture where another one should go.
     ReplacePicture {
         /// The view that is wanted alone.
@@ -101,6 +106,11 @@ impl Questions {
         self.after_save = None;
     }
 
+    /// True while an answer, or a dialog that followed from one, decides about unsaved changes.
+    pub(super) fn are_pending(&self) -> bool {
+        self.open.is_some() || self.after_save.is_some() || self.may_discard
+    }
+
     /// The dialog that chooses a file to open was closed without a choice.
     pub fn not_opened(&mut self) {
         self.may_discard = false;
@@ -114,8 +124,10 @@ impl Session {
         go: impl FnOnce(&mut Self) -> Vec<Effect>,
     ) -> Vec<Effect> {
         if self.is_dirty() {
+            // The question is about the user's own document, so that is what is shown.
+            let effects = self.park_lesson();
             self.questions.open = Some(Question::Unsaved { then: Box::new(action) });
-            return Vec::new();
+            return effects;
         }
         go(self)
     }
@@ -161,7 +173,7 @@ impl Session {
             }
             (Question::EmptyFile { .. }, Answer::UseDefaults) => self.start_new(),
             (Question::Recover(offer), answer) => self.answer_offer(*offer, answer),
-            (Question::ChangedOnDisk { path }, Answer::Overwrite) => {
+            (Question::ChangedOnDisk { path } | Question::ReplaceScene { path }, Answer::Overwrite) => {
                 vec![Effect::SaveFile { path, overwrite: true }]
             }
             (Question::ChangedOnDisk { path }, Answer::Reload) => {

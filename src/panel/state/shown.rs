@@ -12,11 +12,10 @@ use crate::{
 };
 
 impl Session {
-    /// The title of the document: the name of the scene, else the name of the file.
+    /// The title of what is shown: that of the lesson, or of the user's own document.
     #[must_use]
     pub fn title(&self) -> String {
-        let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
-        self.document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+        self.lesson.as_ref().map_or_else(|| self.own_title(), |lesson| lesson.lesson.title.clone())
     }
 
     /// The name of its file without extension; while it has none, its title as one.

@@ -1,6 +1,6 @@
 //! The choice of what is shown, and how.
 
-use super::{Effect, Pin, Place, Session, probe::EXPLAIN_TAB};
+use super::{Effect, LobeChoice, Pin, Place, Session, probe::EXPLAIN_TAB};
 use crate::{channel::DebugChannel, optics::TermSelection, scene::variant::MAX_VARIANTS};
 
 /// Id of the panel that shows the messages.
@@ -128,6 +128,8 @@ pub struct View {
     pub show_room: bool,
     /// The labels of objects.
     pub labels: Labels,
+    /// True if of the parameters of a model only those that differ from their defaults have knobs.
+    pub only_changed: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
     /// True if pictures that are saved or copied have a caption.
@@ -150,8 +152,12 @@ pub struct View {
     pub right_open: bool,
     /// The pixel that stays explained wherever the pointer is.
     pub pinned: Option<Pin>,
+    /// The lobe of the model at the point that is explained.
+    pub lobe: LobeChoice,
     /// Width of the tree, points.
     pub left_width: f32,
+    /// Width of a lesson, points.
+    pub lesson_width: f32,
     /// Width of the inspector, points.
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
@@ -184,6 +190,7 @@ impl Default for View {
             handles: HandleMode::Move,
             show_room: true,
             labels: Labels::Off,
+            only_changed: false,
             show_clipping: false,
             picture_caption: true,
             terms: TermSelection::All,
@@ -195,7 +202,9 @@ impl Default for View {
             left_open: true,
             right_open: true,
             pinned: None,
+            lobe: LobeChoice::default(),
             left_width: 208.0,
+            lesson_width: 340.0,
             right_width: 344.0,
             bottom_height: 144.0,
             hidden_panels: Vec::new(),
@@ -233,6 +242,8 @@ pub enum ViewChange {
     Room(bool),
     /// See [`View::labels`].
     Labels(Labels),
+    /// See [`View::only_changed`].
+    OnlyChanged(bool),
     /// See [`View::show_clipping`].
     Clipping(bool),
     /// See [`View::picture_caption`].
@@ -251,6 +262,8 @@ pub enum ViewChange {
     Fold(String, bool),
     /// See [`View::pinned`]; what is pinned is shown.
     Pin(Option<Pin>),
+    /// See [`View::lobe`].
+    Lobe(LobeChoice),
     /// See [`View::left_open`].
     Left(bool),
     /// See [`View::right_open`].
@@ -324,6 +337,7 @@ impl View {
             }
             ViewChange::Room(on) => self.show_room = on,
             ViewChange::Labels(labels) => self.labels = labels,
+            ViewChange::OnlyChanged(on) => self.only_changed = on,
             ViewChange::Clipping(on) => self.show_clipping = on,
             ViewChange::PictureCaption(on) => self.picture_caption = on,
             ViewChange::Terms(terms) => self.terms = terms,
@@ -344,6 +358,7 @@ impl View {
                     self.unfold(EXPLAIN_TAB);
                 }
             }
+            ViewChange::Lobe(lobe) => self.lobe = lobe,
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
@@ -380,7 +395,15 @@ impl Session {
             ViewChange::Bottom(false) => self.view.guest_tab = None,
             _ => {}
         }
+        let left = self.view.left_width;
         self.view.change(change);
+        if self.lesson.is_some() {
+            // It is the lesson that is at the left.
+            let width = std::mem::replace(&mut self.view.left_width, left);
+            if width != left {
+                self.view.lesson_width = width;
+            }
+        }
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
     }
 }

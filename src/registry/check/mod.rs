@@ -10,7 +10,7 @@ use crate::{
     light::LightEntry,
     optics::colour::Encoding,
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
-    reflection::{ModelEntry, usage},
+    reflection::{Group, ModelEntry, usage},
     shader::{Source, definitions::allowed_in_wgsl},
     shading::{PARAMETER_WORDS, ShadingEntry},
     shape::ShapeEntry,
@@ -165,6 +165,9 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
     let d = entry.declaration;
     identity(d.id, d.name)?;
     parameters(entry.parameters, OBJECT_KEYS, OBJECT, false)?;
+    if let Some((_, problem)) = Group::problem(entry.groups, entry.parameters) {
+        return Err(problem);
+    }
     let models = registry.models().iter().filter(|m| m.declaration.id != d.id);
     let shadings = registry.shading_models().iter().map(|s| (s.declaration.id, s.parameters));
     shared(entry.parameters, "models", models.map(|m| (m.declaration.id, m.parameters)).chain(shadings))?;

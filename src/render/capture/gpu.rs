@@ -38,7 +38,9 @@ use wgpu::PollError;
 use crate::{
     channel::Setting,
     optics::TermSelection,
+    reference::{Settings, draw_wires},
     reflection::ends::Endless,
+    registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
         entities::CurrentScene,
@@ -421,12 +423,22 @@ impl GpuRenderer {
         Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
     }
 
-    /// The picture as last drawn, 8-bit RGB.
+    /// The picture as last drawn, 8-bit RGB, with the lines and dots of its channel.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_rgb8(&mut self) -> Result<Vec<u8>, GpuError> {
-        Ok(self.read()?.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect())
+        let mut rgb8: Vec<u8> = self.read()?.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        let world = self.app.world_mut();
+        let mut cameras = world.query_filtered::<&Overrides, With<PictureCamera>>();
+        let channel = cameras.iter(world).find_map(|overrides| overrides.channel).map(|shown| shown.channel);
+        if let Some(channel) = channel.filter(|channel| channel.has_wires()) {
+            let terms = world.resource::<ShownTerms>().0;
+            let settings = Settings { width: self.width, height: self.height, samples: 1, terms };
+            let (scene, registry) = (world.resource::<CurrentScene>(), world.resource::<Registry>());
+            draw_wires(&mut rgb8, &scene.0, registry, &settings, channel);
+        }
+        Ok(rgb8)
     }
 
     /// The picture as last drawn, linear RGB; for [`Output::Linear`].

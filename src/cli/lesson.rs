@@ -1,0 +1,122 @@
+//! `lcm lesson`: lists the shipped lessons, and checks and prints those of teachers.
+
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
+
+use clap::Subcommand;
+use serde::Serialize;
+
+use super::{Options, Outcome, complain, print, print_text};
+use crate::{
+    failure::Failure,
+    lesson::{Lesson, Problem, shipped::LESSONS},
+    registry::Registry,
+    text::plural,
+};
+
+#[derive(Subcommand, Debug)]
+pub(super) enum Command {
+    /// List the shipped lessons
+    List,
+    /// Check lessons and print every problem, with line and column
+    Check {
+        /// Markdown files, or folders with lesson.md
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// Print the result as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Print a lesson as text, with its answers and conditions
+    Show {
+        /// A Markdown file, a folder with lesson.md, or the name of a shipped lesson
+        file: PathBuf,
+    },
+}
+
+/// The result for one lesson, for programs.
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    valid: bool,
+    problems: Vec<Problem>,
+}
+
+/// The file in which the problems of a path are.
+fn file_of(path: &Path) -> String {
+    if path.is_dir() { path.join("lesson.md") } else { path.to_owned() }.display().to_string()
+}
+
+pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> Outcome {
+    match command {
+        Command::List => list(),
+        Command::Check { files, json } => check(files, *json, options, registry),
+        Command::Show { file } => show(file, registry),
+    }
+}
+
+fn list() -> Outcome {
+    let width = LESSONS.iter().map(|lesson| lesson.id.chars().count()).max().unwrap_or_default();
+    let mut text = String::new();
+    for lesson in LESSONS.iter() {
+        let time = lesson.minutes.map_or(String::new(), |minutes| format!(", {minutes} min"));
+        let (id, steps) = (&lesson.id, plural(lesson.steps.len(), "step"));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{id:width$}  {} ({steps}{time}): {}", lesson.title, lesson.summary);
+    }
+    print_text(&text)
+}
+
+fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -> Outcome {
+    let (mut reports, mut listed) = (Vec::new(), String::new());
+    for path in files {
+        let mut problems = Vec::new();
+        match Lesson::read(path, registry) {
+            Ok(lesson) => {
+                let tasks = lesson.steps.iter().filter(|step| step.task.is_some()).count();
+                let (steps, tasks) = (plural(lesson.steps.len(), "step"), plural(tasks, "task"));
+                let _ = writeln!(listed, "{}: valid: {steps}, {tasks}", path.display());
+            }
+            Err(found) => problems = found,
+        }
+        let file = file_of(path);
+        if !json {
+            for problem in &problems {
+                complain(problem.annotated(&file));
+            }
+        }
+        reports.push(Report { file, valid: problems.is_empty(), problems });
+    }
+    if json {
+        let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
+        print(&format!("{json}\n"))?;
+    } else if !options.quiet {
+        print_text(&listed)?;
+    }
+    match reports.iter().filter(|report| !report.valid).count() {
+        0 => Ok(()),
+        _ if json || reports.len() == 1 => Err(Failure::Invalid(String::new())),
+        n => Err(Failure::Invalid(format!(
+            "{n} of {} lessons {} invalid",
+            reports.len(),
+            if n == 1 { "is" } else { "are" }
+        ))),
+    }
+}
+
+fn show(file: &Path, registry: &Registry) -> Outcome {
+    let shipped = LESSONS.iter().find(|lesson| Path::new(&lesson.id) == file && !file.exists());
+    if let Some(lesson) = shipped {
+        return print_text(&lesson.to_text());
+    }
+    match Lesson::read(file, registry) {
+        Ok(lesson) => print_text(&lesson.to_text()),
+        Err(problems) => {
+            let name = file_of(file);
+            let lines: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
+            Err(Failure::Invalid(lines.join("\n")))
+        }
+    }
+}

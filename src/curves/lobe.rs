@@ -1,0 +1,221 @@
+//! The lobe of a model at a point: the BRDF over the hemisphere of viewers, as a surface.
+//!
+//! The polar plot ([`Kind::Polar`]) is its section with the plane of incidence: the same quantity, on the same axis.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::Vec3;
+
+use super::{Channel, Kind, draw::Axis, sample::GRAZING, sheet::span};
+use crate::{
+    optics::{Frame, TermSelection, Terms, geometry::direction},
+    progress::{Cancelled, Progress},
+    reflection::{Surface, brdf_of},
+};
+
+/// Steps around the normal.
+const AROUND: usize = 32;
+/// The angles from the normal at which the surface begins, degrees.
+const DOWN: [f64; 11] = [10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 78.0, 84.0, 88.0, GRAZING];
+/// An angle this near to that of the mirror direction gives way to it, degrees.
+const CLEAR: f64 = 4.0;
+/// The passes in which edges are halved.
+const PASSES: usize = 14;
+/// The most directions.
+const MOST: usize = 2500;
+/// The largest distance of an edge from the surface; the lobe is 1 long.
+const TOLERANCE: f64 = 0.008;
+/// The edge of a gap is found to this angle, radians.
+const GAP: f32 = 0.05;
+
+/// The BRDF of the terms that are shown, for one light, towards all viewers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lobe {
+    /// The directions to the viewers: unit vectors, denser where the surface bends.
+    pub ways: Vec<Vec3>,
+    /// The luminance of `f` in sr⁻¹ in each direction, as calculated: it may not be finite.
+    pub values: Vec<f64>,
+    /// The surface between the directions: three of them each. Where a value is not finite there is a gap.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The BRDF of the terms that are shown, in sr⁻¹. The ambient term has none.
+#[must_use]
+pub fn value(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+    let all = surface.response(l, v, frame);
+    let none = Vec3::ZERO;
+    let shown = match terms {
+        TermSelection::All => all,
+        TermSelection::Ambient => Terms { diffuse: none, specular: none, ..all },
+        TermSelection::Diffuse => Terms { specular: none, ..all },
+        TermSelection::Specular => Terms { diffuse: none, ..all },
+    };
+    brdf_of(shown, l, v, frame)
+}
+
+impl Lobe {
+    /// The lobe at a point with a frame, for light from `l`; all vectors are those of the room.
+    ///
+    /// # Errors
+    /// If the user no longer wants it.
+    pub fn new(
+        surface: &dyn Surface,
+        l: Vec3,
+        frame: &Frame,
+        terms: TermSelection,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let value = |v: Vec3| Channel::Luminance.of(value(surface, l, v, frame, terms));
+        let mut lobe = Self::coarse(l, frame, &value);
+        let mut settled = HashSet::new();
+        for pass in 0..PASSES {
+            progress.step(pass as f32 / PASSES as f32, "")?;
+            if !lobe.refine(&value, &mut settled) {
+                break;
+            }
+        }
+        lobe.triangles.retain(|corners| corners.iter().all(|i| lobe.values[*i as usize].is_finite()));
+        Ok(lobe)
+    }
+
+    /// Rings around the normal, one of them through the mirror direction, which is a direction of its own.
+    fn coarse(l: Vec3, frame: &Frame, value: &impl Fn(Vec3) -> f64) -> Self {
+        let local = frame.to_local(l);
+        let theta_i = f64::from(local.z.clamp(-1.0, 1.0).acos()).to_degrees();
+        let phi_i = f64::from(local.y.atan2(local.x)).to_degrees();
+        let mut down: Vec<_> = DOWN.iter().copied().filter(|a| (a - theta_i).abs() > CLEAR).collect();
+        if (CLEAR..GRAZING).contains(&theta_i) {
+            down.push(theta_i);
+        }
+        // The rim belongs to the surface however near the mirror direction is.
+        down.push(GRAZING);
+        down.sort_by(f64::total_cmp);
+        down.dedup();
+        let room = |local: Vec3| frame.t * local.x + frame.b * local.y + frame.n * local.z;
+        let mut ways = vec![frame.n];
+        for theta in &down {
+            let phi = |k: usize| phi_i + 360.0 * k as f64 / AROUND as f64;
+            ways.extend((0..AROUND).map(|k| room(direction(*theta, phi(k)))));
+        }
+        let at = |ring: usize, k: usize| (1 + ring * AROUND + k % AROUND) as u32;
+        let mut triangles = Vec::new();
+        for k in 0..AROUND {
+            triangles.push([0, at(0, k), at(0, k + 1)]);
+            for ring in 1..down.len() {
+                let [a, b] = [at(ring - 1, k), at(ring - 1, k + 1)];
+                let [c, d] = [at(ring, k), at(ring, k + 1)];
+                // Both sides of the plane of incidence are alike.
+                triangles.extend(if k < AROUND / 2 {
+                    [[a, c, d], [a, d, b]]
+                } else {
+                    [[a, c, b], [b, c, d]]
+                });
+            }
+        }
+        let values = ways.iter().map(|way| value(*way)).collect();
+        Self { ways, values, triangles }
+    }
+
+    /// The largest value; 0 if there is none above.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max)
+    }
+
+    /// True if some value is not finite: the surface has a gap there.
+    #[must_use]
+    pub fn has_gaps(&self) -> bool {
+        self.values.iter().any(|v| !v.is_finite())
+    }
+
+    /// True if a value is below 0, which has no length.
+    #[must_use]
+    pub fn is_negative(&self) -> bool {
+        self.values.iter().any(|v| *v < 0.0)
+    }
+
+    /// Halves the edges that leave the surface, seen on either scale. False if there are none, or directions enough.
+    fn refine(&mut self, value: &impl Fn(Vec3) -> f64, settled: &mut HashSet<[u32; 2]>) -> bool {
+        let largest = self.largest();
+        let log = span(Kind::Polar, true, true, &[largest]);
+        let log = Axis { from: log.to / 1e4, ..log };
+        let lengths = |v: f64| {
+            let linear = if largest > 0.0 { v.max(0.0) / largest } else { 0.0 };
+            [linear, log.place(v).max(0.0)]
+        };
+        let mut halves: HashMap<[u32; 2], u32> = HashMap::new();
+        for corners in self.triangles.clone() {
+            for edge in edges(corners) {
+                let [a, b] = edge.map(|i| i as usize);
+                if settled.contains(&edge) || halves.contains_key(&edge) {
+                    continue;
+                }
+                let ends = [self.ways[a], self.ways[b]];
+                let Some(way) = (ends[0] + ends[1]).try_normalize() else { continue };
+                let found = value(way);
+                let of_ends = [self.values[a], self.values[b]];
+                let finite = of_ends.map(f64::is_finite);
+                let bent = if finite == [true; 2] && found.is_finite() {
+                    let [from, to, middle] = [of_ends[0], of_ends[1], found].map(lengths);
+                    (0..2).any(|scale| {
+                        let chord = 0.5 * (ends[0] * from[scale] as f32 + ends[1] * to[scale] as f32);
+                        f64::from(chord.distance(way * middle[scale] as f32)) > TOLERANCE
+                    })
+                } else {
+                    (finite != [found.is_finite(); 2]) && ends[0].distance(ends[1]) > GAP
+                };
+                if bent {
+                    halves.insert(edge, self.ways.len() as u32);
+                    self.ways.push(way);
+                    self.values.push(found);
+                } else {
+                    settled.insert(edge);
+                }
+            }
+        }
+        let split = std::mem::take(&mut self.triangles);
+        for corners in split {
+            self.split(corners, &halves);
+        }
+        !halves.is_empty() && self.ways.len() < MOST
+    }
+
+    /// Puts a triangle, or its parts between the halves of its edges, into the surface.
+    fn split(&mut self, [a, b, c]: [u32; 3], halves: &HashMap<[u32; 2], u32>) {
+        let half = |a: u32, b: u32| halves.get(&[a.min(b), a.max(b)]).copied();
+        let mut parts = |all: &[[u32; 3]]| self.triangles.extend_from_slice(all);
+        match [half(a, b), half(b, c), half(c, a)] {
+            [None, None, None] => parts(&[[a, b, c]]),
+            [Some(d), Some(e), Some(f)] => parts(&[[a, d, f], [d, b, e], [f, e, c], [d, e, f]]),
+            [Some(d), None, None] => parts(&[[a, d, c], [d, b, c]]),
+            [None, Some(e), None] => parts(&[[b, e, a], [e, c, a]]),
+            [None, None, Some(f)] => parts(&[[c, f, b], [f, a, b]]),
+            [Some(d), Some(e), None] => parts(&[[d, b, e], [a, d, c], [d, e, c]]),
+            [None, Some(e), Some(f)] => parts(&[[e, c, f], [b, e, a], [e, f, a]]),
+            [Some(d), None, Some(f)] => parts(&[[f, a, d], [c, f, b], [f, d, b]]),
+        }
+    }
+}
+
+/// The edges of a triangle, each alike from both sides.
+#[must_use]
+pub fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+}
+
+/// The scale of some lobes together: from 0, or on a logarithmic scale from the smallest value, at most six powers of ten
+/// below the largest.
+#[must_use]
+pub fn scale(lobes: &[&Lobe], log: bool) -> Axis {
+    let values = lobes.iter().flat_map(|lobe| &lobe.values).copied().filter(|v| v.is_finite());
+    span(Kind::Polar, log, true, &values.collect::<Vec<_>>())
+}
+
+/// The length of a value on a scale: 1 at its end, 0 at its start and below.
+#[must_use]
+pub fn length(scale: &Axis, value: f64) -> f32 {
+    scale.place(value).clamp(0.0, 1.0) as f32
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,235 @@
+//! The fenced blocks of a step.
+
+use std::path::Path;
+
+use super::{
+    AnswerChoice, Block, Condition, Control, Goal, Run, Step, Task, controls, markdown,
+    problem::Problems,
+    state, window,
+    words::{Piece, lines, pair},
+};
+use crate::{
+    registry::Registry,
+    text::{did_you_mean, listed, quoted},
+};
+
+/// The kinds of blocks.
+const KINDS: [&str; 7] = ["equation", "scene", "view", "point", "predict", "do", "find"];
+/// The most answers to a question: they have the keys 1 to 9.
+const MOST_ANSWERS: usize = 9;
+
+/// A step, and the bytes of what is checked once its scene is known.
+#[derive(Debug, Default)]
+pub(super) struct Draft {
+    pub(super) step: Step,
+    /// The byte of its heading.
+    pub(super) at: usize,
+    pub(super) is_empty: bool,
+    /// The values of a block `view`, by setting.
+    pub(super) settings: Vec<(&'static str, usize)>,
+    /// The controls of a block `point`.
+    pub(super) points: Vec<usize>,
+    /// The condition of the task.
+    pub(super) until: Option<usize>,
+    /// True if the block `scene` could not be read.
+    pub(super) is_lost: bool,
+    pub(super) kinds: Vec<&'static str>,
+}
+
+/// Reads a block with what stands behind its opening fence.
+pub(super) fn read(
+    info: &str,
+    at: usize,
+    body: Piece,
+    draft: &mut Draft,
+    folder: Option<&Path>,
+    registry: &Registry,
+    problems: &mut Problems,
+) {
+    let Some(kind) = KINDS.into_iter().find(|kind| *kind == info) else {
+        let near = did_you_mean(info, KINDS.iter().map(|k| (*k, *k)));
+        let found = if info.is_empty() {
+            "a block of no kind".to_owned()
+        } else {
+            format!("a block {}", quoted(info))
+        };
+        problems.at(at, format!("this is {found}; a block is {}{near}", listed(&KINDS, "or")));
+        return;
+    };
+    if kind != "equation" && draft.kinds.contains(&kind) {
+        problems.at(
+            at,
+            format!("the step has two blocks {kind}; write all into one, or begin another step with ##"),
+        );
+        return;
+    }
+    draft.kinds.push(kind);
+    if body.text.trim().is_empty() {
+        problems.at(at, format!("the block {kind} is empty"));
+        return;
+    }
+    match kind {
+        "equation" => {
+            let lines: Vec<_> = lines(body.text, body.at).map(|line| line.text.trim_end()).collect();
+            draft.step.blocks.push(Block::Equation(lines.join("\n").trim_matches('\n').to_owned()));
+        }
+        "scene" => {
+            let before = problems.count();
+            draft.step.scene = Some(state::read(body, folder, registry, problems));
+            draft.is_lost = problems.count() > before;
+        }
+        "view" => {
+            let mut given = Vec::new();
+            for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
+                window::setting(&line, &mut given, &mut draft.settings, &mut draft.step.window, problems);
+            }
+        }
+        "point" => {
+            for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
+                let Some((key, value)) = pair(&line) else {
+                    problems.at(
+                        line.piece().at,
+                        "this is not KIND: NAME, as every line of a point block must be",
+                    );
+                    continue;
+                };
+                if let Some(control) = controls::control(key, value, registry, problems) {
+                    draft.points.push(value.at);
+                    draft.step.points.push(control);
+                }
+            }
+        }
+        _ => {
+            if draft.step.blocks.contains(&Block::Task) {
+                problems.at(at, "the step has two tasks; begin another step with ## for this one");
+                return;
+            }
+            draft.step.blocks.push(Block::Task);
+            draft.step.task = match kind {
+                "predict" => question(at, body, problems),
+                "do" => goal(at, body, draft, problems).map(Task::Do),
+                _ => goal(at, body, draft, problems).map(Task::Find),
+            };
+        }
+    }
+}
+
+/// The mark of an answer, and true if it is right.
+fn mark(text: &str) -> Option<(usize, bool)> {
+    [("[ ]", false), ("[]", false), ("[x]", true), ("[X]", true)]
+        .into_iter()
+        .find(|(mark, _)| text.starts_with(mark))
+        .map(|(mark, right)| (mark.len(), right))
+}
+
+/// Reads a question with its answers.
+fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
+    let before = problems.count();
+    let mut marks: Vec<(usize, usize, bool)> = Vec::new();
+    for line in lines(body.text, body.at) {
+        let piece = line.piece();
+        if let Some((length, right)) = mark(piece.text) {
+            marks.push((piece.at - body.at, length, right));
+        }
+    }
+    let end = marks.first().map_or(body.text.len(), |mark| mark.0);
+    let asked = body.part(0, end).trimmed();
+    if asked.text.is_empty() {
+        problems.at(at, "the question is missing; write it before the answers");
+    }
+    let text = markdown::inline(asked, problems);
+    let mut answers = Vec::new();
+    for (i, (start, length, right)) in marks.iter().enumerate() {
+        let end = marks.get(i + 1).map_or(body.text.len(), |next| next.0);
+        let answer = body.part(start + length, end);
+        let (said, feedback) = match answer.text.find('|') {
+            Some(bar) => (answer.part(0, bar), Some(answer.part(bar + 1, answer.text.len()))),
+            None => (answer, None),
+        };
+        if said.text.trim().is_empty() {
+            problems.at(body.at + start, "this answer is empty");
+        }
+        let feedback = feedback.map(Piece::trimmed).filter(|feedback| !feedback.text.is_empty());
+        if feedback.is_none() {
+            problems.at(body.at + start, "this answer has no feedback; write | and why it is right or wrong");
+        }
+        answers.push(AnswerChoice {
+            text: markdown::inline(said.trimmed(), problems),
+            right: *right,
+            feedback: feedback.map_or_else(Vec::new, |feedback| markdown::inline(feedback, problems)),
+        });
+    }
+    match answers.iter().filter(|answer| answer.right).count() {
+        _ if answers.len() < 2 => {
+            problems.at(
+                at,
+                "a question has two answers at least; begin each with [ ], and the right one with [x]",
+            );
+        }
+        _ if answers.len() > MOST_ANSWERS => {
+            problems.at(
+                at,
+                format!("a question has at most {MOST_ANSWERS} answers; this one has {}", answers.len()),
+            );
+        }
+        0 => problems.at(at, "the question has no right answer; mark it with [x] instead of [ ]"),
+        right if right == answers.len() => {
+            problems.at(at, "the question has no wrong answer; mark wrong ones with [ ]");
+        }
+        _ => {}
+    }
+    (problems.count() == before).then_some(Task::Predict { question: text, answers })
+}
+
+/// Reads a task with its condition.
+fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> Option<Goal> {
+    const PARTS: [&str; 2] = ["until", "hint"];
+    let before = problems.count();
+    // Each part goes on until the next begins; the text comes first.
+    let mut parts: Vec<(&str, usize, usize)> = vec![("", 0, 0)];
+    for line in lines(body.text, body.at) {
+        let piece = line.piece();
+        let Some((key, value)) = pair(&line) else { continue };
+        let Some(part) = PARTS.into_iter().find(|part| *part == key.text) else { continue };
+        if parts.iter().any(|(known, ..)| *known == part) {
+            problems.at(piece.at, format!("{part} is given twice; remove one"));
+        }
+        parts.push((part, piece.at - body.at, value.at - body.at));
+    }
+    let piece = |name: &str| {
+        let i = parts.iter().position(|(part, ..)| *part == name)?;
+        let end = parts.get(i + 1).map_or(body.text.len(), |next| next.1);
+        Some(body.part(parts[i].2, end).trimmed())
+    };
+    let text = piece("").map_or_else(Vec::new, |text| markdown::inline(text, problems));
+    if text.is_empty() {
+        problems.at(at, "the task is missing; write what the learner shall do before until:");
+    }
+    let mut hint: Option<Vec<Run>> = None;
+    if let Some(written) = piece("hint") {
+        if written.text.is_empty() {
+            problems.at(written.at, "the hint is empty");
+        }
+        hint = Some(markdown::inline(written, problems));
+    }
+    let Some(written) = piece("until").filter(|until| !until.text.is_empty()) else {
+        problems.at(at, "the task has no condition; add a line until: with the condition that ends it");
+        return None;
+    };
+    draft.until = Some(written.at);
+    match Condition::parse(written.text) {
+        Ok(until) => (problems.count() == before).then_some(Goal { text, until, hint }),
+        Err((inside, what)) => {
+            problems.at(written.at + inside, what);
+            None
+        }
+    }
+}
+
+/// The part that a control is, if it is one.
+pub(super) fn part(control: &Control) -> Option<&super::PartName> {
+    match control {
+        Control::Part(part) => Some(part),
+        _ => None,
+    }
+}

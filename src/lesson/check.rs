@@ -1,0 +1,109 @@
+//! The steps one after the other, with the scenes in which they begin: parts, views and conditions that do not fit.
+
+use super::{
+    Situation, WindowFacts,
+    blocks::{self, Draft},
+    condition::Knowledge,
+    problem::Problems,
+};
+use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plural};
+
+/// Checks all steps from the scene of the start on.
+pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, problems: &mut Problems) {
+    let mut scene = start.clone();
+    let mut window = WindowFacts::default();
+    let mut known = Knowledge { scene: true, ..Knowledge::default() };
+    for draft in drafts {
+        // Without the scene that is meant, everything after it would seem wrong.
+        if draft.is_lost {
+            return;
+        }
+        if let Some(change) = &draft.step.scene {
+            match change.applied(&scene, registry) {
+                Ok(changed) => scene = changed,
+                Err(found) => {
+                    for (at, what) in found {
+                        problems.at(at, what);
+                    }
+                    return;
+                }
+            }
+            known.scene |= change.opens();
+        }
+        step(draft, &scene, &mut window, &mut known, registry, problems);
+        if draft.until.is_some() {
+            // The learner changes things from here on.
+            known = Knowledge::default();
+        }
+    }
+}
+
+fn step(
+    draft: &Draft,
+    scene: &Scene,
+    window: &mut WindowFacts,
+    known: &mut Knowledge,
+    registry: &Registry,
+    problems: &mut Problems,
+) {
+    let place = |setting: &str| {
+        draft.settings.iter().find(|(known, _)| *known == setting).map_or(draft.at, |(_, at)| *at)
+    };
+    let change = &draft.step.window;
+    window.views = scene.variants.len() + 1;
+    if let Some(active) = change.active {
+        if active >= window.views {
+            let views = plural(window.views, "view");
+            problems
+                .at(place("active"), format!("there is no view {}: the scene has {views}", LETTERS[active]));
+        } else {
+            (window.active, known.active) = (active, true);
+        }
+    }
+    window.active = window.active.min(window.views - 1);
+    if let Some(channel) = change.channel {
+        (window.channel, known.channel) = (channel, true);
+    }
+    if let Some(terms) = change.terms {
+        (window.terms, known.terms) = (terms, true);
+    }
+    if let Some(explain) = change.explain {
+        (window.explain, known.explain) = (explain, true);
+    }
+    if let Some(plots) = change.plots {
+        (window.plots, known.plots) = (plots, true);
+    }
+    if let Some(part) = &change.select {
+        known.selection = part.find(scene);
+        if known.selection.is_none() {
+            problems.at(place("select"), format!("there is no such part: {}", part.known(scene)));
+        }
+    }
+    for (control, at) in draft.step.points.iter().zip(&draft.points) {
+        if let Some(part) = blocks::part(control).filter(|part| part.find(scene).is_none()) {
+            problems.at(*at, format!("there is no such part: {}", part.known(scene)));
+        }
+    }
+    let goal = draft.step.task.as_ref().and_then(|task| task.goal());
+    let (Some(goal), Some(at)) = (goal, draft.until) else { return };
+    let Some((seen, _)) = scene.seen(window.active, registry) else { return };
+    let mistakes = goal.until.problems(&seen, known.selection, registry);
+    let is_sound = mistakes.is_empty();
+    for (inside, what) in mistakes {
+        problems.at(at + inside, what);
+    }
+    let situation = Situation {
+        scene: &seen,
+        registry,
+        selection: known.selection.unwrap_or_default(),
+        window: *window,
+        probe: None,
+        pinned: false,
+    };
+    if is_sound && goal.until.holds_at_once(&situation, known) {
+        problems.at(
+            at,
+            "the task is already done when the step begins; change the condition, or the scene before it",
+        );
+    }
+}

@@ -1,0 +1,334 @@
+//! Tests of conditions.
+
+use super::*;
+use crate::{
+    channel::DebugChannel,
+    curves::Kind as Plot,
+    document::Selection,
+    explain,
+    lesson::WindowFacts,
+    optics::{TermSelection, colour::Encoding},
+    parameter::Value as Given,
+    reference::Settings,
+    registry::Registry,
+    scene::Scene,
+};
+
+/// The default scene under Blinn–Phong with this exponent.
+fn scene(alpha: i64) -> Scene {
+    let mut scene = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
+    scene.objects[0].material.set("alpha", Given::Integer(alpha));
+    scene
+}
+
+fn situation<'a>(scene: &'a Scene, registry: &'a Registry) -> Situation<'a> {
+    let window = WindowFacts {
+        views: 2,
+        active: 1,
+        channel: Some(DebugChannel::NDotL),
+        terms: TermSelection::Specular,
+        plots: Some(Plot::Albedo),
+        explain: true,
+        presenting: false,
+    };
+    Situation { scene, registry, selection: Selection::Object(0), window, probe: None, pinned: false }
+}
+
+fn condition(text: &str) -> Condition {
+    Condition::parse(text).unwrap_or_else(|(at, what)| panic!("{text}: {at}: {what}"))
+}
+
+#[test]
+fn every_quantity_of_scene_and_window_has_its_value() {
+    let registry = Registry::builtin();
+    let scene = scene(20);
+    let situation = situation(&scene, &registry);
+    for (text, holds) in [
+        ("scene.objects[0].size = 2", true),
+        ("scene.objects[0].size = 2.1", false),
+        ("scene.objects[0].material.k_d = 0.8", true),
+        ("scene.objects[0].material.k_d <= 0.8", true),
+        ("scene.objects[0].material.k_d > 0.8", false),
+        ("scene.objects[0].reflection_model = \"blinn_phong\"", true),
+        ("scene.objects[0].rotation[2] = 0", true),
+        ("scene.objects[0].visible", true),
+        ("scene.objects.count = 1 and scene.lights.count = 1", true),
+        ("scene.variants.count > 0", false),
+        ("scene.lights[0].intensity ≥ 20", true),
+        ("scene.lights[0].position[1] = 8", true),
+        ("scene.display.exposure = 0", true),
+        ("scene.display.encoding != \"off\"", true),
+        ("scene.observer.field_of_view = 45°", true),
+        ("scene.scene_size.width = 1000%", true),
+        ("scene.shading_model = \"gouraud\"", true),
+        ("scene.comparison.layout = \"single\"", true),
+        ("window.selected = \"object\" and window.selected_index = 1", true),
+        ("window.channel = \"n_dot_l\"", true),
+        ("window.channel = \"none\"", false),
+        ("window.terms = \"specular\" and window.shows_term_alone", true),
+        ("window.views = 2 and window.active = \"B\"", true),
+        ("window.plots = \"albedo\"", true),
+        ("window.explain and not window.presenting", true),
+        ("window.reflection_model = \"blinn_phong\"", true),
+        ("window.shading_model = \"phong\"", false),
+        ("knob.alpha = 20", true),
+        ("knob.alpha > 20", false),
+        ("knob.size ≤ 2 and knob.exposure = 0", true),
+        ("20 = knob.alpha", true),
+        ("knob.alpha = 19 or knob.alpha = 20", true),
+        ("not (knob.alpha = 19 or knob.alpha = 20)", false),
+        // `and` binds closer.
+        ("knob.alpha = 20 or knob.alpha = 19 and knob.alpha = 18", true),
+        ("(knob.alpha = 20 or knob.alpha = 19) and knob.alpha = 18", false),
+        ("knob.alpha = 2e1", true),
+        ("knob.alpha > -1", true),
+    ] {
+        assert_eq!(condition(text).holds(&situation), holds, "{text}");
+        assert_eq!(condition(text).missing(&situation), None, "{text}");
+    }
+}
+
+#[test]
+fn curves_follow_the_parameters_of_the_selected_object() {
+    let registry = Registry::builtin();
+    let width = |alpha: i64| {
+        let scene = scene(alpha);
+        let quantity = quantity::asked("curve.highlight_width").expect("known");
+        match quantity.value(&situation(&scene, &registry)) {
+            Ok(Value::Number(width)) => width,
+            other => panic!("{other:?}"),
+        }
+    };
+    // cos^α = ½ about the normal by the half vector, so twice as far for the viewer, on both sides.
+    for alpha in [100, 1000] {
+        let expected = 4.0 * 0.5f64.powf(1.0 / alpha as f64).acos().to_degrees();
+        assert!((width(alpha) / expected - 1.0).abs() < 0.01, "{alpha}: {} {expected}", width(alpha));
+    }
+    let mut matte = Scene::default();
+    matte.objects[0].material.set("base_colour", Given::Colour([90, 200, 40]));
+    let matte = situation(&matte, &registry);
+    // Lambert reflects its colour, whatever the angle.
+    let object = &matte.scene.objects[0];
+    let entry = registry.model("lambert").expect("built in");
+    let colour = object.material.colour(entry.parameter("base_colour").expect("has one"), Encoding::Srgb);
+    let expected = f64::from(colour.max_element());
+    for text in ["curve.albedo(30)", "curve.albedo(80)", "curve.largest_albedo"] {
+        let asked = quantity::asked(text).expect("known");
+        let Ok(Value::Number(found)) = asked.value(&matte) else { panic!("{text}") };
+        assert!((found - expected).abs() < 1e-4, "{text}: {found} {expected}");
+    }
+    assert!(condition("curve.peak = 0").holds(&matte));
+    assert_eq!(
+        condition("curve.highlight_width < 5").missing(&matte).as_deref(),
+        Some("Lambert has no highlight")
+    );
+    assert!(!condition("curve.highlight_width < 5").holds(&matte));
+    assert!(!condition("not curve.highlight_width < 5").holds(&matte), "undecided");
+    let room = Situation { selection: Selection::Room, ..matte };
+    assert_eq!(condition("curve.peak > 0").missing(&room).as_deref(), Some("no object is selected"));
+}
+
+#[test]
+fn the_pinned_pixel_is_that_of_the_explanation() {
+    let registry = Registry::builtin();
+    let mut scene = scene(20);
+    scene.objects[0].tessellation = Some(3);
+    let settings = Settings { width: 320, height: 180, ..Settings::default() };
+    let explained = |at| explain::pixel(&scene, &registry, &settings, at).expect("inside");
+    let middle = explained([160, 90]);
+    let nothing = situation(&scene, &registry);
+    assert_eq!(condition("probe.red > 0").missing(&nothing).as_deref(), Some("nothing is pinned"));
+    assert!(condition("not probe.pinned").holds(&nothing));
+    let at = |probe| Situation { probe: Some(probe), pinned: true, ..situation(&scene, &registry) };
+    let pinned = at(&middle);
+    let [red, green, blue] = middle.code();
+    let spot = middle.seen.as_ref().and_then(|seen| seen.per_pixel.as_ref()).expect("Gouraud");
+    let lit = spot.brightest()[0];
+    let cosine = lit.geometry.expect("a point light").cosine("N·L");
+    for text in [
+        format!("probe.red = {red} and probe.green = {green} and probe.blue = {blue}"),
+        "probe.pinned and not probe.background and probe.object = \"object 1\"".to_owned(),
+        format!("probe.n_dot_l = {cosine} and probe.angle_n_l = {}", cosine.acos().to_degrees()),
+        format!("probe.light_distance = {}", lit.distance.expect("a point light")),
+        "probe.luminance > 0 and not probe.clipped".to_owned(),
+        "probe.n_dot_v > 0.9 and probe.angle_n_v < 26 and probe.n_dot_h > probe.n_dot_l".to_owned(),
+    ] {
+        assert!(condition(&text).holds(&pinned), "{text}: {:?}", condition(&text).missing(&pinned));
+    }
+    let corner = explained([0, 0]);
+    assert!(condition("probe.background").holds(&at(&corner)));
+    assert_eq!(
+        condition("probe.n_dot_l > 0").missing(&at(&corner)).as_deref(),
+        Some("there is no object at the pinned pixel")
+    );
+}
+
+#[test]
+fn the_brightest_vertex_is_found_where_it_is_and_nowhere_else() {
+    let registry = Registry::builtin();
+    let mut scene = scene(20);
+    scene.objects[0].tessellation = Some(3);
+    let settings = Settings { width: 160, height: 90, ..Settings::default() };
+    let find = condition("probe.brightest_vertex");
+    let mut explainer = explain::Explainer::default();
+    let (mut found, mut brightest_found, mut brightest) = (0, 0.0f32, 0.0f32);
+    for y in (0..90).step_by(1) {
+        for x in (40..120).step_by(1) {
+            let explained = explainer.pixel(&scene, &registry, &settings, [x, y]).expect("inside");
+            let Some(seen) = &explained.seen else { continue };
+            let light = crate::optics::colour::luminance(seen.light);
+            brightest = brightest.max(light);
+            let here = Situation { probe: Some(&explained), pinned: true, ..situation(&scene, &registry) };
+            if find.holds(&here) {
+                found += 1;
+                brightest_found = brightest_found.max(light);
+            }
+        }
+    }
+    assert!(found > 0 && found < 400, "{found}");
+    assert_eq!(brightest_found, brightest, "the brightest pixel is beside the brightest vertex");
+    scene.shading_model = "phong".to_owned();
+    let explained = explain::pixel(&scene, &registry, &settings, [80, 45]).expect("inside");
+    let here = Situation { probe: Some(&explained), pinned: true, ..situation(&scene, &registry) };
+    assert!(!find.holds(&here) && find.missing(&here).is_some());
+}
+
+#[test]
+fn a_highlight_is_where_the_specular_term_wins() {
+    let registry = Registry::builtin();
+    let mut scene = scene(50);
+    scene.shading_model = "phong".to_owned();
+    scene.objects[0].material.set("k_s", Given::Number(0.5));
+    scene.objects[0].material.set("base_colour", Given::Colour([20; 3]));
+    let settings = Settings { width: 160, height: 90, ..Settings::default() };
+    let text = condition("probe.is_highlight");
+    let mut angles: [f32; 2] = [0.0, 180.0];
+    let mut explainer = explain::Explainer::default();
+    for y in 0..90 {
+        for x in 40..120 {
+            let explained = explainer.pixel(&scene, &registry, &settings, [x, y]).expect("inside");
+            let Some(seen) = &explained.seen else { continue };
+            let angle =
+                explain::angle(seen.spots[0].lights[0].geometry.expect("a point light").cosine("N·H"));
+            let here = Situation { probe: Some(&explained), pinned: true, ..situation(&scene, &registry) };
+            if text.holds(&here) {
+                angles[0] = angles[0].max(angle);
+            } else {
+                angles[1] = angles[1].min(angle);
+            }
+        }
+    }
+    // Near the half vector, and nowhere else.
+    assert!(angles[0] > 3.0 && angles[0] < 30.0 && angles[1] > 3.0, "{angles:?}");
+}
+
+/// Conditions that cannot be read: the condition, the byte, and the beginning of the sentence.
+const BROKEN: &[(&str, usize, &str)] = &[
+    ("", 0, "expected a quantity or a value, not the end"),
+    ("knob.alpha <", 12, "expected a quantity or a value, not the end"),
+    ("knob.alpha < < 3", 13, "expected a quantity or a value, not \"<\""),
+    ("knob.alpha 3", 11, "expected and, or, or the end of the condition, not \"3\""),
+    ("(knob.alpha < 3", 0, "this bracket is never closed"),
+    ("knob.alpha < 3)", 14, "there is no opening bracket"),
+    ("1 < knob.alpha < 3", 15, "a comparison has two sides"),
+    ("knob.alpha < 3 && probe.pinned", 15, "conditions are joined by the word and"),
+    ("knob.alpha < 3 || probe.pinned", 15, "conditions are joined by the word or"),
+    ("!probe.pinned", 0, "a condition is negated by the word not"),
+    ("knob.alpha < 3x", 13, "\"3x\" is not a number"),
+    ("knob.alpha < 1e999", 13, "\"1e999\" is not a number"),
+    ("knob.alpha < NaN", 13, "there is no quantity \"NaN\""),
+    ("window.terms = \"all", 15, "this text is never closed"),
+    ("window.terms = 'all'", 15, "text needs straight double quotes"),
+    ("window.terms = all", 15, "there is no quantity \"all\"; text needs double quotes"),
+    ("probe.pined", 0, "there is no quantity \"probe.pined\"; did you mean \"probe.pinned\"?"),
+    ("curve.albedo < 1", 0, "the angle of the viewer is missing"),
+    ("curve.albedo(90) < 1", 13, "the angle is \"90\", but it must be from 0° to less than 90°"),
+    ("curve.albedo(NaN) < 1", 13, "the angle is \"NaN\""),
+    ("curve.peak(3) < 1", 0, "there is no quantity \"curve.peak(3)\""),
+    ("scene.objects[1 = 2", 13, "this bracket is never closed"),
+    ("scene.objects[-1].size = 2", 14, "\"-1\" is no place in a list"),
+    ("scene. = 2", 0, "the path is missing"),
+    ("§", 0, "\"§\" has no meaning in a condition"),
+];
+
+#[test]
+fn broken_conditions_say_where_and_why() {
+    for (text, at, expected) in BROKEN {
+        match Condition::parse(text) {
+            Ok(read) => panic!("{read:?}"),
+            Err((found, what)) => {
+                assert!(what.starts_with(expected), "{text}: {what}");
+                assert_eq!(found, *at, "{text}: {what}");
+            }
+        }
+    }
+    for deep in ["(".repeat(5000), "not ".repeat(5000)] {
+        assert!(Condition::parse(&deep).is_err_and(|(_, what)| what.contains("24 levels")));
+    }
+    // Long is not deep.
+    let long = vec!["knob.alpha < 3"; 2000].join(" and ");
+    assert!(Condition::parse(&long).is_ok());
+}
+
+/// Conditions that make no sense in the default scene, with its object selected.
+const SENSELESS: &[(&str, usize, &str)] = &[
+    ("scene.objects[3].size > 1", 0, "there is no objects[3]: the scene has 1 object"),
+    ("scene.objects[0].sise > 1", 0, "objects[0] has no \"sise\"; did you mean \"size\"?"),
+    ("scene.objekts[0].size > 1", 0, "a scene has no \"objekts\"; did you mean \"objects\"?"),
+    ("scene.objects > 1", 0, "objects is a list"),
+    ("scene.objects[0].position > 1", 0, "objects[0].position is a list"),
+    ("scene.display > 1", 0, "display is no single value"),
+    ("scene.objects[0].size.x > 1", 0, "objects[0].size is a single value"),
+    (
+        "scene.objects[0].material.alhpa > 1",
+        0,
+        "objects[0].material has no \"alhpa\"; did you mean \"alpha\"?",
+    ),
+    ("knob.alhpa > 1", 0, "there is no parameter \"alhpa\"; did you mean \"alpha\"?"),
+    ("knob.base_colour = 1", 0, "base_colour is three numbers"),
+    ("knob.cone_angle > 1", 0, "what the step selects has no knob \"cone_angle\""),
+    ("window.terms < \"all\"", 0, "this is a text, which is not greater or less"),
+    ("probe.pinned > false", 0, "this is true or false, which is not greater or less"),
+    ("probe.red = \"red\"", 12, "this is a text, and the other side a number"),
+    ("probe.pinned = 1", 15, "this is a number, and the other side true or false"),
+    ("probe.red", 0, "this is a number, and alone neither true nor false"),
+    ("window.terms", 0, "this is a text, and alone neither true nor false"),
+    ("window.channel = \"n_dot_q\"", 17, "window.channel is never \"n_dot_q\""),
+    (
+        "window.reflection_model = \"fong\"",
+        26,
+        "window.reflection_model is never \"fong\"; did you mean \"phong\"?",
+    ),
+    ("scene.shading_model = \"goraud\"", 22, "scene.shading_model is never \"goraud\""),
+    ("1 = 2", 0, "the condition asks for no quantity"),
+];
+
+#[test]
+fn senseless_conditions_say_where_and_why() {
+    let registry = Registry::builtin();
+    let scene = Scene::default();
+    for (text, at, expected) in SENSELESS {
+        let found = condition(text).problems(&scene, Some(Selection::Object(0)), &registry);
+        assert_eq!(found.len(), 1, "{text}: {found:?}");
+        assert!(found[0].1.starts_with(expected), "{text}: {}", found[0].1);
+        assert_eq!(found[0].0, *at, "{text}");
+    }
+    // A curve needs an object.
+    let room = condition("curve.peak > 1").problems(&scene, Some(Selection::Room), &registry);
+    assert_eq!(room.len(), 1);
+    assert!(condition("curve.peak > 1").problems(&scene, None, &registry).is_empty());
+    // The path of a variant may have no value yet.
+    let sound = "scene.comparison.layout = \"wipe\" and knob.alpha > 5 and probe.red < 5 or window.views > 1";
+    assert_eq!(condition(sound).problems(&scene, Some(Selection::Object(0)), &registry), []);
+}
+
+#[test]
+fn every_quantity_is_reachable_by_its_name() {
+    for quantity in QUANTITIES {
+        let name =
+            quantity.name.replace("PATH", "name").replace("PARAMETER", "alpha").replace("DEGREES", "30");
+        let asked = quantity::asked(&name).unwrap_or_else(|(_, what)| panic!("{what}"));
+        assert_eq!(asked.quantity.name, quantity.name);
+        assert!(!quantity.meaning.is_empty() && !quantity.meaning.ends_with('.'), "{name}");
+    }
+}

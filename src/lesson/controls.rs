@@ -1,0 +1,196 @@
+//! The controls that a lesson can point at, and the parts of a scene that it can name.
+
+use super::{problem::Problems, words::Piece};
+use crate::{
+    document::Selection,
+    registry::Registry,
+    scene::Scene,
+    text::{did_you_mean, listed, quoted},
+};
+
+/// A control of the window.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// The knob of a parameter, by its name in scene files; `exposure` and the other settings of the display too.
+    Knob(String),
+    /// A menu of the window: one of [`MENUS`].
+    Menu(String),
+    /// Buttons of the window: one of [`BUTTONS`].
+    Button(String),
+    /// A tab of the strip below the picture: one of [`TABS`].
+    Tab(String),
+    /// A part in the list at the left.
+    Part(PartName),
+}
+
+/// The menus of the window.
+pub const MENUS: &[&str] = &["File", "Edit", "View", "Help"];
+/// The buttons above the picture.
+pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
+/// The tabs below the picture, by id.
+pub const TABS: &[&str] = &["explain", "plots", "messages"];
+/// The knobs that belong to no declared parameter.
+pub const KNOBS: &[&str] = &[
+    "exposure",
+    "tone_mapping",
+    "encoding",
+    "intensity",
+    "luminous_flux",
+    "colour",
+    "colour_temperature",
+    "size",
+    "tessellation",
+    "field_of_view",
+];
+
+/// A part of a scene as a lesson names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PartName {
+    /// The room.
+    Room,
+    /// The observer.
+    Observer,
+    /// A light.
+    Light(Which),
+    /// An object.
+    Object(Which),
+}
+
+/// One of several parts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// By its number in the list, from 1.
+    Number(usize),
+    /// By its name.
+    Name(String),
+}
+
+impl Which {
+    fn find<'a>(&self, mut names: impl ExactSizeIterator<Item = Option<&'a str>>) -> Option<usize> {
+        match self {
+            Self::Number(number) => number.checked_sub(1).filter(|index| *index < names.len()),
+            Self::Name(name) => names.position(|known| known == Some(name)),
+        }
+    }
+}
+
+impl PartName {
+    /// The part in a scene, if it has it.
+    #[must_use]
+    pub fn find(&self, scene: &Scene) -> Option<Selection> {
+        match self {
+            Self::Room => Some(Selection::Room),
+            Self::Observer => Some(Selection::Observer),
+            Self::Light(which) => {
+                which.find(scene.lights.iter().map(|l| l.name.as_deref())).map(Selection::Light)
+            }
+            Self::Object(which) => {
+                which.find(scene.objects.iter().map(|o| o.name.as_deref())).map(Selection::Object)
+            }
+        }
+    }
+
+    /// The parts of that kind in a scene, for messages.
+    pub(super) fn known(&self, scene: &Scene) -> String {
+        let list = |count: usize, what: &str, names: Vec<&str>| {
+            let names: Vec<_> = names.iter().take(6).map(|name| quoted(name)).collect();
+            let called =
+                if names.is_empty() { String::new() } else { format!(", {}", listed(&names, "and")) };
+            format!("the scene has {}{called}", crate::text::plural(count, what))
+        };
+        match self {
+            Self::Light(_) => list(
+                scene.lights.len(),
+                "light",
+                scene.lights.iter().filter_map(|l| l.name.as_deref()).collect(),
+            ),
+            _ => list(
+                scene.objects.len(),
+                "object",
+                scene.objects.iter().filter_map(|o| o.name.as_deref()).collect(),
+            ),
+        }
+    }
+
+    /// Reads `room`, `observer`, `object 1`, `light "key light"`.
+    pub(super) fn parse(piece: Piece) -> Result<Self, String> {
+        let rule = "a part must be room, observer, object N or light N, with its number from 1 or its name in quotes";
+        let (kind, which) = piece.text.split_once(char::is_whitespace).unwrap_or((piece.text, ""));
+        let which = which.trim();
+        let of = |make: fn(Which) -> Self| {
+            let name = which.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+            match (name, which.parse()) {
+                (Some(name), _) => Ok(make(Which::Name(name.to_owned()))),
+                (None, Ok(number)) if number > 0 => Ok(make(Which::Number(number))),
+                _ => Err(format!("this is {}, but {rule}", quoted(piece.text))),
+            }
+        };
+        match kind {
+            "room" if which.is_empty() => Ok(Self::Room),
+            "observer" if which.is_empty() => Ok(Self::Observer),
+            "light" => of(Self::Light),
+            "object" => of(Self::Object),
+            _ => Err(format!("this is {}, but {rule}", quoted(piece.text))),
+        }
+    }
+}
+
+/// The names of all parameters: of materials, lights and shapes.
+pub(super) fn parameters(registry: &Registry) -> Vec<&'static str> {
+    let lights = registry.lights().iter().flat_map(|entry| entry.parameters);
+    let shapes = registry.shapes().iter().flat_map(|entry| entry.parameters);
+    registry.material_parameters().chain(lights).chain(shapes).map(|p| p.name).collect()
+}
+
+/// Reads a line of a block `point`; a part comes with its byte, to be looked for in the scene.
+pub(super) fn control(
+    key: Piece,
+    value: Piece,
+    registry: &Registry,
+    problems: &mut Problems,
+) -> Option<Control> {
+    let mut one_of = |what: &str, known: &[&'static str]| {
+        let found = known.iter().find(|known| **known == value.text).map(|known| (*known).to_owned());
+        if found.is_none() {
+            let near = did_you_mean(value.text, known.iter().map(|k| (*k, *k)));
+            // Of parameters there are too many to name.
+            let all = if known.len() > 12 {
+                String::new()
+            } else {
+                format!("; it must be {}", listed(known, "or"))
+            };
+            problems.at(value.at, format!("there is no {what} {}{all}{near}", quoted(value.text)));
+        }
+        found
+    };
+    match key.text {
+        "knob" => {
+            let mut known = parameters(registry);
+            known.extend(KNOBS);
+            one_of("knob", &known).map(Control::Knob)
+        }
+        "menu" => one_of("menu", MENUS).map(Control::Menu),
+        "button" => one_of("button", BUTTONS).map(Control::Button),
+        "tab" => one_of("tab", TABS).map(Control::Tab),
+        "part" => match PartName::parse(value) {
+            Ok(part) => Some(Control::Part(part)),
+            Err(what) => {
+                problems.at(value.at, what);
+                None
+            }
+        },
+        other => {
+            let known = ["knob", "menu", "button", "tab", "part"];
+            let near = did_you_mean(other, known.iter().map(|k| (*k, *k)));
+            problems.at(
+                key.at,
+                format!(
+                    "a lesson cannot point at a {}; it points at {}{near}",
+                    quoted(other),
+                    listed(&known, "or")
+                ),
+            );
+            None
+        }
+    }
+}

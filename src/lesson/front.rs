@@ -1,0 +1,106 @@
+//! The front matter: the lines between two lines `---` at the top of a lesson.
+
+use super::{
+    problem::Problems,
+    words::{Line, lines, pair},
+};
+use crate::text::{did_you_mean, quoted};
+
+/// The keys, in the order of the documentation.
+const KEYS: [&str; 4] = ["title", "summary", "minutes", "scene"];
+/// The longest lesson, minutes.
+const LONGEST: u32 = 120;
+
+/// The front matter.
+#[derive(Debug, Default)]
+pub(super) struct Front {
+    pub(super) title: String,
+    pub(super) summary: String,
+    pub(super) minutes: Option<u32>,
+    /// The name of the scene and its byte.
+    pub(super) scene: Option<(usize, String)>,
+    /// The byte at which the steps begin.
+    pub(super) end: usize,
+}
+
+/// Reads the front matter of a text.
+pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
+    let mut front = Front::default();
+    let mut all = lines(text, 0);
+    let is_fence = |line: &Line| line.text.trim_end() == "---";
+    let Some(first) = all.find(|line| !line.text.trim().is_empty()) else {
+        problems.at(0, "the lesson is empty; begin it with a line ---, its title and its summary");
+        return front;
+    };
+    if !is_fence(&first) {
+        problems.at(
+            first.at,
+            "the front matter is missing; begin the file with a line ---, then title: and summary:, then a line ---",
+        );
+        return front;
+    }
+    let mut given: Vec<&str> = Vec::new();
+    let mut closed = false;
+    for line in all {
+        front.end = line.end;
+        if is_fence(&line) {
+            closed = true;
+            break;
+        }
+        if line.text.trim().is_empty() {
+            continue;
+        }
+        if line.text.starts_with("##") {
+            front.end = line.at;
+            break;
+        }
+        let Some((key, value)) = pair(&line) else {
+            problems.at(line.at, "this is not KEY: VALUE, as every line of the front matter must be");
+            continue;
+        };
+        let Some(known) = KEYS.into_iter().find(|known| *known == key.text) else {
+            let near = did_you_mean(key.text, KEYS.iter().map(|k| (*k, *k)));
+            problems.at(
+                key.at,
+                format!(
+                    "the front matter has no {}; it has title, summary, minutes and scene{near}",
+                    quoted(key.text)
+                ),
+            );
+            continue;
+        };
+        if given.contains(&known) {
+            problems.at(key.at, format!("{known} is given twice; remove one"));
+            continue;
+        }
+        given.push(known);
+        if value.text.is_empty() {
+            problems.at(value.at, format!("{known} is empty"));
+            continue;
+        }
+        match known {
+            "title" => value.text.clone_into(&mut front.title),
+            "summary" => value.text.clone_into(&mut front.summary),
+            "scene" => front.scene = Some((value.at, value.text.to_owned())),
+            _ => match value.text.parse() {
+                Ok(minutes @ 1..=LONGEST) => front.minutes = Some(minutes),
+                _ => problems.at(
+                    value.at,
+                    format!(
+                        "minutes is {}, but it must be a whole number from 1 to {LONGEST}",
+                        quoted(value.text)
+                    ),
+                ),
+            },
+        }
+    }
+    if !closed {
+        problems.at(first.at, "the front matter is never closed; end it with a line ---");
+    }
+    for key in ["title", "summary"] {
+        if !given.contains(&key) {
+            problems.at(first.at, format!("the front matter has no {key}; add a line {key}: …"));
+        }
+    }
+    front
+}

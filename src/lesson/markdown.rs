@@ -1,0 +1,329 @@
+//! From Markdown to steps: headings, paragraphs, lists and fenced blocks, all else is refused with its place.
+
+use std::path::Path;
+
+use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
+
+use super::{Block, Run, RunStyle, Step, blocks, blocks::Draft, plain, problem::Problems, words::Piece};
+use crate::registry::Registry;
+
+/// Lists within lists are no deeper than this.
+const DEEPEST_LIST: usize = 3;
+
+/// Markdown beyond CommonMark: recognised, so that it is refused instead of shown as signs.
+fn options() -> Options {
+    Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH
+}
+
+/// Gathers text with its styles.
+#[derive(Default)]
+struct Runs {
+    runs: Vec<Run>,
+    styles: Vec<RunStyle>,
+}
+
+impl Runs {
+    fn push(&mut self, text: &str, style: RunStyle) {
+        match self.runs.last_mut() {
+            Some(last) if last.style == style => last.text.push_str(text),
+            _ => self.runs.push(Run { text: text.to_owned(), style }),
+        }
+    }
+
+    fn take(&mut self) -> Vec<Run> {
+        self.styles.clear();
+        std::mem::take(&mut self.runs)
+    }
+
+    /// Takes text and styles; false for everything else.
+    fn takes(&mut self, event: &Event) -> bool {
+        let style = self.styles.last().copied().unwrap_or_default();
+        match event {
+            Event::Text(text) => self.push(text, style),
+            Event::Code(text) => self.push(text, RunStyle::Code),
+            Event::SoftBreak => self.push(" ", style),
+            Event::HardBreak => self.push("\n", style),
+            Event::Start(Tag::Emphasis) => self.styles.push(RunStyle::Emphasis),
+            Event::Start(Tag::Strong) => self.styles.push(RunStyle::Strong),
+            Event::End(TagEnd::Emphasis | TagEnd::Strong) => {
+                self.styles.pop();
+            }
+            _ => return false,
+        }
+        true
+    }
+}
+
+/// The reason why an event is refused.
+fn refusal(event: &Event) -> &'static str {
+    match event {
+        Event::Start(Tag::Image { .. }) => {
+            "images are not shown; a scene block shows the scene itself, in the picture"
+        }
+        Event::Start(Tag::Link { .. } | Tag::FootnoteDefinition(_)) | Event::FootnoteReference(_) => {
+            "links and footnotes are not shown; write the words alone, and \\[ for the sign ["
+        }
+        Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::HtmlBlock) => {
+            "HTML is not shown; write Markdown, and \\< for the sign <"
+        }
+        Event::Start(Tag::Table(_)) => "tables are not shown; write a list",
+        Event::Start(Tag::BlockQuote(_)) => {
+            "quotations are not shown; write a paragraph, and \\> for the sign >"
+        }
+        Event::Start(Tag::Strikethrough) => "struck text is not shown; write \\~ for the sign ~",
+        Event::Rule => "rules are not shown; a heading ## begins the next step",
+        _ => "this Markdown is not shown; a lesson has headings ##, paragraphs, lists and fenced blocks",
+    }
+}
+
+/// Reads a text that is one paragraph: a question, an answer, a hint.
+pub(super) fn inline(piece: Piece, problems: &mut Problems) -> Vec<Run> {
+    let mut runs = Runs::default();
+    let (mut skipped, mut paragraphs) = (0usize, 0);
+    for (event, range) in Parser::new_ext(piece.text, options()).into_offset_iter() {
+        match &event {
+            Event::Start(_) if skipped > 0 => skipped += 1,
+            Event::End(_) if skipped > 0 => skipped -= 1,
+            _ if skipped > 0 || runs.takes(&event) => {}
+            Event::Start(Tag::Paragraph) => {
+                paragraphs += 1;
+                if paragraphs == 2 {
+                    problems.at(piece.at + range.start, "this must be one paragraph; remove the empty line");
+                }
+            }
+            Event::End(_) => {}
+            other => {
+                let what = match other {
+                    Event::Start(Tag::List(_) | Tag::Heading { .. } | Tag::CodeBlock(_)) => {
+                        "this must be a paragraph, without lists, headings and blocks"
+                    }
+                    other => refusal(other),
+                };
+                problems.at(piece.at + range.start, what);
+                skipped = usize::from(matches!(other, Event::Start(_)));
+            }
+        }
+    }
+    runs.take()
+}
+
+/// Reads the steps of a lesson.
+struct Reader<'a, 'p, 'q> {
+    whole: &'a str,
+    folder: Option<&'a Path>,
+    registry: &'a Registry,
+    problems: &'p mut Problems<'q>,
+    steps: Vec<Draft>,
+    runs: Runs,
+    /// The lists around the place, with the number of the next item.
+    lists: Vec<Option<u64>>,
+    /// The items around the place: their numbers, and true once they have their text.
+    items: Vec<(Option<u64>, bool)>,
+    /// Said once.
+    headless: bool,
+}
+
+/// Reads the steps in a text from a byte on.
+pub(super) fn steps(
+    whole: &str,
+    from: usize,
+    folder: Option<&Path>,
+    registry: &Registry,
+    problems: &mut Problems,
+) -> Vec<Draft> {
+    let mut reader = Reader {
+        whole,
+        folder,
+        registry,
+        problems,
+        steps: Vec::new(),
+        runs: Runs::default(),
+        lists: Vec::new(),
+        items: Vec::new(),
+        headless: false,
+    };
+    let parser = Parser::new_ext(&whole[from..], options());
+    // They are shown nowhere, not even as events.
+    let definitions: Vec<_> = parser.reference_definitions().iter().map(|(_, d)| d.span.start).collect();
+    for start in definitions {
+        reader.problems.at(from + start, refusal(&Event::FootnoteReference("".into())));
+    }
+    let mut skipped = 0usize;
+    for (event, range) in parser.into_offset_iter() {
+        match &event {
+            Event::Start(_) if skipped > 0 => skipped += 1,
+            Event::End(_) if skipped > 0 => skipped -= 1,
+            _ if skipped > 0 => {}
+            _ => {
+                let refused = reader.event(&event, from + range.start, from + range.end);
+                if let Some(draft) = reader.steps.last_mut().filter(|_| refused) {
+                    // What was refused was meant to be there.
+                    draft.is_empty = false;
+                }
+                skipped = usize::from(refused && matches!(event, Event::Start(_)));
+            }
+        }
+    }
+    let Reader { steps, problems, .. } = reader;
+    if steps.is_empty() {
+        problems.at(whole.len(), "the lesson has no step; begin one with ## and its name");
+    }
+    for draft in steps.iter().filter(|draft| draft.is_empty) {
+        problems.at(draft.at, "the step is empty; write what the learner shall see or do");
+    }
+    steps
+}
+
+impl Reader<'_, '_, '_> {
+    /// The step around the place.
+    fn step(&mut self, at: usize) -> Option<&mut Draft> {
+        if self.steps.is_empty() && !std::mem::replace(&mut self.headless, true) {
+            self.problems.at(at, "there is text before the first step; begin the step with ## and its name");
+        }
+        let draft = self.steps.last_mut()?;
+        draft.is_empty = false;
+        Some(draft)
+    }
+
+    fn push(&mut self, block: Block, at: usize) {
+        if let Some(draft) = self.step(at) {
+            draft.step.blocks.push(block);
+        }
+    }
+
+    /// Takes the text of the innermost item.
+    fn item(&mut self, at: usize) {
+        let runs = self.runs.take();
+        if runs.is_empty() {
+            return;
+        }
+        let depth = self.items.len().saturating_sub(1);
+        let Some((number, done)) = self.items.last_mut() else { return };
+        let number = *number;
+        if std::mem::replace(done, true) {
+            self.problems.at(at, "an item of a list is one paragraph; begin another item, or end the list");
+        } else {
+            self.push(Block::Item { number, depth, runs }, at);
+        }
+    }
+
+    /// Takes an event from one byte to another. True if it was refused, with everything in it.
+    fn event(&mut self, event: &Event, at: usize, end: usize) -> bool {
+        if self.runs.takes(event) {
+            return false;
+        }
+        match event {
+            Event::Start(Tag::Heading { level, .. }) => {
+                let is_step = *level == HeadingLevel::H2;
+                // A line of - below text makes it a heading too.
+                let is_marked = self.whole[at..].trim_start().starts_with('#');
+                let problem = match (is_step, is_marked) {
+                    (true, true) => None,
+                    (false, true) => Some("headings of steps begin with ##; there are no others"),
+                    _ => Some(
+                        "a line of - or = below text makes it a heading; leave an empty line between them, or \
+                         begin headings with ##",
+                    ),
+                };
+                if let Some(problem) = problem {
+                    self.problems.at(at, problem);
+                    return true;
+                }
+                if !self.items.is_empty() {
+                    self.problems.at(at, "a heading cannot be in a list");
+                    return true;
+                }
+            }
+            Event::End(TagEnd::Heading(_)) => {
+                let title = plain(&self.runs.take());
+                if title.trim().is_empty() {
+                    self.problems.at(at, "the step has no name; write one after ##");
+                }
+                self.steps.push(Draft {
+                    step: Step { title, ..Step::default() },
+                    at,
+                    is_empty: true,
+                    ..Draft::default()
+                });
+            }
+            Event::Start(Tag::Paragraph) if !self.items.is_empty() => self.item(at),
+            Event::Start(Tag::Paragraph) => {}
+            Event::End(TagEnd::Paragraph) if self.items.is_empty() => {
+                let runs = self.runs.take();
+                self.push(Block::Paragraph(runs), at);
+            }
+            Event::End(TagEnd::Paragraph) => self.item(at),
+            Event::Start(Tag::List(first)) => {
+                self.item(at);
+                if self.lists.len() >= DEEPEST_LIST {
+                    self.problems.at(at, format!("lists within lists are at most {DEEPEST_LIST} deep"));
+                    return true;
+                }
+                self.lists.push(*first);
+            }
+            Event::End(TagEnd::List(_)) => {
+                self.lists.pop();
+            }
+            Event::Start(Tag::Item) => {
+                let number = self.lists.last_mut().and_then(|next| {
+                    let number = *next;
+                    *next = number.map(|n| n.saturating_add(1));
+                    number
+                });
+                self.items.push((number, false));
+            }
+            Event::End(TagEnd::Item) => {
+                self.item(at);
+                if self.items.pop().is_some_and(|(_, done)| !done) {
+                    self.problems.at(at, "this item of a list is empty");
+                }
+            }
+            Event::Start(Tag::CodeBlock(kind)) => {
+                self.block(kind, at, end);
+                return true;
+            }
+            other => {
+                self.problems.at(at, refusal(other));
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Takes a block of code.
+    fn block(&mut self, kind: &pulldown_cmark::CodeBlockKind, at: usize, end: usize) {
+        let pulldown_cmark::CodeBlockKind::Fenced(info) = kind else {
+            self.problems.at(at, "text with four spaces before it is a block of no kind; remove the spaces");
+            return;
+        };
+        if !self.items.is_empty() {
+            self.problems.at(at, "a block cannot be in a list; write it from the left margin");
+            return;
+        }
+        let piece = Piece { at, text: self.whole.get(at..end).unwrap_or_default() };
+        let Some(body) = fenced(piece) else {
+            self.problems.at(at, "this block is never closed; end it with a line ```");
+            return;
+        };
+        let (folder, registry) = (self.folder, self.registry);
+        if self.step(at).is_none() {
+            return;
+        }
+        if let Some(draft) = self.steps.last_mut() {
+            blocks::read(info.trim(), at, body, draft, folder, registry, self.problems);
+        }
+    }
+}
+
+/// The lines between the fences of a block, if there are both.
+fn fenced(block: Piece) -> Option<Piece> {
+    let first = block.text.find('\n')? + 1;
+    let opening = block.text.trim_start();
+    let sign = opening.chars().next()?;
+    let least = opening.chars().take_while(|c| *c == sign).count();
+    let text = block.text.trim_end();
+    let last = text.rfind('\n')? + 1;
+    let closing = text[last..].trim();
+    let closes = closing.chars().count() >= least && closing.chars().all(|c| c == sign);
+    (closes && last >= first).then(|| block.part(first, last))
+}

@@ -1,0 +1,108 @@
+//! The problems of a lesson: each is a sentence with its place and the line that it is about.
+
+use std::fmt;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use serde::Serialize;
+
+use crate::{
+    files::printable,
+    text::place::{Lines, Place},
+};
+
+/// A problem of a lesson.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Problem {
+    /// Its position in the file; none if it is about the whole file.
+    #[serde(flatten)]
+    pub place: Option<Place>,
+    /// The mistake and the remedy.
+    pub message: String,
+    /// The line of its place.
+    #[serde(skip)]
+    pub source: String,
+}
+
+impl Problem {
+    /// A problem of a file as a whole.
+    #[must_use]
+    pub fn of_file(message: impl Into<String>) -> Self {
+        Self { place: None, message: message.into(), source: String::new() }
+    }
+
+    /// The problem as lines of plain text: the message, file, line and column, the line itself and a caret.
+    #[must_use]
+    pub fn annotated(&self, file: &str) -> String {
+        // The annotation crate escapes control characters only in ASCII.
+        let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
+        let (file, message) = (printable(file), fit(&self.message));
+        let Some(place) = self.place else {
+            return format!("error: {file}: {}", printable(&self.message));
+        };
+        let source = fit(&self.source);
+        let mut characters = source.char_indices().skip(place.column.saturating_sub(1));
+        let end = source.len();
+        let start = characters.next().map_or(end, |(at, _)| at);
+        let next = characters.next().map_or(end, |(at, _)| at);
+        let snippet = Snippet::source(&source)
+            .line_start(place.line)
+            .path(&*file)
+            .annotation(AnnotationKind::Primary.span(start..next));
+        Renderer::plain().render(&[Level::ERROR.primary_title(&message).element(snippet)])
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Some(place) => write!(f, "{place}: {}", self.message),
+            None => f.write_str(&self.message),
+        }
+    }
+}
+
+/// The problems found so far in a text, by their bytes.
+pub(super) struct Problems<'a> {
+    text: &'a str,
+    found: Vec<(usize, String)>,
+}
+
+impl<'a> Problems<'a> {
+    pub(super) fn of(text: &'a str) -> Self {
+        Self { text, found: Vec::new() }
+    }
+
+    /// Adds a problem at a byte.
+    pub(super) fn at(&mut self, at: usize, message: impl Into<String>) {
+        self.found.push((at, message.into()));
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.found.len()
+    }
+
+    /// All of them, in the order of the text.
+    pub(super) fn finish(mut self) -> Vec<Problem> {
+        // More are of no help to anybody.
+        const MOST: usize = 200;
+        self.found.sort_by_key(|(at, _)| *at);
+        self.found.dedup();
+        self.found.truncate(MOST);
+        let lines = Lines::new(self.text);
+        let line_of = |at: usize| {
+            let at = at.min(self.text.len());
+            let start = self.text[..at].rfind('\n').map_or(0, |i| i + 1);
+            let line = self.text[start..].lines().next().unwrap_or_default();
+            // A line may be as long as the file.
+            line.chars().take(400).collect()
+        };
+        self.found
+            .into_iter()
+            .map(|(at, message)| Problem { place: Some(lines.place(at)), source: line_of(at), message })
+            .collect()
+    }
+}

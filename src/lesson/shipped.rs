@@ -1,0 +1,31 @@
+//! The shipped lessons, built into the program, so that it needs no folder beside it.
+
+use std::sync::LazyLock;
+
+use super::Lesson;
+use crate::registry::Registry;
+
+macro_rules! texts {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/lessons/", $name, ".md")))),*]
+    };
+}
+
+/// In the order in which they build on each other.
+pub const TEXTS: &[(&str, &str)] = texts![
+    "01_reflection_models",
+    "02_three_terms",
+    "03_where_shading_is_computed",
+    "04_half_vectors_and_highlights",
+    "05_light_falls_off",
+    "06_gamma",
+    "07_fresnel_and_metals",
+    "08_energy_and_the_white_furnace",
+];
+
+/// All of them, in the order of lists.
+pub static LESSONS: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
+    let registry = Registry::builtin();
+    // A test reads each without a problem.
+    TEXTS.iter().filter_map(|(name, text)| Lesson::from_text(text, name, None, &registry).ok()).collect()
+});

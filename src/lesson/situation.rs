@@ -1,0 +1,42 @@
+//! The state in which a condition is decided: the scene, the window, the pinned pixel.
+
+use crate::{
+    channel::DebugChannel, curves::Kind, document::Selection, explain::Explanation, optics::TermSelection,
+    registry::Registry, scene::Scene,
+};
+
+/// The state of the window in which a condition holds or does not.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// The scene of the active view: [`Scene::seen`].
+    pub scene: &'a Scene,
+    /// The models, lights and shapes.
+    pub registry: &'a Registry,
+    /// The selected part.
+    pub selection: Selection,
+    /// Facts about the window.
+    pub window: WindowFacts,
+    /// The explanation of the pinned pixel, or of the pixel under the pointer if none is pinned, if there is one yet.
+    pub probe: Option<&'a Explanation>,
+    /// True if a pixel is pinned: quantities of pixels are those of a pinned one alone.
+    pub pinned: bool,
+}
+
+/// Facts about the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WindowFacts {
+    /// The number of views, 1 to 4.
+    pub views: usize,
+    /// The active view: 0 is the scene, 1 view B.
+    pub active: usize,
+    /// The debug channel of the active view.
+    pub channel: Option<DebugChannel>,
+    /// The terms that are shown.
+    pub terms: TermSelection,
+    /// The plot, if the panel *Plots* is in sight.
+    pub plots: Option<Kind>,
+    /// True if the panel *Explain* is in sight.
+    pub explain: bool,
+    /// True while the picture is presented.
+    pub presenting: bool,
+}

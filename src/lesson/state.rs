@@ -1,0 +1,295 @@
+//! The scene on entering a step: values of scene files that are set one after the other, and checked like a file.
+
+use std::{
+    path::{Path as FilePath, PathBuf},
+    sync::Arc,
+};
+
+use serde_json::Value as Json;
+
+use super::{
+    problem::Problems,
+    words::{Piece, lines},
+};
+use crate::{
+    registry::Registry,
+    scene::{
+        Scene, SceneIn,
+        error::{LoadError, Path, Segment},
+        examples::EXAMPLES,
+        load::{self, Defaults, Loaded},
+        syntax::check_syntax,
+    },
+    text::{did_you_mean, quoted, sentence},
+};
+
+/// The name of the scene in the reader of scene files, which decides on the format by it.
+const NAME: &str = "step.json";
+
+/// The change of the scene on entering a step.
+#[derive(Clone, Debug, Default)]
+pub struct SceneChange {
+    operations: Vec<Operation>,
+    /// The folder of the files that the scene names.
+    folder: PathBuf,
+}
+
+#[derive(Clone, Debug)]
+struct Operation {
+    /// Its byte in the lesson.
+    at: usize,
+    what: What,
+}
+
+#[derive(Clone, Debug)]
+enum What {
+    /// Another scene takes the place of what was there.
+    Open(Arc<Scene>),
+    /// A value; null removes it.
+    Set(Path, Json),
+}
+
+impl SceneChange {
+    /// True if another scene takes the place of what was there.
+    pub(super) fn opens(&self) -> bool {
+        self.operations.iter().any(|operation| matches!(operation.what, What::Open(_)))
+    }
+
+    /// The scene after the change.
+    ///
+    /// # Errors
+    /// If it breaks a rule of scenes.
+    pub fn apply(&self, scene: &Scene, registry: &Registry) -> Result<Scene, String> {
+        self.applied(scene, registry)
+            .map_err(|problems| problems.into_iter().map(|(_, what)| what).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// The same, with the bytes of the problems.
+    pub(super) fn applied(&self, scene: &Scene, registry: &Registry) -> Result<Scene, Vec<(usize, String)>> {
+        let opened = self.operations.iter().rposition(|o| matches!(o.what, What::Open(_)));
+        let base = match opened.map(|i| &self.operations[i].what) {
+            Some(What::Open(scene)) => scene,
+            _ => scene,
+        };
+        let sets: Vec<_> = self.operations[opened.map_or(0, |i| i + 1)..]
+            .iter()
+            .filter_map(|o| match &o.what {
+                What::Set(path, value) => Some((o.at, path, value)),
+                What::Open(_) => None,
+            })
+            .collect();
+        if sets.is_empty() {
+            return Ok(base.clone());
+        }
+        let mut json = serde_json::to_value(SceneIn(base, registry)).unwrap_or_default();
+        for (at, path, value) in &sets {
+            set(&mut json, path.segments(), value).map_err(|what| vec![(*at, format!("{path} {what}"))])?;
+        }
+        let text = json.to_string();
+        let read = load::in_folder(text.as_bytes(), (NAME, &self.folder), registry, Defaults::Use);
+        read.map(|Loaded { scene, .. }| scene).map_err(|error| {
+            let of = |problem: &Path| {
+                let alike = |path: &Path| {
+                    path.segments().iter().zip(problem.segments()).take_while(|(a, b)| a == b).count()
+                };
+                sets.iter().rev().max_by_key(|(_, path, _)| alike(path)).map_or(0, |(at, ..)| *at)
+            };
+            let problems = error.problems().into_iter();
+            problems
+                .map(|p| (of(&p.path), crate::scene::error::Problem { place: None, ..p }.to_string()))
+                .collect()
+        })
+    }
+}
+
+/// Sets a value of a scene.
+fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
+    let Some((step, rest)) = path.split_first() else {
+        *json = value.clone();
+        return Ok(());
+    };
+    match step {
+        Segment::Key(key) => {
+            if json.is_null() {
+                *json = Json::Object(serde_json::Map::new());
+            }
+            let Json::Object(map) = json else {
+                return Err("leads into a value that has no keys".to_owned());
+            };
+            if rest.is_empty() && value.is_null() {
+                map.remove(key.as_ref());
+                return Ok(());
+            }
+            set(map.entry(key.as_ref()).or_insert(Json::Null), rest, value)
+        }
+        Segment::Index(index) => {
+            if json.is_null() {
+                *json = Json::Array(Vec::new());
+            }
+            let Json::Array(list) = json else { return Err("leads into a value that is no list".to_owned()) };
+            if *index > list.len() {
+                let count = list.len();
+                return Err(format!(
+                    "does not exist: the list has {count} entries, counted from 0; [{count}] adds one"
+                ));
+            }
+            if rest.is_empty() && value.is_null() {
+                if *index < list.len() {
+                    list.remove(*index);
+                }
+                return Ok(());
+            }
+            if *index == list.len() {
+                list.push(Json::Null);
+            }
+            set(&mut list[*index], rest, value)
+        }
+    }
+}
+
+/// The scene of a name in a lesson: a file in its folder, else a shipped one.
+pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
+    let is_plain = FilePath::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
+    if !is_plain {
+        return Err(format!(
+            "{} leads out of the folder of the lesson; put the scene beside the lesson",
+            quoted(name)
+        ));
+    }
+    let beside = folder.map(|folder| folder.join(name)).filter(|path| path.exists());
+    let loaded = match beside {
+        Some(path) => load::file(&path, registry, Defaults::Use).map(|loaded| loaded.scene),
+        None => match EXAMPLES.iter().find(|example| example.file == name) {
+            Some(example) => example.scene(registry),
+            None => {
+                let near = did_you_mean(name, EXAMPLES.iter().map(|e| (e.file, e.file)));
+                let wherever =
+                    if folder.is_some() { "neither beside the lesson nor among" } else { "not among" };
+                return Err(format!("the scene {} is {wherever} the shipped scenes{near}", quoted(name)));
+            }
+        },
+    };
+    loaded.map_err(|error| match &error {
+        LoadError::Invalid { .. } => {
+            format!("the scene has problems: {}", error.to_string().replace('\n', "; "))
+        }
+        error => error.to_string(),
+    })
+}
+
+/// Reads a path such as `objects[0].material.alpha`; the byte of the first mistake in it.
+pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
+    let mut path = Path::root();
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        if let Some(inside) = rest.strip_prefix('[') {
+            let end = inside.find(']').ok_or((at, "this bracket is never closed".to_owned()))?;
+            let index = inside[..end].trim().parse().map_err(|_| {
+                (
+                    at + 1,
+                    format!(
+                        "{} is no place in a list; places are whole numbers from 0",
+                        quoted(&inside[..end])
+                    ),
+                )
+            })?;
+            path = path.index(index);
+            at += end + 2;
+            continue;
+        }
+        let dot = usize::from(rest.starts_with('.') && at > 0);
+        let word = &rest[dot..];
+        let length = word.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(word.len());
+        if length == 0 || dot == 0 && at > 0 {
+            return Err((
+                at,
+                "a path is keys with dots between them and [places] in lists: objects[0].size".to_owned(),
+            ));
+        }
+        path = path.key(word[..length].to_owned());
+        at += dot + length;
+    }
+    Ok(path)
+}
+
+/// Reads the body of a block `scene`.
+pub(super) fn read(
+    body: Piece,
+    folder: Option<&FilePath>,
+    registry: &Registry,
+    problems: &mut Problems,
+) -> SceneChange {
+    let mut change =
+        SceneChange { operations: Vec::new(), folder: folder.map(FilePath::to_owned).unwrap_or_default() };
+    // A value goes on over lines that begin with no path.
+    let mut statements: Vec<(usize, usize)> = Vec::new();
+    for line in lines(body.text, body.at) {
+        let piece = line.piece();
+        if piece.text.is_empty() {
+            continue;
+        }
+        let begins = piece.text.starts_with("open:")
+            || piece.text.split_once('=').is_some_and(|(path, _)| {
+                path.starts_with(|c: char| c.is_alphabetic() || c == '$') && !path.contains('"')
+            });
+        match statements.last_mut() {
+            Some(last) if !begins => last.1 = piece.end(),
+            _ => statements.push((piece.at, piece.end())),
+        }
+    }
+    for (start, end) in statements {
+        let piece = body.part(start - body.at, end - body.at);
+        if let Some(name) = piece.text.strip_prefix("open:") {
+            let name = piece.part(piece.text.len() - name.len(), piece.text.len()).trimmed();
+            match open(name.text, folder, registry) {
+                Ok(scene) => {
+                    change.operations.push(Operation { at: name.at, what: What::Open(Arc::new(scene)) });
+                }
+                Err(what) => problems.at(name.at, what),
+            }
+            continue;
+        }
+        let Some(equals) = piece.text.find('=') else {
+            problems.at(
+                piece.at,
+                "this is neither PATH = VALUE nor open: FILE, as every line of a scene block must be",
+            );
+            continue;
+        };
+        let written = piece.part(0, equals).trimmed();
+        let value = piece.part(equals + 1, piece.text.len()).trimmed();
+        let path = path(written.text).map_err(|(at, what)| problems.at(written.at + at, what));
+        let value = json(value).map_err(|(at, what)| problems.at(at, what));
+        if let (Ok(path), Ok(value)) = (path, value) {
+            change.operations.push(Operation { at: written.at, what: What::Set(path, value) });
+        }
+    }
+    change
+}
+
+/// A value as in scene files, or the byte of a mistake and the remedy.
+fn json(piece: Piece) -> Result<Json, (usize, String)> {
+    if piece.text.is_empty() {
+        return Err((piece.at, "the value is missing; write it as in a scene file".to_owned()));
+    }
+    if let Err((at, what)) = check_syntax(piece.text) {
+        let what = match what {
+            what if what.contains("truncated") => "the value ends too early".to_owned(),
+            what => what.replace("the end of the file after the scene", "the end of the value"),
+        };
+        let hint = if piece.text.starts_with(|c: char| c.is_alphabetic()) {
+            " Text needs double quotes, as in \"phong\"."
+        } else {
+            ""
+        };
+        return Err((
+            piece.at + at,
+            format!(
+                "{}{hint}",
+                sentence(&what).trim_end_matches('.').to_owned() + if hint.is_empty() { "" } else { "." }
+            ),
+        ));
+    }
+    serde_json::from_str(piece.text).map_err(|error| (piece.at, error.to_string()))
+}

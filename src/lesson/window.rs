@@ -1,0 +1,120 @@
+//! The block `view`: the window on entering a step.
+
+use super::{
+    PartName, WindowChange,
+    problem::Problems,
+    words::{Line, Piece, pair},
+};
+use crate::{
+    channel::DebugChannel,
+    curves::Kind,
+    optics::TermSelection,
+    scene::variant::LETTERS,
+    text::{did_you_mean, listed, quoted},
+};
+
+/// The settings: the key, its values, and its meaning.
+pub const SETTINGS: &[(&str, &str, &str)] = &[
+    ("channel", "id of a debug channel, or `none`", "the debug channel of the active view"),
+    ("terms", "`all`, `ambient`, `diffuse` or `specular`", "the terms of the equation that are shown"),
+    ("explain", "`on` or `off`", "the panel *Explain*"),
+    ("plots", "id of a plot, or `off`", "the panel *Plots*"),
+    ("active", "`A` to `D`", "the view that the panels show and change"),
+    ("select", "`room`, `observer`, `object 1`, `light \"key light\"`, …", "the selected part"),
+    (
+        "pin",
+        "`X, Y` from 0 to 1, or `none`",
+        "the pinned pixel: fractions of the picture from the left and the top",
+    ),
+];
+
+/// A word of a list, or what is wrong with it.
+fn one_of<T>(value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T>
+where
+    T: Clone,
+{
+    let found = known.iter().find(|(word, _)| *word == value.text);
+    if found.is_none() {
+        let words: Vec<_> = known.iter().map(|(word, _)| *word).collect();
+        let near = did_you_mean(value.text, words.iter().map(|w| (*w, *w)));
+        problems.at(
+            value.at,
+            format!("this is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")),
+        );
+    }
+    found.map(|(_, meaning)| meaning.clone())
+}
+
+/// Reads a line of a block `view`. The bytes of parts and views are kept, to be looked for in the scene.
+pub(super) fn setting(
+    line: &Line,
+    given: &mut Vec<&'static str>,
+    places: &mut Vec<(&'static str, usize)>,
+    window: &mut WindowChange,
+    problems: &mut Problems,
+) {
+    let Some((key, value)) = pair(line) else {
+        problems.at(line.piece().at, "this is not SETTING: VALUE, as every line of a view block must be");
+        return;
+    };
+    let Some((known, ..)) = SETTINGS.iter().find(|(known, ..)| *known == key.text) else {
+        let keys: Vec<_> = SETTINGS.iter().map(|(key, ..)| *key).collect();
+        let near = did_you_mean(key.text, keys.iter().map(|k| (*k, *k)));
+        problems.at(
+            key.at,
+            format!("a view block has no {}; it has {}{near}", quoted(key.text), listed(&keys, "and")),
+        );
+        return;
+    };
+    if given.contains(known) {
+        problems.at(key.at, format!("{known} is given twice; remove one"));
+        return;
+    }
+    given.push(known);
+    places.push((known, value.at));
+    match *known {
+        "channel" => {
+            let channels = DebugChannel::ALL.map(|channel| (channel.id(), Some(channel)));
+            let all: Vec<_> = channels.into_iter().chain([("none", None)]).collect();
+            window.channel = one_of(value, &all, problems);
+        }
+        "terms" => window.terms = one_of(value, &TermSelection::ALL.map(|t| (t.id(), t)), problems),
+        "explain" => window.explain = one_of(value, &[("on", true), ("off", false)], problems),
+        "plots" => {
+            let kinds = Kind::ALL.map(|kind| (kind.id(), Some(kind)));
+            window.plots =
+                one_of(value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
+        }
+        "active" => {
+            let letters: Vec<_> = LETTERS.into_iter().enumerate().map(|(i, letter)| (letter, i)).collect();
+            window.active = one_of(value, &letters, problems);
+        }
+        "select" => match PartName::parse(value) {
+            Ok(part) => window.select = Some(part),
+            Err(what) => problems.at(value.at, what),
+        },
+        _ => window.pin = pin(value, problems),
+    }
+}
+
+fn pin(value: Piece, problems: &mut Problems) -> Option<Option<[f32; 2]>> {
+    if value.text == "none" {
+        return Some(None);
+    }
+    let numbers: Vec<f32> = value.text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        [x, y] if value.text.matches(',').count() == 1 && [x, y].iter().all(|n| (0.0..=1.0).contains(*n)) => {
+            Some(Some([*x, *y]))
+        }
+        _ => {
+            problems.at(
+                value.at,
+                format!(
+                    "this is {}, but pin must be none, or two numbers from 0 to 1: X, Y from the top left of the picture",
+                    quoted(value.text)
+                ),
+            );
+            None
+        }
+    }
+}

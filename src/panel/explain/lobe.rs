@@ -1,0 +1,324 @@
+//! The lobe of the reflection model at the explained point: for the light that is unfolded, or for each that reaches the
+//! point, the BRDF towards all viewers as a surface over it.
+//!
+//! It is calculated in a thread when the explanation, the point or the lights have changed. Most lobes are there in a
+//! millisecond and appear in the same frame; an interpreted model takes longer, and the frames do not wait.
+
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{self, Receiver, RecvTimeoutError},
+    },
+    thread,
+    time::Duration,
+};
+
+use bevy_egui::egui::{Align2, Context, Id, Rect, Ui, pos2};
+use glam::Vec3;
+
+use super::{
+    probe::{self, Choice, Explained},
+    rows,
+    surface::{self, LightLobe, tint},
+};
+use crate::{
+    channel::Legend,
+    curves::{
+        Lobe,
+        draw::{Axis, COLOURS},
+        lobe::scale,
+    },
+    explain::{Lit, Seen, Spot},
+    optics::TermSelection,
+    panel::{
+        channels, segmented,
+        state::{Action, LobeChoice, LobeScale, Session, ViewChange},
+        theme,
+    },
+    progress::Progress,
+};
+
+/// A frame waits so long for a lobe, and no longer.
+const PATIENCE: Duration = Duration::from_millis(2);
+/// More lobes at once have no colours of their own.
+const MOST: usize = COLOURS.len();
+/// A narrower picture has no legend, and a lower one none with a scale, points.
+const ROOM: f32 = 240.0;
+/// Width of the legend at most, points.
+const LEGEND: f32 = 320.0;
+
+/// The lobes that are drawn.
+#[derive(Debug)]
+pub struct Lobes {
+    question: Question,
+    /// The point.
+    pub position: Vec3,
+    /// Lobe by lobe, the brightest light first; or the reason why there is none.
+    pub lobes: Result<Vec<LightLobe>, String>,
+}
+
+/// Everything that lobes depend on. An explanation is made anew when anything of it changes.
+#[derive(Clone, Debug)]
+struct Question {
+    explained: Arc<Explained>,
+    spot: usize,
+    lights: Vec<usize>,
+}
+
+impl PartialEq for Question {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.explained, &other.explained)
+            && (self.spot, &self.lights) == (other.spot, &other.lights)
+    }
+}
+
+#[derive(Default)]
+struct Work {
+    shown: Option<Arc<Lobes>>,
+    running: Option<(Question, Receiver<Vec<LightLobe>>)>,
+    calculations: u64,
+}
+
+type Shared = Arc<Mutex<Work>>;
+
+fn shared(ctx: &Context) -> Shared {
+    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("lobes of the explained point")).clone())
+}
+
+/// The number of times that lobes were calculated.
+#[must_use]
+pub fn lobe_calculations(ctx: &Context) -> u64 {
+    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).calculations
+}
+
+/// True while lobes are calculated; those before are shown meanwhile.
+#[must_use]
+pub fn lobes_are_due(ctx: &Context) -> bool {
+    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).running.is_some()
+}
+
+/// The lobes that were drawn last.
+#[must_use]
+pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {
+    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).shown.clone()
+}
+
+/// The lights whose lobes are shown, the brightest first, and how many there would be.
+fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), String> {
+    let reason = |lit: &Lit| match () {
+        () if lit.geometry.is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
+        () if lit.is_behind() => {
+            Some("The surface faces away from the light: f is 0, and there is no lobe.".to_owned())
+        }
+        () => None,
+    };
+    if !all {
+        let lit = probe::shown_light(spot, choice).ok_or("Unfold a light to see its lobe.")?;
+        return reason(lit).map_or(Ok((vec![lit], 1)), Err);
+    }
+    let mut found = spot.brightest();
+    found.retain(|lit| reason(lit).is_none() && !lit.is_dark());
+    let count = found.len();
+    found.truncate(MOST);
+    if found.is_empty() {
+        Err("No light with a direction reaches the point: there is no lobe.".to_owned())
+    } else {
+        Ok((found, count))
+    }
+}
+
+/// The name of a light as the panel has it.
+fn name_of(lit: &Lit) -> String {
+    lit.light.name.clone().unwrap_or_else(|| format!("Light {}", lit.light.index + 1))
+}
+
+impl Work {
+    /// The lobes; while they are calculated those before, if they are of the same point.
+    fn answer(&mut self, ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Option<Arc<Lobes>> {
+        let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
+        // What still runs may be older.
+        for _ in 0..2 {
+            if fits(self).is_some() {
+                break;
+            }
+            let new = self.running.is_none();
+            let (asked, receiver) =
+                self.running.get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot)));
+            self.calculations += u64::from(new);
+            let lobes = match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
+                Err(RecvTimeoutError::Timeout) => break,
+                Err(RecvTimeoutError::Disconnected) => {
+                    Err("No lobe: an error of this program while the model was asked.".to_owned())
+                }
+                Ok(lobes) => Ok(lobes),
+            };
+            let position = place(asked).unwrap_or_default();
+            self.shown = Some(Arc::new(Lobes { question: asked.clone(), position, lobes }));
+            self.running = None;
+        }
+        let old = || self.shown.clone().filter(|shown| shown.position == spot.position);
+        fits(self).or_else(old)
+    }
+}
+
+/// The point of a question.
+fn place(question: &Question) -> Option<Vec3> {
+    let seen = question.explained.explanation.seen.as_ref()?;
+    Some(probe::spots(seen).get(question.spot)?.position)
+}
+
+/// Begins to calculate lobes.
+fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiver<Vec<LightLobe>> {
+    let (sender, receiver) = mpsc::channel();
+    let terms = question.explained.explanation.terms;
+    let (surface, frame, ctx) = (seen.surface.0.clone(), spot.frame, ctx.clone());
+    let of = |index: &usize| {
+        let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
+        Some((*index, name_of(lit), lit.geometry?.l))
+    };
+    let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
+    thread::spawn(move || {
+        let lobe = |(light, name, l)| {
+            let lobe = Lobe::new(&*surface, l, &frame, terms, &Progress::NONE).ok()?;
+            Some(LightLobe { light, name, l, rims: surface::rims(&lobe), lobe })
+        };
+        // Nobody listens once the window is closed.
+        drop(sender.send(lights.into_iter().filter_map(lobe).collect()));
+        ctx.request_repaint();
+    });
+    receiver
+}
+
+/// Paints the lobes of an explained point into the picture, and their legend, whose place it returns.
+pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &Session) -> Option<Rect> {
+    let LobeChoice { scale: wanted, all } = session.view.lobe;
+    let seen = explained.explanation.seen.as_ref().filter(|_| wanted != LobeScale::Off)?;
+    let choice = probe::choice(ui.ctx());
+    let number = probe::shown_spot(seen, choice);
+    let spot = *probe::spots(seen).get(number)?;
+    let terms = explained.explanation.terms;
+    let found = match &seen.model.trouble {
+        Some(_) => Err("The CPU cannot run this model: there is no lobe.".to_owned()),
+        None if terms == TermSelection::Ambient => {
+            Err("The ambient term has no lobe: it answers light from all directions.".to_owned())
+        }
+        None => lights(spot, choice, all),
+    };
+    let (lights, count) = match found {
+        Ok(found) => found,
+        Err(why) => return plate(ui, rect, Legend { title: why, scale: None, colours: Vec::new() }),
+    };
+    let question = Question {
+        explained: explained.clone(),
+        spot: number,
+        lights: lights.iter().map(|lit| lit.light.index).collect(),
+    };
+    let shared = shared(ui.ctx());
+    let mut work = shared.lock().unwrap_or_else(PoisonError::into_inner);
+    let shown = work.answer(ui.ctx(), &question, seen, spot);
+    drop(work);
+    let calculating =
+        || Legend { title: "Lobe: calculating…".to_owned(), scale: None, colours: Vec::new() };
+    let Some(shown) = shown else { return plate(ui, rect, calculating()) };
+    match &shown.lobes {
+        Err(why) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
+        Ok(lobes) => {
+            let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
+            let scale = scale(&each, wanted == LobeScale::Logarithmic);
+            surface::paint(ui, rect, session, shown.position, lobes, &scale);
+            plate(ui, rect, legend(lobes, count, &scale, terms))
+        }
+    }
+}
+
+/// What is written beside lobes.
+fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection) -> Legend {
+    let number = |v: f64| rows::short(v as f32);
+    let mut lines = vec![match (terms, scale.log) {
+        (TermSelection::All, false) => "Lobe: BRDF f in sr⁻¹".to_owned(),
+        (TermSelection::All, true) => "Lobe: BRDF f in sr⁻¹, logarithmic".to_owned(),
+        (terms, false) => format!("Lobe: {} term of f in sr⁻¹", terms.id()),
+        (terms, true) => format!("Lobe: {} term of f in sr⁻¹, logarithmic", terms.id()),
+    }];
+    lines.push(match scale.log {
+        false => format!("Length of the vectors: {}", number(scale.to)),
+        true => format!("Centre: {}; length of the vectors: {}", number(scale.from), number(scale.to)),
+    });
+    if count > lobes.len() {
+        lines.push(format!("The {} brightest of {count} lights", lobes.len()));
+    }
+    let empty = lobes.iter().all(|light| light.lobe.triangles.is_empty());
+    if empty {
+        lines.push("No value is a finite number: there is no surface.".to_owned());
+    } else if lobes.iter().any(|light| light.lobe.has_gaps()) {
+        lines.push("Some values are not finite numbers: the surface has a gap.".to_owned());
+    }
+    if lobes.iter().any(|light| light.lobe.is_negative()) {
+        lines.push("Some values are below 0, and drawn as 0.".to_owned());
+    } else if !empty && lobes.iter().all(|light| light.lobe.largest() == 0.0) {
+        lines.push("Every value is 0.".to_owned());
+    }
+    let middle = if scale.log { (scale.from * scale.to).sqrt() } else { 0.5 * scale.to };
+    let one = lobes.len() == 1;
+    Legend {
+        title: lines.join("\n"),
+        scale: one.then(|| [scale.from, middle, scale.to].map(number)),
+        colours: if one {
+            Vec::new()
+        } else {
+            lobes.iter().enumerate().map(|(i, light)| (tint(i), light.name.clone())).collect()
+        },
+    }
+}
+
+/// Paints a legend at the right, where there is room for it.
+fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
+    // In a low picture the scale would cover the middle; a sentence does not.
+    if rect.width() < ROOM || legend.scale.is_some() && rect.height() < ROOM {
+        return None;
+    }
+    let left = (rect.right() - LEGEND * theme::scale_here(ui)).max(rect.left());
+    let side = Rect::from_min_max(pos2(left, rect.top()), rect.max);
+    Some(channels::plate(ui, side, Align2::RIGHT_TOP, rect.top() + 8.0, &legend))
+}
+
+/// The choices, for menus.
+pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let now = session.view.lobe;
+    let mut ask = |lobe: LobeChoice| actions.push(Action::View(ViewChange::Lobe(lobe)));
+    for scale in LobeScale::ALL {
+        if ui.radio(now.scale == scale, scale.name()).on_hover_text(scale.about()).clicked() {
+            ask(LobeChoice { scale, ..now });
+        }
+    }
+    ui.separator();
+    ui.add_enabled_ui(now.scale != LobeScale::Off, |ui| {
+        for (all, name, help) in [
+            (false, "For one light", "The lobe for the light whose block is unfolded."),
+            (true, "For all lights", "A lobe for each light that reaches the point, in a colour of its own."),
+        ] {
+            if ui.radio(now.all == all, name).on_hover_text(help).clicked() {
+                ask(LobeChoice { all, ..now });
+            }
+        }
+    });
+}
+
+/// The button of the choices.
+pub(super) fn button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let now = session.view.lobe;
+    let word = match now.scale {
+        LobeScale::Off => "off",
+        LobeScale::Linear => "linear",
+        LobeScale::Logarithmic => "logarithmic",
+    };
+    let shown = format!("Lobe: {word}");
+    let width = segmented::segment_width(ui, "Lobe: logarithmic");
+    let button = bevy_egui::egui::Button::new(&shown).min_size(bevy_egui::egui::vec2(width, 0.0));
+    let (response, _) = bevy_egui::egui::containers::menu::MenuButton::from_button(button)
+        .ui(ui, |ui| entries(ui, session, actions));
+    response.on_hover_text(
+        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. Shift+E \
+         goes on to the next.",
+    );
+}

@@ -1,0 +1,139 @@
+//! The knobs of a material, in the groups of its model; all of them, or only those that differ from their defaults.
+
+use bevy_egui::egui::{
+    Align, Button, CollapsingHeader, FontId, Id, Layout, RichText, TextFormat, TextStyle, Ui, text::LayoutJob,
+};
+
+use super::{measured::measured, object::Shown, variant::marked};
+use crate::{
+    document::{ObjectField, VariantField},
+    panel::{
+        knob,
+        lesson::point,
+        state::{Action, ViewChange},
+        theme::{self, Palette},
+    },
+    parameter::Parameter,
+    reflection::{ModelEntry, ungrouped, usage},
+    scene::Variant,
+    text::plural,
+};
+
+impl Shown<'_> {
+    /// The knobs of the parameters of the model, and the parameters that it does not use.
+    pub(super) fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
+        let Self { session, registry, object, model } = *self;
+        let Some(model) = model else {
+            ui.label(theme::small(ui, "The parameters come back with the model."));
+            return;
+        };
+        if let Some(values) = measured(ui, registry, model, object) {
+            fields.push(ObjectField::Preset(values));
+        }
+        let listed = self.listed(ui, model);
+        self.filter(ui, model, actions);
+        let mut knob = |ui: &mut Ui, p: &'static Parameter| {
+            let unused = usage::unused(model.parameters, p, &object.material);
+            let own = |variant: &Variant| {
+                variant.material.0.contains_key(p.name).then_some(VariantField::Material(p.name, None))
+            };
+            let value = marked(ui, session, own, actions, |ui| {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref())
+            });
+            fields.extend(value.map(|v| ObjectField::Material(p.name, v)));
+        };
+        for p in ungrouped(model.groups, model.parameters).filter(|p| listed.contains(&p.name)) {
+            knob(ui, p);
+        }
+        for group in model.groups {
+            let all: Vec<_> = group.of(model.parameters).collect();
+            let shown: Vec<_> = all.iter().copied().filter(|p| listed.contains(&p.name)).collect();
+            if shown.is_empty() {
+                continue;
+            }
+            let changed = all.iter().filter(|p| self.differs(p)).count();
+            CollapsingHeader::new(heading(ui, group.name, changed))
+                .id_salt(("group", group.name))
+                .default_open(true)
+                .open(all.iter().any(|p| point::at_knob(ui, p.name)).then_some(true))
+                .show_unindented(ui, |ui| shown.into_iter().for_each(|p| knob(ui, p)));
+        }
+        if model.parameters.is_empty() {
+            ui.label(theme::small(ui, "This model has no knobs."));
+        } else if listed.is_empty() {
+            ui.label(theme::small(ui, "Every parameter has its default."));
+        }
+        let shading = registry.shading_model(session.scene().shading_model_of(object));
+        if let Some(shading) = shading {
+            self.shading(ui, model, shading, fields);
+        }
+        self.readouts(ui, model);
+        let unused: Vec<_> = registry
+            .material_parameters()
+            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .filter(|p| shading.is_none_or(|s| s.parameter(p.name).is_none()))
+            .collect();
+        if !unused.is_empty() {
+            let reason = format!("Not used by {}", model.declaration.name);
+            ui.add_space(4.0);
+            ui.label(theme::small(ui, format!("{reason} (values kept)")));
+            ui.add_space(2.0);
+            for p in unused {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
+        }
+    }
+
+    /// True if a parameter of the model does not have its default.
+    fn differs(&self, p: &Parameter) -> bool {
+        self.object.material.get(p) != p.default_value()
+    }
+
+    /// The names of the parameters that have knobs. With the filter, what is being changed stays when it reaches its
+    /// default.
+    fn listed(&self, ui: &Ui, model: &ModelEntry) -> Vec<&'static str> {
+        let memory = Id::new(("knobs that are shown", self.session.selection, model.declaration.id));
+        let kept: Vec<&'static str> = ui.data(|d| d.get_temp(memory)).unwrap_or_default();
+        let busy = ui.input(|i| i.pointer.any_down()) || ui.memory(|m| m.focused()).is_some();
+        let filters = self.session.view.only_changed && !model.groups.is_empty();
+        let shown = |p: &&Parameter| {
+            !filters || self.differs(p) || busy && kept.contains(&p.name) || point::at_knob(ui, p.name)
+        };
+        let listed: Vec<_> = model.parameters.iter().filter(shown).map(|p| p.name).collect();
+        ui.data_mut(|d| d.insert_temp(memory, listed.clone()));
+        listed
+    }
+
+    /// The switch between all parameters and those that differ, for models with groups: they have many.
+    fn filter(&self, ui: &mut Ui, model: &ModelEntry, actions: &mut Vec<Action>) {
+        if model.groups.is_empty() {
+            return;
+        }
+        let on = self.session.view.only_changed;
+        let changed = model.parameters.iter().filter(|p| self.differs(p)).count();
+        ui.horizontal(|ui| {
+            ui.label(theme::small(ui, format!("{} changed", plural(changed, "parameter"))));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let text = RichText::new("Only changed").text_style(TextStyle::Small);
+                let help = "Show the knobs of those parameters alone that differ from their defaults";
+                if ui.add(Button::new(text).selected(on)).on_hover_text(help).clicked() {
+                    actions.push(Action::View(ViewChange::OnlyChanged(!on)));
+                }
+            });
+        });
+    }
+}
+
+/// The heading of a group: its name, and how many of its parameters differ from their defaults.
+fn heading(ui: &Ui, name: &str, changed: usize) -> LayoutJob {
+    let palette = Palette::here(ui);
+    let mut job = LayoutJob::default();
+    let body = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let small = TextStyle::Small.resolve(ui.style());
+    job.append(name, 0.0, TextFormat::simple(body, palette.text));
+    if changed > 0 {
+        let text = format!("{changed} changed");
+        job.append(&text, 8.0, TextFormat::simple(small, palette.weak));
+    }
+    job
+}

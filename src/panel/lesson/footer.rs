@@ -1,0 +1,51 @@
+//! The buttons at the lower end of a lesson, which stay where long text scrolls: previous and next.
+
+use bevy_egui::egui::{Button, Id, Label, RichText, Stroke, Ui, UiBuilder, WidgetInfo, WidgetType, vec2};
+
+use crate::panel::{
+    focus,
+    state::{Action, LessonCommand, OpenLesson},
+    theme::{self, Palette},
+};
+
+/// Height of a button, points.
+const HEIGHT: f32 = 30.0;
+
+/// Shows them.
+pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    if open.asking {
+        let text = "The task is not done. Skip it? The step then counts as not done.";
+        ui.add(Label::new(RichText::new(text).color(palette.warning)).wrap());
+        ui.add_space(2.0);
+    }
+    let last = open.is_last();
+    let (next, tip) = match (open.asking, last) {
+        (true, _) => ("Skip the task", "Go on without it (Alt+→)"),
+        (false, true) => ("Finish", "Leave the lesson: your own scene comes back (Alt+→)"),
+        (false, false) => ("Next", "The next step (Alt+→)"),
+    };
+    // The same widgets in all steps, so that Enter goes on and on.
+    let buttons = |ui: &mut Ui| {
+        let gap = ui.spacing().item_spacing.x;
+        let width = 0.5 * (ui.available_width() - gap);
+        let size = vec2(width, HEIGHT * scale);
+        let before = ui.add_enabled(open.step > 0, Button::new("Previous").min_size(size));
+        if before.on_hover_text("The step before, as it began (Alt+←)").clicked() {
+            actions.push(Action::Lesson(LessonCommand::Previous));
+        }
+        let mut button = Button::new(theme::strong(ui, next)).min_size(size);
+        if open.is_done() || open.asking {
+            button = button.fill(palette.chosen).stroke(Stroke::new(1.0, palette.accent));
+        }
+        let response = ui.push_id("next", |ui| ui.add(button)).inner;
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, next));
+        focus::first(ui.ctx(), response.id);
+        if response.on_hover_text(tip).clicked() {
+            actions.push(Action::Lesson(LessonCommand::Next));
+        }
+    };
+    let fixed = UiBuilder::new().id(Id::new("buttons of the lesson"));
+    ui.scope_builder(fixed, |ui| ui.horizontal(buttons));
+}

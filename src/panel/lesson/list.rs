@@ -1,0 +1,96 @@
+//! The list of the lessons, in a menu: title, summary, minutes, and how far the learner is.
+
+use bevy_egui::egui::{
+    self, FontId, Rect, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+
+use crate::{
+    lesson::{Lesson, shipped::LESSONS},
+    panel::{
+        icon::{self, Icon},
+        maths,
+        state::{Action, LessonCommand, LessonSource, Past, Session},
+        theme::{self, Palette},
+    },
+};
+
+/// Width of the menu, points.
+const WIDTH: f32 = 440.0;
+/// The room of the sign before a title, points.
+const SIGN: f32 = 26.0;
+
+/// The entries of the menu.
+pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let screen = ui.ctx().content_rect();
+    ui.set_width(WIDTH.min(screen.width() - 64.0));
+    let most = screen.height() - 140.0;
+    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
+        for (i, lesson) in LESSONS.iter().enumerate() {
+            if entry(ui, i, lesson, session) {
+                actions.push(Action::Lesson(LessonCommand::Open(LessonSource::Shipped(i))));
+                ui.close();
+            }
+        }
+    });
+    ui.separator();
+    if ui.button("Open a lesson…").on_hover_text("A lesson of your own: a Markdown file").clicked() {
+        actions.push(Action::Lesson(LessonCommand::OpenDialog));
+        ui.close();
+    }
+    ui.add_enabled_ui(session.lesson.is_some(), |ui| {
+        if ui.button("Leave the lesson").clicked() {
+            actions.push(Action::Lesson(LessonCommand::Leave));
+            ui.close();
+        }
+    });
+}
+
+/// The time that a lesson takes, and how far it is.
+pub(in crate::panel) fn facts(minutes: Option<u32>, past: Option<&Past>) -> String {
+    let minutes = minutes.map(|minutes| format!("{minutes} min"));
+    let past = past.map(Past::words);
+    minutes.into_iter().chain(past).collect::<Vec<_>>().join(" · ")
+}
+
+/// A lesson; true if it is chosen.
+fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
+    let palette = Palette::here(ui);
+    let past = session.progress.of(&lesson.id);
+    let current = session.lesson.as_ref().is_some_and(|open| open.source == LessonSource::Shipped(i));
+    let small = TextStyle::Small.resolve(ui.style());
+    let facts = ui.painter().layout_no_wrap(facts(lesson.minutes, past), small, palette.weak);
+    let width = ui.available_width() - SIGN - 12.0;
+    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let title = format!("{}. {}", i + 1, lesson.title);
+    let title = theme::elided(ui, &title, font, palette.text, width - facts.size().x - 12.0);
+    let mut job = maths::prose(ui, &lesson.summary, TextStyle::Small);
+    job.wrap.max_width = width;
+    let summary = ui.painter().layout_job(job);
+    let below = title.size().y + 2.0;
+    let height = below + summary.size().y + 10.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    response.widget_info(|| {
+        let name = format!("Lesson: {}", lesson.title);
+        WidgetInfo::selected(WidgetType::Button, true, current, name)
+    });
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 4.0, palette.hovered);
+    } else if current {
+        ui.painter().rect_filled(rect, 4.0, palette.chosen);
+    }
+    let centre = pos2(rect.left() + 0.5 * SIGN, rect.top() + 5.0 + 0.5 * title.size().y);
+    match past {
+        Some(past) if past.finished => {
+            let sign = Rect::from_center_size(centre, vec2(11.0, 11.0));
+            icon::paint(ui.painter(), sign, Icon::Check, palette.accent);
+        }
+        Some(_) => _ = ui.painter().circle_filled(centre, 3.5, palette.accent),
+        None => _ = ui.painter().circle_stroke(centre, 3.5, egui::Stroke::new(1.2, palette.weak)),
+    }
+    let at = pos2(rect.left() + SIGN, rect.top() + 5.0);
+    let right = pos2(rect.right() - 8.0 - facts.size().x, at.y + title.size().y - facts.size().y);
+    ui.painter().galley(right, facts, palette.weak);
+    ui.painter().galley(at, title, palette.text);
+    ui.painter().galley(at + vec2(0.0, below), summary, palette.text);
+    response.clicked()
+}

@@ -1,0 +1,222 @@
+//! The lesson that is open, at the left: its step, the text, the task, and the way on.
+
+use std::path::Path;
+
+use bevy_egui::egui::{
+    self, Align, Context, Frame, Key, Label, Layout, Margin, Modifiers, Rect, ScrollArea, Sense, TextStyle,
+    Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+
+use super::{
+    Panel, PanelContext, Place, focus,
+    icon::{self, Icon},
+    state::{Action, LessonCommand, LessonSource, OpenLesson, Session, Severity, problem_of},
+    theme::{self, Palette},
+};
+
+pub mod check;
+mod footer;
+pub(super) mod list;
+pub(super) mod point;
+mod task;
+mod text;
+
+/// Height of the letters in a presentation, as a fraction of the height of the screen.
+const PRESENTED: f32 = 0.0235;
+/// The part of the screen that the lesson takes in a presentation.
+pub(super) const SHARE: f32 = 0.31;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct LessonPanel;
+
+impl Panel for LessonPanel {
+    fn id(&self) -> &'static str {
+        "lesson"
+    }
+
+    fn title(&self) -> &'static str {
+        "Lesson"
+    }
+
+    fn place(&self) -> Place {
+        Place::Left
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let session = context.session();
+        if let Some(open) = &session.lesson {
+            lesson(ui, session, open, &mut context.actions);
+        }
+    }
+}
+
+/// Shows the lesson in all of `ui`.
+fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<Action>) {
+    if session.view.presenting {
+        enlarge(ui, PRESENTED * ui.ctx().content_rect().height());
+    }
+    let scale = theme::scale_here(ui);
+    let side = (12.0 * scale) as i8;
+    let margin = Margin { left: side, right: side, top: 4, bottom: 6 };
+    let head =
+        egui::Panel::top("head of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
+    head.show(ui, |ui| header(ui, session, open, actions));
+    let foot =
+        egui::Panel::bottom("foot of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
+    foot.show(ui, |ui| footer::footer(ui, open, actions));
+    let whole = ui.available_rect_before_wrap();
+    let turned = pages(ui.ctx(), whole);
+    Frame::new().inner_margin(Margin { left: side, right: 4, top: 6, bottom: 0 }).show(ui, |ui| {
+        // The scroll bar floats over a margin, so that nothing moves when it comes.
+        ui.spacing_mut().scroll.floating_allocated_width = 0.0;
+        // A step begins at its top.
+        let area = ScrollArea::vertical().id_salt(("text of the lesson", open.entries)).auto_shrink(false);
+        area.show(ui, |ui| {
+            ui.set_max_width(ui.available_width() - f32::from(side) + 4.0);
+            ui.spacing_mut().item_spacing.y = 7.0 * scale;
+            if turned != 0.0 {
+                ui.scroll_with_delta(vec2(0.0, turned * 0.8 * whole.height()));
+            }
+            problems(ui, open);
+            body(ui, open, actions);
+            ui.add_space(12.0);
+        });
+    });
+}
+
+/// Makes everything as large as a body of so many points wants.
+fn enlarge(ui: &mut Ui, body: f32) {
+    let style = ui.style_mut();
+    let now = style.text_styles.get(&TextStyle::Body).map_or(body, |font| font.size);
+    let factor = body / now;
+    style.text_styles.values_mut().for_each(|font| font.size *= factor);
+    style.spacing.item_spacing *= factor;
+    style.spacing.button_padding *= factor;
+    style.spacing.interact_size *= factor;
+}
+
+/// Page Up and Page Down scroll the text while the lesson has the focus: +1 for a page up, −1 for one down.
+fn pages(ctx: &Context, whole: Rect) -> f32 {
+    let here = focus::focused(ctx).is_some_and(|widget| whole.x_range().contains(widget.rect.center().x));
+    if !here {
+        return 0.0;
+    }
+    ctx.input_mut(|input| {
+        let up = input.consume_key(Modifiers::NONE, Key::PageUp);
+        let down = input.consume_key(Modifiers::NONE, Key::PageDown);
+        f32::from(i8::from(up) - i8::from(down))
+    })
+}
+
+/// The title, the number of the step, and how far it is.
+fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    let count = open.lesson.steps.len();
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let own = session.own_title();
+            let says = format!("Leave the lesson: “{own}” comes back");
+            if icon::button(ui, Icon::Cross, &says).clicked() {
+                actions.push(Action::Lesson(LessonCommand::Leave));
+            }
+            if icon::button(ui, Icon::Reset, "Begin this step again").clicked() {
+                actions.push(Action::Lesson(LessonCommand::Again));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let font = TextStyle::Body.resolve(ui.style());
+                let font = egui::FontId::new(font.size, theme::semibold());
+                let title = theme::elided(ui, &open.lesson.title, font, palette.text, ui.available_width());
+                let cut = title.elided;
+                let label = ui.add(Label::new(title));
+                if cut {
+                    label.on_hover_text(&open.lesson.title);
+                }
+            });
+        });
+    });
+    ui.horizontal(|ui| {
+        let words = format!("Step {} of {count}", open.step + 1);
+        let button =
+            ui.menu_button(egui::RichText::new(format!("{words} ▾")).small().color(palette.weak), |ui| {
+                steps(ui, open, actions);
+            });
+        button.response.on_hover_text("Go to another step");
+        bar(ui, open, &words);
+    });
+}
+
+/// The list of the steps.
+fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
+    ui.set_max_width(360.0);
+    let most = ui.ctx().content_rect().height() - 120.0;
+    ScrollArea::vertical().max_height(most).show(ui, |ui| {
+        for (i, step) in open.lesson.steps.iter().enumerate() {
+            let done = if open.done.contains(&i) { "  ✓" } else { "" };
+            let text = format!("{}. {}{done}", i + 1, step.title);
+            if ui.selectable_label(i == open.step, text).clicked() {
+                actions.push(Action::Lesson(LessonCommand::GoTo(i)));
+                ui.close();
+            }
+        }
+    });
+}
+
+/// A mark for each step: those before and this one are filled.
+fn bar(ui: &mut Ui, open: &OpenLesson, says: &str) {
+    let palette = Palette::here(ui);
+    let count = open.lesson.steps.len().max(1) as f32;
+    let height = 4.0 * theme::scale_here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::ProgressIndicator, true, says));
+    let gap = if rect.width() / count > 8.0 { 3.0 } else { 1.0 };
+    let width = (rect.width() - gap * (count - 1.0)) / count;
+    for i in 0..open.lesson.steps.len() {
+        let left = rect.left() + i as f32 * (width + gap);
+        let mark = Rect::from_min_size(pos2(left, rect.center().y - 0.5 * height), vec2(width, height));
+        let fill = if i <= open.step { palette.accent } else { palette.line };
+        ui.painter().rect_filled(mark, 0.5 * height, fill);
+    }
+}
+
+/// What is wrong with the file, since it was edited: the last good version is shown.
+fn problems(ui: &mut Ui, open: &OpenLesson) {
+    if open.problems.is_empty() {
+        return;
+    }
+    let palette = Palette::here(ui);
+    let frame = Frame::new().fill(palette.field).corner_radius(4.0).inner_margin(8.0);
+    frame.stroke(egui::Stroke::new(1.0, palette.error)).show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        ui.add(Label::new(theme::strong(ui, "The file has errors; this is the last good version.")).wrap());
+        for problem in &open.problems {
+            let text = match &open.source {
+                LessonSource::File(path) => {
+                    problem_of(Path::new(path.file_name().unwrap_or_default()), problem)
+                }
+                LessonSource::Shipped(_) => problem.to_string(),
+            };
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                let (sign, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
+                icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
+                ui.add(Label::new(text).wrap().selectable(true));
+            });
+        }
+    });
+}
+
+/// The step.
+fn body(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
+    let Some(step) = open.now() else { return };
+    let heading = egui::RichText::new(&step.title).heading();
+    ui.add(Label::new(heading).wrap());
+    let missing = check::missing(ui.ctx());
+    for block in &step.blocks {
+        text::block(ui, block, |ui| {
+            if let Some(task) = &step.task {
+                task::task(ui, open, task, missing.as_deref(), actions);
+            }
+        });
+    }
+}

@@ -1,0 +1,141 @@
+//! Pointing at the controls that a step names: each gets a ring, and is scrolled into view once.
+//!
+//! Whoever shows a control says so by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson that costs a
+//! look at the memory of egui.
+
+use bevy_egui::egui::{Align, Context, Id, LayerId, Rect, Stroke, StrokeKind, Ui};
+
+use crate::{
+    document::Selection,
+    lesson::Control,
+    panel::{state::Session, theme::Palette},
+};
+
+/// Time for which a new ring swells, seconds, and how often.
+const MOMENT: f64 = 1.2;
+const SWELLS: f64 = 2.0;
+/// Between a control and its ring, points.
+const GAP: f32 = 3.0;
+
+/// The controls that the step names, and where they were shown in this frame.
+#[derive(Clone, Debug, Default)]
+struct Pointed {
+    controls: Vec<Control>,
+    /// The entry into the step, counted.
+    entry: u64,
+    /// When it was.
+    since: f64,
+    /// Those that were scrolled into view, or are in view.
+    revealed: Vec<Control>,
+    found: Vec<(Rect, Rect, LayerId)>,
+}
+
+fn memory() -> Id {
+    Id::new("controls of the lesson")
+}
+
+/// Begins a frame.
+pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
+    let named = session.lesson.as_ref().and_then(|open| Some((open.entries, open.now()?)));
+    let Some((entry, step)) = named.filter(|(_, step)| !step.points.is_empty()) else {
+        ctx.data_mut(|d| d.remove::<Pointed>(memory()));
+        return;
+    };
+    let now = ctx.input(|input| input.time);
+    ctx.data_mut(|d| {
+        let pointed = d.get_temp_mut_or_default::<Pointed>(memory());
+        if pointed.entry != entry || pointed.controls != step.points {
+            *pointed = Pointed { controls: step.points.clone(), entry, since: now, ..Pointed::default() };
+        }
+        pointed.found.clear();
+    });
+}
+
+/// A control is shown here.
+fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
+    let found = ui.data(|d| {
+        let pointed: Pointed = d.get_temp(memory())?;
+        let control = pointed.controls.iter().find(|control| is(control))?.clone();
+        Some((pointed.revealed.contains(&control), control))
+    });
+    let Some((revealed, control)) = found.filter(|_| ui.is_visible() && rect.is_positive()) else { return };
+    let clip = ui.clip_rect();
+    if !revealed && !clip.contains_rect(rect) {
+        ui.scroll_to_rect(rect, Some(Align::Center));
+    }
+    ui.data_mut(|d| {
+        let pointed = d.get_temp_mut_or_default::<Pointed>(memory());
+        if !revealed {
+            pointed.revealed.push(control);
+        }
+        pointed.found.push((rect, clip, ui.layer_id()));
+    });
+}
+
+/// A name without what tells spellings apart.
+fn plain(name: &str) -> String {
+    let name = name.trim_start_matches("shape ").replace([' ', '-'], "_").to_lowercase();
+    match name.as_str() {
+        "luminous_flux" => "flux".to_owned(),
+        "colour_temperature" => "temperature".to_owned(),
+        _ => name,
+    }
+}
+
+/// The knob of a parameter is shown here.
+pub(in crate::panel) fn knob(ui: &Ui, name: &str, rect: Rect) {
+    shown(ui, rect, |control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name)));
+}
+
+/// True if the step points at the knob of a parameter, so that it must be in sight.
+pub(in crate::panel) fn at_knob(ui: &Ui, name: &str) -> bool {
+    let is = |control: &Control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name));
+    ui.data(|d| d.get_temp::<Pointed>(memory())).is_some_and(|pointed| pointed.controls.iter().any(is))
+}
+
+/// The menu of this name is opened here.
+pub(in crate::panel) fn menu(ui: &Ui, name: &str, rect: Rect) {
+    shown(ui, rect, |control| matches!(control, Control::Menu(wanted) if plain(wanted) == plain(name)));
+}
+
+/// The choice of this name is made here: `shading`, `reflection`, `terms`.
+pub(in crate::panel) fn button(ui: &Ui, name: &str, rect: Rect) {
+    shown(ui, rect, |control| matches!(control, Control::Button(wanted) if plain(wanted) == plain(name)));
+}
+
+/// The tab of the panel with this id is here.
+pub(in crate::panel) fn tab(ui: &Ui, id: &str, rect: Rect) {
+    shown(ui, rect, |control| matches!(control, Control::Tab(wanted) if plain(wanted) == plain(id)));
+}
+
+/// A part of the scene has its row here.
+pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: Rect) {
+    shown(
+        ui,
+        rect,
+        |control| matches!(control, Control::Part(name) if name.find(&session.document) == Some(part)),
+    );
+}
+
+/// True if the step points at a part of the scene, so that the scene list must be in sight.
+pub(in crate::panel) fn at_part(session: &Session) -> bool {
+    let step = session.lesson.as_ref().and_then(|open| open.now());
+    step.is_some_and(|step| step.points.iter().any(|control| matches!(control, Control::Part(_))))
+}
+
+/// Paints the rings, when everything else is shown.
+pub(in crate::panel) fn show(ctx: &Context, palette: &Palette) {
+    let Some(pointed) = ctx.data(|d| d.get_temp::<Pointed>(memory())) else { return };
+    let age = ctx.input(|input| input.time) - pointed.since;
+    let swell = if age < MOMENT {
+        ctx.request_repaint();
+        (std::f64::consts::PI * SWELLS * age / MOMENT).sin().abs() as f32
+    } else {
+        0.0
+    };
+    for (rect, clip, layer) in pointed.found {
+        let painter = ctx.layer_painter(layer).with_clip_rect(clip.expand(GAP + 4.0));
+        let stroke = Stroke::new(2.0 + swell, palette.accent);
+        painter.rect_stroke(rect.expand(GAP + 2.0 * swell), 5.0, stroke, StrokeKind::Outside);
+    }
+}

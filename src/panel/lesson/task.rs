@@ -1,0 +1,175 @@
+//! The task of a step: a question with answers, or something to be done or found.
+
+use bevy_egui::egui::{
+    self, Align, Label, Layout, Rect, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
+    WidgetType, pos2, vec2,
+};
+
+use super::text::{job, paragraph, spoken};
+use crate::{
+    lesson::{AnswerChoice, Goal, Run, Task},
+    panel::{
+        icon::{self, Icon},
+        state::{Action, LessonCommand, OpenLesson},
+        theme::{self, Palette},
+    },
+};
+
+/// Width of the bar at the left of a task, points.
+const BAR: f32 = 3.0;
+/// The room of the circle before an answer, points.
+const CIRCLE: f32 = 24.0;
+
+/// Shows the task. `missing` says why its condition cannot be told now.
+pub(super) fn task(
+    ui: &mut Ui,
+    open: &OpenLesson,
+    task: &Task,
+    missing: Option<&str>,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    ui.add_space(2.0);
+    let frame = egui::Frame::new().fill(palette.raised).corner_radius(6.0).inner_margin(egui::Margin {
+        left: (12.0 * scale) as i8,
+        right: (10.0 * scale) as i8,
+        top: (8.0 * scale) as i8,
+        bottom: (10.0 * scale) as i8,
+    });
+    let shown = frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        let name = match task {
+            Task::Predict { .. } => "Your prediction",
+            Task::Do(_) => "Do it",
+            Task::Find(_) => "Find it",
+        };
+        heading(ui, name, open.is_done());
+        match task {
+            Task::Predict { question, answers } => predict(ui, open, question, answers, actions),
+            Task::Do(goal) | Task::Find(goal) => reach(ui, open, goal, missing, actions),
+        }
+    });
+    let rect = shown.response.rect;
+    let bar = Rect::from_min_max(rect.min, pos2(rect.left() + BAR * scale, rect.bottom()));
+    ui.painter().rect_filled(bar, 1.5, palette.accent);
+    ui.add_space(2.0);
+}
+
+/// The kind of task, and a check mark once it is done.
+fn heading(ui: &mut Ui, name: &str, done: bool) {
+    let palette = Palette::here(ui);
+    ui.horizontal(|ui| {
+        let size = TextStyle::Body.resolve(ui.style()).size;
+        ui.label(theme::strong(ui, name).color(palette.accent));
+        if done {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                ui.label(theme::strong(ui, "Done"));
+                check(ui, size);
+            });
+        }
+    });
+}
+
+/// A check mark on a disc.
+fn check(ui: &mut Ui, size: f32) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(1.25 * size, 1.25 * size), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, "done"));
+    ui.painter().circle_filled(rect.center(), 0.6 * size, palette.accent);
+    icon::paint(ui.painter(), rect.shrink(0.28 * size), Icon::Check, palette.panel);
+}
+
+fn predict(
+    ui: &mut Ui,
+    open: &OpenLesson,
+    question: &[Run],
+    answers: &[AnswerChoice],
+    actions: &mut Vec<Action>,
+) {
+    paragraph(ui, question);
+    ui.add_space(2.0);
+    let chosen = open.answer();
+    let tried = open.answers.get(&open.step).map_or(&[][..], Vec::as_slice);
+    for (i, choice) in answers.iter().enumerate() {
+        // Once the right one is known, it stays marked.
+        let known = tried.contains(&i) || (open.is_done() && choice.right);
+        if answer(ui, choice, chosen == Some(i), known) {
+            actions.push(Action::Lesson(LessonCommand::Answer(i)));
+        }
+        if known && (chosen == Some(i) || choice.right) && !choice.feedback.is_empty() {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = 0.0;
+                ui.add_space(CIRCLE * theme::scale_here(ui));
+                ui.vertical(|ui| paragraph(ui, &choice.feedback));
+            });
+            ui.add_space(2.0);
+        }
+    }
+}
+
+/// An answer; true if it was chosen now. `known` shows whether it is right.
+fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let left = CIRCLE * scale;
+    let mut text = job(ui, &choice.text, TextStyle::Body);
+    text.wrap.max_width = ui.available_width() - left - 6.0;
+    let galley = ui.painter().layout_job(text);
+    let height = galley.size().y + 8.0 * scale;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    response.widget_info(|| {
+        let verdict = match (known, choice.right) {
+            (false, _) => "",
+            (true, true) => ": right",
+            (true, false) => ": wrong",
+        };
+        WidgetInfo::selected(
+            WidgetType::RadioButton,
+            true,
+            chosen,
+            format!("{}{verdict}", spoken(&choice.text)),
+        )
+    });
+    let hot = response.hovered() || response.has_focus();
+    let fill = if chosen {
+        palette.chosen
+    } else if hot {
+        palette.hovered
+    } else {
+        palette.panel
+    };
+    let edge = if chosen || hot { palette.accent } else { palette.line };
+    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, edge), StrokeKind::Inside);
+    let centre = pos2(rect.left() + 0.5 * left, rect.top() + 0.5 * (height.min(28.0 * scale)));
+    let sign = Rect::from_center_size(centre, vec2(10.0, 10.0) * scale);
+    match (known, choice.right) {
+        (true, true) => icon::paint(ui.painter(), sign, Icon::Check, palette.accent),
+        (true, false) => icon::paint(ui.painter(), sign, Icon::Cross, palette.warning),
+        _ => {
+            ui.painter().circle_stroke(centre, 5.0 * scale, Stroke::new(1.2, palette.weak));
+        }
+    }
+    ui.painter().galley(pos2(rect.left() + left, rect.top() + 4.0 * scale), galley, palette.text);
+    response.clicked()
+}
+
+fn reach(ui: &mut Ui, open: &OpenLesson, goal: &Goal, missing: Option<&str>, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    paragraph(ui, &goal.text);
+    if !open.is_done()
+        && let Some(why) = missing
+    {
+        let text = RichText::new(format!("Not yet: {why}.")).small().color(palette.weak);
+        ui.add(Label::new(text).wrap());
+    }
+    let Some(hint) = &goal.hint else { return };
+    if open.hint {
+        paragraph(ui, hint);
+    }
+    let words = if open.hint { "Hide the hint" } else { "Show a hint" };
+    if ui.button(words).clicked() {
+        actions.push(Action::Lesson(LessonCommand::Hint));
+    }
+}

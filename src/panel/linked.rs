@@ -1,0 +1,245 @@
+//! The symbol that is pointed at: in an equation, at its knob, at its vector in the picture, at its number or its curve.
+//! In the next frame, all that stands for it lights.
+
+use bevy_egui::egui::{Context, Id, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, vec2};
+
+use super::theme::Palette;
+use crate::text::mathematics::same_symbol;
+
+/// What an equation is about. The same letter stands for one thing in that of a surface, and for another in that of a
+/// light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Domain {
+    /// Reflection models, with their knobs, vectors and curves.
+    #[default]
+    Surface,
+    /// Lights.
+    Light,
+    /// Object types.
+    Shape,
+}
+
+/// The symbols of one thing, such as the two of `N·L`.
+#[derive(Clone, Debug, PartialEq)]
+struct Pointed {
+    domain: Domain,
+    symbols: Vec<String>,
+    /// The pointer is there; else the keyboard focus.
+    by_pointer: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Links {
+    /// What was pointed at in the last frame.
+    lit: Option<Pointed>,
+    /// What is pointed at in this one.
+    next: Option<Pointed>,
+    /// That of the widgets that are shown now.
+    domain: Domain,
+}
+
+fn memory() -> Id {
+    Id::new("linked symbols")
+}
+
+fn links<R>(ctx: &Context, f: impl FnOnce(&mut Links) -> R) -> R {
+    ctx.data_mut(|d| f(d.get_temp_mut_or_default::<Links>(memory())))
+}
+
+/// A frame begins: what was pointed at in the one before lights.
+pub(super) fn begin(ctx: &Context) {
+    links(ctx, |links| links.lit = links.next.take());
+}
+
+/// A frame is over. There is another one if something else is to light.
+pub(super) fn end(ctx: &Context) {
+    if links(ctx, |links| links.lit != links.next) {
+        ctx.request_repaint();
+    }
+}
+
+/// Shows widgets whose symbols belong to something else than a surface.
+pub(super) fn within<R>(ui: &mut Ui, domain: Domain, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let before = links(ui.ctx(), |links| std::mem::replace(&mut links.domain, domain));
+    let out = add(ui);
+    links(ui.ctx(), |links| links.domain = before);
+    out
+}
+
+fn note(ctx: &Context, symbols: &[&str], by_pointer: bool) {
+    let symbols: Vec<_> = symbols.iter().filter(|s| !s.is_empty()).map(|s| (*s).to_owned()).collect();
+    if symbols.is_empty() {
+        return;
+    }
+    links(ctx, |links| {
+        // The focus stays where the last click was; the pointer is where one looks.
+        let weaker = !by_pointer && links.next.as_ref().is_some_and(|next| next.by_pointer);
+        if !weaker {
+            links.next = Some(Pointed { domain: links.domain, symbols, by_pointer });
+        }
+    });
+}
+
+/// The pointer is at something with these symbols.
+pub(super) fn point(ctx: &Context, symbols: &[&str]) {
+    note(ctx, symbols, true);
+}
+
+/// Notes if the pointer, or the keyboard focus, is in this part of a panel, which has these symbols.
+pub(super) fn touch(ui: &Ui, rect: Rect, symbols: &[&str]) {
+    let seen = rect.intersect(ui.clip_rect());
+    let has = |id: Id| {
+        let widget = ui.ctx().viewport(|viewport| viewport.prev_pass.widgets.get(id).copied());
+        widget.is_some_and(|w| w.layer_id == ui.layer_id() && seen.contains(w.rect.center()))
+    };
+    // What is dragged keeps the pointer wherever it goes.
+    let pointed = match ui.ctx().dragged_id() {
+        Some(id) => has(id),
+        None => ui.rect_contains_pointer(rect),
+    };
+    if pointed {
+        note(ui.ctx(), symbols, true);
+    } else if ui.memory(|m| m.focused()).is_some_and(has) {
+        note(ui.ctx(), symbols, false);
+    }
+}
+
+/// The symbols that light in a domain; often none.
+pub(super) fn lit_in(ctx: &Context, domain: Domain) -> Vec<String> {
+    links(ctx, |links| match &links.lit {
+        Some(lit) if lit.domain == domain => lit.symbols.clone(),
+        _ => Vec::new(),
+    })
+}
+
+/// True if a symbol lights among the widgets that are shown now.
+pub(super) fn is_lit(ctx: &Context, symbol: &str) -> bool {
+    let domain = links(ctx, |links| links.domain);
+    !symbol.is_empty() && lit_in(ctx, domain).iter().any(|lit| same_symbol(lit, symbol))
+}
+
+/// The ground of what lights: a tint, and a line below it, since a tint alone is easily missed.
+pub(super) fn ground(rect: Rect, palette: &Palette) -> Shape {
+    let line = [rect.left_bottom(), rect.right_bottom()].map(|at| at - vec2(0.0, 1.0));
+    Shape::Vec(vec![
+        Shape::rect_filled(rect, 3.0, palette.chosen),
+        Shape::line_segment(line, Stroke::new(1.5, palette.accent)),
+    ])
+}
+
+/// The ground of a row that lights: a tint with a frame.
+pub(super) fn row_ground(rect: Rect, palette: &Palette) -> Shape {
+    let frame = Stroke::new(1.0, palette.accent);
+    Shape::Vec(vec![
+        Shape::rect_filled(rect, 3.0, palette.chosen),
+        Shape::rect_stroke(rect, 3.0, frame, StrokeKind::Inside),
+    ])
+}
+
+/// Shows something that stands for these symbols, on a ground if it lights, which `lit` says.
+pub(super) fn linked(
+    ui: &mut Ui,
+    symbols: &[&str],
+    lit: impl FnOnce(&Context) -> bool,
+    add: impl FnOnce(&mut Ui) -> Response,
+) -> Response {
+    let under = ui.painter().add(Shape::Noop);
+    let response = add(ui);
+    touch(ui, response.rect, symbols);
+    if lit(ui.ctx()) {
+        ui.painter().set(under, ground(response.rect.expand2(vec2(2.0, 0.0)), &Palette::here(ui)));
+    }
+    response
+}
+
+/// The distance from a place to a line through points.
+pub(super) fn distance(at: Pos2, path: &[Pos2]) -> f32 {
+    let to = |a: Pos2, b: Pos2| {
+        let (along, from) = (b - a, at - a);
+        let part = (from.dot(along) / along.length_sq().max(1e-6)).clamp(0.0, 1.0);
+        (from - part * along).length()
+    };
+    path.windows(2).map(|ends| to(ends[0], ends[1])).fold(f32::INFINITY, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::{RawInput, pos2};
+
+    use super::*;
+
+    fn frame(ctx: &Context, add: impl Fn(&Context)) {
+        let _ = ctx.run_ui(RawInput::default(), |ui| {
+            begin(ui.ctx());
+            add(ui.ctx());
+            end(ui.ctx());
+        });
+    }
+
+    #[test]
+    fn what_is_pointed_at_lights_for_a_frame_in_its_domain() {
+        let ctx = Context::default();
+        frame(&ctx, |ctx| point(ctx, &["k_{d}"]));
+        frame(&ctx, |ctx| {
+            assert!(is_lit(ctx, "k_d") && !is_lit(ctx, "k_s") && !is_lit(ctx, ""));
+            assert_eq!(lit_in(ctx, Domain::Light), [""; 0]);
+        });
+        frame(&ctx, |ctx| assert!(!is_lit(ctx, "k_d"), "nothing points any more"));
+        frame(&ctx, |ctx| point(ctx, &["", ""]));
+        frame(&ctx, |ctx| assert!(!is_lit(ctx, "")));
+    }
+
+    #[test]
+    fn the_same_letter_of_a_light_is_another_symbol() {
+        let ctx = Context::default();
+        let both = |lit: [bool; 2]| {
+            let _ = ctx.run_ui(RawInput::default(), |ui| {
+                begin(ui.ctx());
+                let surface = is_lit(ui.ctx(), "I");
+                let light = within(ui, Domain::Light, |ui| is_lit(ui.ctx(), "I"));
+                assert_eq!([surface, light], lit);
+                within(ui, Domain::Light, |ui| point(ui.ctx(), &["I"]));
+            });
+        };
+        both([false, false]);
+        both([false, true]);
+    }
+
+    #[test]
+    fn the_pointer_counts_more_than_the_focus() {
+        let ctx = Context::default();
+        for order in [[true, false], [false, true]] {
+            frame(&ctx, |ctx| order.iter().for_each(|by| note(ctx, &[if *by { "a" } else { "b" }], *by)));
+            frame(&ctx, |ctx| assert!(is_lit(ctx, "a") && !is_lit(ctx, "b")));
+        }
+    }
+
+    #[test]
+    fn only_a_change_asks_for_another_frame() {
+        let ctx = Context::default();
+        let asks = |symbol: &'static str| {
+            let output = ctx.run_ui(RawInput::default(), |ui| {
+                begin(ui.ctx());
+                point(ui.ctx(), &[symbol]);
+                end(ui.ctx());
+            });
+            output.viewport_output.values().any(|v| v.repaint_delay.is_zero())
+        };
+        // The first frames of egui ask by themselves.
+        (0..6).for_each(|_| {
+            asks("");
+        });
+        // After each frame that asks, egui draws another one by itself.
+        for symbol in ["a", "b", ""] {
+            assert_eq!([symbol; 5].map(asks), [true, true, false, false, false], "{symbol}");
+        }
+    }
+
+    #[test]
+    fn distances_are_those_to_the_nearest_part() {
+        let path = [pos2(0.0, 0.0), pos2(10.0, 0.0), pos2(10.0, 10.0)];
+        assert_eq!(distance(pos2(5.0, 3.0), &path), 3.0);
+        assert_eq!(distance(pos2(13.0, 14.0), &path), 5.0);
+        assert_eq!(distance(pos2(0.0, 0.0), &path[..1]), f32::INFINITY);
+    }
+}

@@ -1,0 +1,125 @@
+//! The file with what the user has done of the lessons, in the folder of the user's data.
+
+use std::{io, path::Path};
+
+use super::state::{Progress, Session, Severity};
+use crate::{
+    files::{self, FileError, tidy},
+    library::assets::data_folder,
+};
+
+/// The name of the file.
+const FILE: &str = "lessons.json";
+/// It is not larger.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Reads what was done. No file means nothing; a file that cannot be read means nothing and a sentence that says so.
+#[must_use]
+pub fn load(folder: &Path) -> (Progress, Option<String>) {
+    let path = folder.join(FILE);
+    let unreadable = |why: &dyn std::fmt::Display| {
+        format!(
+            "What you have done of the lessons cannot be read from {} ({why}); the lessons begin anew.",
+            path.display()
+        )
+    };
+    let bytes = match files::read(&path, MAX_BYTES) {
+        Ok(bytes) => bytes,
+        Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => return (Progress::default(), None),
+        Err(e) => return (Progress::default(), Some(unreadable(&e))),
+    };
+    match serde_json::from_slice(&bytes) {
+        Ok(progress) => (progress, None),
+        Err(e) => (Progress::default(), Some(unreadable(&e))),
+    }
+}
+
+/// Writes what was done of the lesson of this name; what the file has of others stays, since another window may have
+/// written it.
+///
+/// # Errors
+/// A sentence, when the folder or the file cannot be written.
+pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String> {
+    let path = folder.join(FILE);
+    let write = || -> Result<(), FileError> {
+        std::fs::create_dir_all(folder)?;
+        let (mut all, _) = load(folder);
+        all.last.clone_from(&progress.last);
+        if let Some(past) = progress.of(name) {
+            all.lessons.insert(name.to_owned(), past.clone());
+        }
+        let mut text = serde_json::to_string_pretty(&all).map_err(io::Error::from)?;
+        text.push('\n');
+        files::write(&path, text.as_bytes())
+    };
+    write().map_err(|e| {
+        format!("What you have done of the lessons cannot be written to {}: {e}.", path.display())
+    })
+}
+
+/// Reads what was done in earlier sessions into the state; says so when it cannot be read.
+pub fn load_progress(session: &mut Session) {
+    let Some(folder) = data_folder() else { return };
+    let _ = tidy(&folder);
+    let (progress, complaint) = load(&folder);
+    session.progress = progress;
+    if let Some(complaint) = complaint {
+        session.say(Severity::Warning, complaint);
+    }
+}
+
+/// Writes what was done of a lesson; says so when it cannot be written.
+pub fn save_progress(session: &mut Session, name: &str) {
+    if let Some(folder) = data_folder()
+        && let Err(complaint) = save(&folder, &session.progress, name)
+    {
+        session.say(Severity::Warning, complaint);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::state::Past;
+
+    fn past(step: usize) -> Past {
+        Past { title: "Gamma".to_owned(), step, steps: 9, done: [0, 2].into(), finished: false }
+    }
+
+    #[test]
+    fn what_is_saved_is_loaded_and_other_windows_lose_nothing() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        let one = Progress { last: Some("a".to_owned()), lessons: [("a".to_owned(), past(3))].into() };
+        save(folder.path(), &one, "a")?;
+        assert_eq!(load(folder.path()), (one, None));
+        // A window that does not know of it.
+        let two = Progress { last: Some("b".to_owned()), lessons: [("b".to_owned(), past(1))].into() };
+        save(folder.path(), &two, "b")?;
+        let (both, _) = load(folder.path());
+        assert_eq!((both.of("a"), both.of("b")), (Some(&past(3)), Some(&past(1))));
+        assert_eq!(both.last.as_deref(), Some("b"));
+        Ok(())
+    }
+
+    #[test]
+    fn no_file_means_nothing_and_a_broken_one_says_so() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        assert_eq!(load(folder.path()), (Progress::default(), None));
+        for broken in ["{ \"lessons\": ", "[1, 2]", "{ \"lessons\": { \"a\": { \"step\": -1 } } }", "\u{0}"] {
+            std::fs::write(folder.path().join(FILE), broken)?;
+            let (progress, complaint) = load(folder.path());
+            assert_eq!(progress, Progress::default(), "{broken}");
+            assert!(complaint.is_some_and(|c| c.contains(FILE) && c.contains("begin anew")), "{broken}");
+            save(folder.path(), &Progress { last: Some("a".to_owned()), ..Progress::default() }, "a")?;
+            assert_eq!(load(folder.path()).1, None, "it is whole again");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn progress_in_words() {
+        assert_eq!((past(3).words(), past(3).fraction()), ("step 4 of 9".to_owned(), 3.0 / 9.0));
+        let finished = Past { finished: true, ..past(0) };
+        assert_eq!((finished.words(), finished.fraction()), ("finished".to_owned(), 1.0));
+    }
+}

@@ -1,0 +1,147 @@
+//! The user's own document while a lesson shows scenes of its own: all of it waits, and comes back as it was.
+
+use std::{
+    mem::swap,
+    path::{Path, PathBuf},
+};
+
+use super::{ModelSlots, OnDisk, Pin, Plots, Session, StashedValues, View};
+use crate::{
+    channel::DebugChannel,
+    document::{Document, Selection},
+    files::printable,
+    optics::TermSelection,
+    scene::variant::MAX_VARIANTS,
+};
+
+/// The choices of the view that belong to what is shown, not to the user.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shown {
+    terms: TermSelection,
+    channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
+    active: usize,
+    pinned: Option<Pin>,
+    bottom_open: bool,
+    bottom_tab: String,
+}
+
+impl Shown {
+    pub(super) fn of(view: &View) -> Self {
+        Self {
+            terms: view.terms,
+            channels: view.channels,
+            active: view.active,
+            pinned: view.pinned,
+            bottom_open: view.bottom_open,
+            bottom_tab: view.bottom_tab.clone(),
+        }
+    }
+
+    pub(super) fn put(self, view: &mut View) {
+        view.terms = self.terms;
+        view.channels = self.channels;
+        view.active = self.active;
+        view.pinned = self.pinned;
+        view.bottom_open = self.bottom_open;
+        view.bottom_tab = self.bottom_tab;
+        view.blinking = false;
+    }
+}
+
+/// A document that waits, with all that belongs to it.
+#[derive(Clone, Debug)]
+pub struct Aside {
+    document: Document,
+    path: Option<PathBuf>,
+    disk: OnDisk,
+    stashed: StashedValues,
+    selection: Selection,
+    shown: Shown,
+    left_open: bool,
+    examples_open: bool,
+    plots: Plots,
+    model_slots: ModelSlots,
+}
+
+impl Aside {
+    /// A document that nobody changed, in no file, for the place of the user's own.
+    pub(super) fn around(document: Document, session: &Session) -> Self {
+        let mut view = View::default();
+        (view.bottom_open, view.bottom_tab) = (false, session.view.bottom_tab.clone());
+        Self {
+            document,
+            path: None,
+            disk: OnDisk::default(),
+            stashed: StashedValues::default(),
+            selection: Selection::Room,
+            shown: Shown::of(&view),
+            left_open: true,
+            examples_open: false,
+            plots: Plots::default(),
+            model_slots: session.model_slots.clone(),
+        }
+    }
+
+    fn is_dirty(&self) -> bool {
+        self.disk.lacks_document() || self.document.differs()
+    }
+}
+
+/// The title of a document: the name of the scene, else the name of the file.
+fn title_of(document: &Document, path: Option<&Path>) -> String {
+    let file = || Some(printable(&path?.file_stem()?.to_string_lossy()).into_owned());
+    document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+}
+
+impl Session {
+    /// Exchanges what is shown and what waits.
+    pub(super) fn exchange(&mut self, aside: &mut Aside) {
+        self.document.end_gesture();
+        swap(&mut self.document, &mut aside.document);
+        swap(&mut self.path, &mut aside.path);
+        swap(&mut self.disk, &mut aside.disk);
+        swap(&mut self.stashed, &mut aside.stashed);
+        swap(&mut self.selection, &mut aside.selection);
+        swap(&mut self.plots, &mut aside.plots);
+        swap(&mut self.model_slots, &mut aside.model_slots);
+        swap(&mut self.view.left_open, &mut aside.left_open);
+        swap(&mut self.view.examples_open, &mut aside.examples_open);
+        let shown = std::mem::replace(&mut aside.shown, Shown::of(&self.view));
+        shown.put(&mut self.view);
+        (self.renaming, self.match_draft) = (None, None);
+        self.messages.another_document();
+    }
+
+    /// The user's own document, also while a lesson is shown.
+    #[must_use]
+    pub fn own_document(&self) -> &Document {
+        self.lesson.as_ref().map_or(&self.document, |lesson| &lesson.aside.document)
+    }
+
+    /// Its file.
+    #[must_use]
+    pub fn own_path(&self) -> Option<&Path> {
+        self.lesson.as_ref().map_or(self.path.as_deref(), |lesson| lesson.aside.path.as_deref())
+    }
+
+    /// Its title: the name of the scene, else the name of the file.
+    #[must_use]
+    pub fn own_title(&self) -> String {
+        title_of(self.own_document(), self.own_path())
+    }
+
+    /// True if the user's own document differs from its file.
+    #[must_use]
+    pub fn is_dirty(&self) -> bool {
+        match &self.lesson {
+            Some(lesson) => lesson.aside.is_dirty(),
+            None => self.disk.lacks_document() || self.document.differs(),
+        }
+    }
+
+    /// True if what is shown is the user's own, and differs from its file. Scenes of a lesson are nobody's loss.
+    #[must_use]
+    pub fn shows_unsaved(&self) -> bool {
+        self.lesson.is_none() && self.is_dirty()
+    }
+}

@@ -1,0 +1,461 @@
+//! The steps of the lesson that is open: its scenes and choices of the view, answers, and the way out.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{
+    Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
+    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View,
+    aside::Shown,
+    open_lesson::{Entered, problem_of},
+};
+use crate::{
+    document::Document,
+    files,
+    lesson::{Goal, Lesson, Problem, Task, WindowChange, shipped::LESSONS},
+    panel::follow::follow_registry,
+    registry::Registry,
+    scene::Scene,
+};
+
+/// True if a goal is about the pixel that is pinned.
+fn is_about_pixels(goal: &Goal) -> bool {
+    goal.until.text().contains("probe.")
+}
+
+/// The places that steps pin are fractions of a picture with these sides: a window of another shape shows more or less
+/// of the scene above and below.
+const PICTURE: [u32; 2] = [1600, 900];
+
+impl Session {
+    pub(super) fn lesson(&mut self, command: LessonCommand, registry: &Registry) -> Vec<Effect> {
+        match command {
+            LessonCommand::Open(LessonSource::Shipped(i)) => match LESSONS.get(i) {
+                Some(lesson) => {
+                    self.begin_lesson(Arc::new(lesson.clone()), LessonSource::Shipped(i), registry)
+                }
+                None => Vec::new(),
+            },
+            LessonCommand::Open(LessonSource::File(path)) => vec![Effect::OpenLesson(path)],
+            LessonCommand::OpenDialog => vec![Effect::PickLesson],
+            LessonCommand::Continue => match self.progress.next() {
+                Some(source) => self.lesson(LessonCommand::Open(source), registry),
+                None => Vec::new(),
+            },
+            _ if self.lesson.is_none() => {
+                let text = "No lesson is open: Help › Lessons lists them.";
+                self.say(Severity::Info, text);
+                Vec::new()
+            }
+            LessonCommand::Leave => self.leave_lesson(registry),
+            LessonCommand::Next => self.next_step(registry),
+            LessonCommand::Previous => {
+                let before = self.lesson.as_ref().and_then(|lesson| lesson.step.checked_sub(1));
+                before.map_or_else(Vec::new, |step| self.return_to(step, registry))
+            }
+            LessonCommand::Again => {
+                let step = self.lesson.as_ref().map_or(0, |lesson| lesson.step);
+                self.return_to(step, registry)
+            }
+            LessonCommand::GoTo(step) => self.return_to(step, registry),
+            LessonCommand::Answer(answer) => self.choose_answer(answer),
+            LessonCommand::Point(pin) => {
+                self.view.pinned = Some(pin);
+                Vec::new()
+            }
+            LessonCommand::Solved(step) => self.solved(step),
+            LessonCommand::Hint => {
+                self.lesson.iter_mut().for_each(|lesson| lesson.hint = !lesson.hint);
+                Vec::new()
+            }
+            LessonCommand::Tree(open) => {
+                self.lesson.iter_mut().for_each(|lesson| lesson.tree_open = open);
+                Vec::new()
+            }
+        }
+    }
+
+    /// The scene that a step begins with when nothing was changed before.
+    fn scene_of(lesson: &Lesson, step: usize, registry: &Registry) -> Result<Scene, String> {
+        lesson.state(step, registry)
+    }
+
+    /// Opens a lesson at the step that the learner was at; a finished one begins anew.
+    pub(in crate::panel) fn begin_lesson(
+        &mut self,
+        lesson: Arc<Lesson>,
+        source: LessonSource,
+        registry: &Registry,
+    ) -> Vec<Effect> {
+        if lesson.steps.is_empty() {
+            return Vec::new();
+        }
+        let mut effects = self.leave_lesson(registry);
+        let past = self.progress.of(&source.name()).filter(|past| !(past.finished && past.step == 0));
+        let step = past.map_or(0, |past| past.step.min(lesson.steps.len() - 1));
+        let done = past.map(|past| past.done.clone()).unwrap_or_default();
+        let scene = match Self::scene_of(&lesson, step, registry) {
+            Ok(scene) => scene,
+            Err(why) => {
+                self.say(Severity::Error, format!("The lesson “{}” was not opened: {why}", lesson.title));
+                return effects;
+            }
+        };
+        let mut aside = Aside::around(Document::new(scene), self);
+        self.exchange(&mut aside);
+        self.lesson = Some(OpenLesson {
+            lesson,
+            source,
+            step,
+            answers: BTreeMap::new(),
+            done,
+            hint: false,
+            asking: false,
+            problems: Vec::new(),
+            tree_open: false,
+            entries: 0,
+            entered: BTreeMap::new(),
+            aside: Box::new(aside),
+        });
+        self.select_first();
+        effects.push(Effect::Camera(CameraChange::PutAside));
+        self.show_from_start(step);
+        effects.extend(self.arrived());
+        effects
+    }
+
+    /// Shows a step with the choices of the view that all steps up to it make.
+    fn show_from_start(&mut self, step: usize) {
+        let Some(lesson) = self.lesson.as_ref().map(|open| open.lesson.clone()) else { return };
+        lesson.steps.iter().take(step + 1).for_each(|step| self.change_window(&step.window));
+    }
+
+    /// Makes the choices of the view that a step wants.
+    fn change_window(&mut self, change: &WindowChange) {
+        if let Some(active) = change.active {
+            self.view.active = active.min(self.document.variants.len());
+        }
+        if let Some(part) = change.select.as_ref().and_then(|name| name.find(&self.document)) {
+            self.select(part);
+        }
+        if let Some(terms) = change.terms {
+            self.view.terms = terms;
+        }
+        if let Some(channel) = change.channel {
+            let active = self.view.active;
+            self.view.channels.get_mut(active).into_iter().for_each(|shown| *shown = channel);
+        }
+        let tab = |open: bool, tab: &str, view: &mut View| {
+            if open {
+                view.unfold(tab);
+            } else if view.bottom_tab == tab {
+                view.bottom_open = false;
+            }
+        };
+        if let Some(open) = change.explain {
+            tab(open, EXPLAIN_TAB, &mut self.view);
+        }
+        if let Some(kind) = change.plots {
+            tab(kind.is_some(), PLOTS_TAB, &mut self.view);
+            kind.into_iter().for_each(|kind| self.plots.kind = kind);
+        }
+        if let Some(place) = change.pin {
+            let Some(place) = place else {
+                self.view.pinned = None;
+                return;
+            };
+            let pixel = [0, 1].map(|i| (place[i].clamp(0.0, 1.0) * PICTURE[i] as f32) as u32);
+            let fov = self.document.observer.field_of_view;
+            self.view.pinned = Some(Pin::of_pixel(self.active(), pixel, PICTURE, fov));
+        }
+    }
+
+    /// A step was entered: it is what *again* and *previous* come back to.
+    fn arrived(&mut self) -> Vec<Effect> {
+        let entered = Entered {
+            scene: Arc::new(self.document.scene().clone()),
+            selection: self.selection,
+            shown: Shown::of(&self.view),
+            plots: self.plots.clone(),
+        };
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        open.entered.insert(open.step, entered);
+        self.note_progress()
+    }
+
+    /// Keeps the step and what was done.
+    fn note_progress(&mut self) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        (open.hint, open.asking) = (false, false);
+        open.entries += 1;
+        let name = open.source.name();
+        let past = self.progress.lessons.entry(name.clone()).or_default();
+        *past = Past {
+            title: open.lesson.title.clone(),
+            step: open.step,
+            steps: open.lesson.steps.len(),
+            done: open.done.clone(),
+            finished: past.finished,
+        };
+        self.progress.last = Some(name.clone());
+        vec![Effect::SaveProgress(name)]
+    }
+
+    /// Makes a scene the one that is shown, with a history of its own, unless it is.
+    fn show_scene(&mut self, scene: Scene, registry: &Registry) -> Vec<Effect> {
+        if self.document == scene {
+            return Vec::new();
+        }
+        let home = self.document.observer != scene.observer;
+        self.document = Document::new(scene);
+        self.stashed.clear();
+        self.renaming = None;
+        self.messages.another_document();
+        if !self.exists(self.selection) {
+            self.select_first();
+        }
+        follow_registry(self, registry);
+        if home { vec![Effect::HomeView] } else { Vec::new() }
+    }
+
+    fn next_step(&mut self, registry: &Registry) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        if !open.is_done() && !open.asking {
+            open.asking = true;
+            return Vec::new();
+        }
+        if open.is_last() {
+            return self.finish_lesson(registry);
+        }
+        open.step += 1;
+        let (lesson, step) = (open.lesson.clone(), open.step);
+        let Some(now) = lesson.steps.get(step) else { return Vec::new() };
+        let mut effects = Vec::new();
+        if let Some(change) = &now.scene {
+            // The learner may have removed what the step changes: then it begins as if nothing had been touched.
+            let scene =
+                change.apply(&self.document, registry).or_else(|_| Self::scene_of(&lesson, step, registry));
+            match scene {
+                Ok(scene) => effects.extend(self.show_scene(scene, registry)),
+                Err(why) => self.say(Severity::Error, why),
+            }
+        }
+        self.change_window(&now.window);
+        effects.extend(self.arrived());
+        effects
+    }
+
+    /// Goes to a step as it began when it was entered last.
+    fn return_to(&mut self, step: usize, registry: &Registry) -> Vec<Effect> {
+        let Some(open) = self.lesson.as_mut().filter(|open| step < open.lesson.steps.len()) else {
+            return Vec::new();
+        };
+        open.step = step;
+        open.answers.remove(&step);
+        let (lesson, entered) = (open.lesson.clone(), open.entered.get(&step).cloned());
+        let Some(entered) = entered else {
+            return match Self::scene_of(&lesson, step, registry) {
+                Ok(scene) => {
+                    let mut effects = self.show_scene(scene, registry);
+                    Shown::of(&View::default()).put(&mut self.view);
+                    self.plots = Plots::default();
+                    self.show_from_start(step);
+                    effects.extend(self.arrived());
+                    effects
+                }
+                Err(why) => {
+                    self.say(Severity::Error, why);
+                    Vec::new()
+                }
+            };
+        };
+        let mut effects = self.show_scene((*entered.scene).clone(), registry);
+        entered.shown.put(&mut self.view);
+        self.plots = entered.plots;
+        self.select(entered.selection);
+        effects.extend(self.note_progress());
+        effects
+    }
+
+    fn choose_answer(&mut self, answer: usize) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        let (step, now) = (open.step, open.lesson.steps.get(open.step));
+        let Some(Task::Predict { answers, .. }) = now.and_then(|step| step.task.as_ref()) else {
+            return Vec::new();
+        };
+        let Some(chosen) = answers.get(answer) else { return Vec::new() };
+        let right = chosen.right;
+        open.asking = false;
+        let all = open.answers.entry(step).or_default();
+        if all.last() != Some(&answer) {
+            all.push(answer);
+        }
+        if right { self.solved(step) } else { Vec::new() }
+    }
+
+    fn solved(&mut self, step: usize) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        if !open.done.insert(step) {
+            return Vec::new();
+        }
+        open.asking = false;
+        let (hint, entries) = (open.hint, open.entries);
+        let effects = self.note_progress();
+        self.lesson.iter_mut().for_each(|open| (open.hint, open.entries) = (hint, entries));
+        effects
+    }
+
+    /// The task of the step that is shown, unless it is done.
+    #[must_use]
+    pub fn open_task(&self) -> Option<&Task> {
+        self.lesson.as_ref().filter(|open| !open.is_done())?.now()?.task.as_ref()
+    }
+
+    /// True in a step whose task is about the pixel that is pinned: it is explained also out of sight.
+    #[must_use]
+    pub fn needs_probe(&self) -> bool {
+        let step = self.lesson.as_ref().and_then(OpenLesson::now);
+        let goal = step.and_then(|step| step.task.as_ref()?.goal());
+        self.view.pinned.is_some() && goal.is_some_and(is_about_pixels)
+    }
+
+    /// True while a pixel is to be found: a click into the picture pins it.
+    #[must_use]
+    pub fn seeks_pixel(&self) -> bool {
+        matches!(self.open_task(), Some(Task::Find(goal)) if is_about_pixels(goal))
+    }
+
+    /// The end of the last step.
+    fn finish_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
+        let Some(open) = &self.lesson else { return Vec::new() };
+        let (title, source) = (open.lesson.title.clone(), open.source.clone());
+        let (tasks, done) = (open.tasks(), open.done.len());
+        let past = self.progress.lessons.entry(source.name()).or_default();
+        (past.finished, past.step) = (true, 0);
+        let mut text = format!("You have finished “{title}”.");
+        if done < tasks {
+            text.push_str(&format!(" You did {done} of {tasks} tasks."));
+        }
+        let mut note = Note::new(Severity::Info, text);
+        if let LessonSource::Shipped(i) = source
+            && let Some(next) = LESSONS.get(i + 1)
+        {
+            note.text.push_str(&format!(" The next one is “{}”.", next.title));
+            let open = LessonCommand::Open(LessonSource::Shipped(i + 1));
+            note = note.offering("Open it", Action::Lesson(open));
+        }
+        let name = source.name();
+        let mut effects = self.leave_lesson(registry);
+        self.note(note);
+        effects.push(Effect::SaveProgress(name));
+        effects
+    }
+
+    /// Leaves the lesson: the user's own document comes back as it was.
+    pub(super) fn leave_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
+        let Some(mut open) = self.lesson.take() else { return Vec::new() };
+        self.exchange(&mut open.aside);
+        // The models may be others than when it was put aside.
+        follow_registry(self, registry);
+        vec![Effect::Camera(CameraChange::Exchange)]
+    }
+
+    /// Leaves the lesson because another document takes the place of the user's own.
+    pub(super) fn drop_lesson(&mut self) {
+        self.parked = None;
+        if let Some(mut open) = self.lesson.take() {
+            self.exchange(&mut open.aside);
+        }
+    }
+
+    /// Shows the user's own document while a question about it is open.
+    pub(super) fn park_lesson(&mut self) -> Vec<Effect> {
+        let Some(mut open) = self.lesson.take() else { return Vec::new() };
+        self.exchange(&mut open.aside);
+        self.parked = Some(Box::new(open));
+        vec![Effect::Camera(CameraChange::Exchange)]
+    }
+
+    /// True if a lesson waits for a question, and nothing is asked any more.
+    pub(in crate::panel) fn is_lesson_due(&self) -> bool {
+        self.parked.is_some() && !self.questions.are_pending()
+    }
+
+    /// Goes back to the lesson once the question that interrupted it is settled.
+    pub(in crate::panel) fn resume_lesson(&mut self) -> Vec<Effect> {
+        if !self.is_lesson_due() {
+            return Vec::new();
+        }
+        let Some(mut open) = self.parked.take() else { return Vec::new() };
+        self.exchange(&mut open.aside);
+        self.lesson = Some(*open);
+        vec![Effect::Camera(CameraChange::Exchange)]
+    }
+
+    /// A file with a lesson was read: opens it, or says all that is wrong with it. If it is the one that is open, it
+    /// goes on with the same step.
+    pub fn lesson_read(
+        &mut self,
+        path: PathBuf,
+        read: Result<Lesson, Vec<Problem>>,
+        registry: &Registry,
+    ) -> Vec<Effect> {
+        match read {
+            Ok(lesson) => self.begin_lesson(Arc::new(lesson), LessonSource::File(path), registry),
+            Err(problems) => {
+                // The latest message stands on top: the first problem, and above it the consequence.
+                for problem in problems.iter().rev() {
+                    self.say(Severity::Error, problem_of(&path, problem));
+                }
+                self.say(Severity::Error, format!("The lesson {} was not opened.", path.display()));
+                Vec::new()
+            }
+        }
+    }
+
+    /// The file of the lesson that is open was edited and read again. The step stays; if its scene is another one now,
+    /// it begins again.
+    pub fn lesson_edited(&mut self, read: Result<Lesson, Vec<Problem>>, registry: &Registry) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
+        let lesson = match read {
+            Ok(lesson) if !lesson.steps.is_empty() => lesson,
+            Ok(_) => return Vec::new(),
+            Err(problems) => {
+                open.problems = problems;
+                return Vec::new();
+            }
+        };
+        open.problems.clear();
+        let step = open.step.min(lesson.steps.len() - 1);
+        let before = Self::scene_of(&open.lesson, open.step, registry);
+        let windows = |lesson: &Lesson, step: usize| -> Vec<WindowChange> {
+            lesson.steps.iter().take(step + 1).map(|step| step.window.clone()).collect()
+        };
+        let same = step == open.step
+            && before == Self::scene_of(&lesson, step, registry)
+            && windows(&open.lesson, step) == windows(&lesson, step);
+        open.lesson = Arc::new(lesson);
+        open.entered.retain(|at, _| same && *at == step);
+        open.answers.clear();
+        if same {
+            // What the author looks at stays where it is.
+            let entries = open.entries;
+            let effects = self.note_progress();
+            self.lesson.iter_mut().for_each(|open| open.entries = entries);
+            return effects;
+        }
+        self.return_to(step, registry)
+    }
+
+    /// The folder of the file of the lesson that is open.
+    #[must_use]
+    pub fn lesson_folder(&self) -> Option<&Path> {
+        match &self.lesson.as_ref()?.source {
+            LessonSource::File(path) => Some(files::folder_of(path)),
+            LessonSource::Shipped(_) => None,
+        }
+    }
+}

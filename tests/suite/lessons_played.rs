@@ -1,0 +1,283 @@
+//! Every shipped lesson from start to end: each task can be solved as its text asks, is not solved before, and is not
+//! solved by a plausible mistake.
+
+use lights_camera_models::{
+    document::Selection,
+    explain::{Explainer, Explanation},
+    lesson::{Goal, Lesson, Situation, WindowFacts, shipped::LESSONS},
+    optics::TermSelection,
+    reference::Settings,
+    registry::Registry,
+    scene::{Scene, SceneIn, SceneOf},
+};
+use serde::de::DeserializeSeed as _;
+use serde_json::{Value, json};
+
+/// Width and height of the picture that the learner sees.
+const SIZE: [u32; 2] = [320, 180];
+
+/// What a learner does.
+enum Deed {
+    /// Changes values of the scene: where, in the notation of JSON pointers, and what.
+    Set(&'static [(&'static str, fn() -> Value)]),
+    /// Looks for a pixel on an object, and pins it: one for which the task is done, or for a mistake one for which it is
+    /// not.
+    Pin,
+    /// Shows a term alone.
+    Terms(TermSelection),
+}
+
+/// The learner at a step.
+struct Learner {
+    registry: Registry,
+    explainer: Explainer,
+    scene: Scene,
+    selection: Selection,
+    window: WindowFacts,
+    pin: Option<[u32; 2]>,
+}
+
+impl Learner {
+    fn new() -> Self {
+        Self {
+            registry: Registry::builtin(),
+            explainer: Explainer::default(),
+            scene: Scene::default(),
+            selection: Selection::Object(0),
+            window: WindowFacts::default(),
+            pin: None,
+        }
+    }
+
+    /// Enters a step, as the window does: its scene, its selection, its pin, its terms.
+    fn enter(&mut self, lesson: &Lesson, step: usize) {
+        self.scene = lesson.state(step, &self.registry).expect(&lesson.id);
+        let window = &lesson.steps[step].window;
+        if let Some(part) = window.select.as_ref().and_then(|part| part.find(&self.scene)) {
+            self.selection = part;
+        }
+        self.window.active = window.active.unwrap_or(self.window.active);
+        self.window.terms = window.terms.unwrap_or(self.window.terms);
+        self.window.views = 1 + self.scene.variants.len();
+        let pixel = |[x, y]: [f32; 2]| [(x * SIZE[0] as f32) as u32, (y * SIZE[1] as f32) as u32];
+        if let Some(pin) = window.pin {
+            self.pin = pin.map(pixel);
+        }
+    }
+
+    /// The scene that the active view shows.
+    fn seen(&self) -> Scene {
+        let (scene, _) = self.scene.seen(self.window.active, &self.registry).expect("the view is there");
+        scene
+    }
+
+    fn explained(&mut self, pixel: [u32; 2]) -> Explanation {
+        let scene = self.seen();
+        let [width, height] = SIZE;
+        let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
+        self.explainer.pixel(&scene, &self.registry, &settings, pixel).expect("within the picture")
+    }
+
+    fn holds(&mut self, goal: &Goal) -> bool {
+        let probe = self.pin.map(|pixel| self.explained(pixel));
+        let situation = Situation {
+            scene: &self.seen(),
+            registry: &self.registry,
+            selection: self.selection,
+            window: self.window,
+            probe: probe.as_ref(),
+            pinned: probe.is_some(),
+        };
+        goal.until.holds(&situation)
+    }
+
+    /// Does something; true if the goal is reached then.
+    fn does(&mut self, deed: &Deed, goal: &Goal, wanted: bool) -> bool {
+        match deed {
+            Deed::Set(values) => {
+                let mut file = serde_json::to_value(SceneIn(&self.scene, &self.registry)).expect("JSON");
+                for (place, value) in *values {
+                    let (parent, key) = place.rsplit_once('/').expect("a pointer");
+                    let parent = file.pointer_mut(parent).unwrap_or_else(|| panic!("no {place}"));
+                    parent[key] = value();
+                }
+                self.scene = SceneOf(&self.registry).deserialize(file).expect("a legal scene");
+                self.holds(goal)
+            }
+            Deed::Terms(terms) => {
+                self.window.terms = *terms;
+                self.holds(goal)
+            }
+            Deed::Pin => {
+                // The coarse net first: most tasks have many solutions.
+                for stride in [9, 5, 2] {
+                    for y in (stride / 2..SIZE[1]).step_by(stride as usize) {
+                        for x in (stride / 2..SIZE[0]).step_by(stride as usize) {
+                            if self.explained([x, y]).seen.is_none() {
+                                continue;
+                            }
+                            self.pin = Some([x, y]);
+                            if self.holds(goal) == wanted {
+                                return wanted;
+                            }
+                        }
+                    }
+                }
+                !wanted
+            }
+        }
+    }
+}
+
+/// The tasks with a condition, in the order of the lessons: the step, the solution, and a mistake.
+const TASKS: &[(&str, &str, Deed, Deed)] = &[
+    ("01", "Which way a surface faces", Deed::Pin, Deed::Pin),
+    ("01", "See the cosine", Deed::Pin, Deed::Pin),
+    (
+        "01",
+        "Colour of the surface",
+        Deed::Set(&[("/objects/0/material", || json!({ "base_colour": [230, 30, 30] }))]),
+        Deed::Set(&[("/objects/0/material", || json!({ "base_colour": [30, 30, 30] }))]),
+    ),
+    (
+        "01",
+        "A shiny ball",
+        Deed::Set(&[("/reflection_model", || json!("phong"))]),
+        Deed::Set(&[("/reflection_model", || json!("blinn_phong"))]),
+    ),
+    ("02", "One term alone", Deed::Terms(TermSelection::Specular), Deed::Terms(TermSelection::Diffuse)),
+    ("02", "The diffuse term", Deed::Pin, Deed::Pin),
+    (
+        "02",
+        "The specular term",
+        Deed::Set(&[("/objects/0/material/k_s", || json!(0))]),
+        Deed::Set(&[("/objects/0/material/alpha", || json!(0))]),
+    ),
+    (
+        "02",
+        "The sum",
+        Deed::Set(&[("/objects/0/material/alpha", || json!(8))]),
+        Deed::Set(&[("/objects/0/material/alpha", || json!(100))]),
+    ),
+    (
+        "03",
+        "One colour per polygon",
+        Deed::Set(&[("/shading_model", || json!("flat"))]),
+        Deed::Set(&[("/shading_model", || json!("derivative"))]),
+    ),
+    ("03", "Find what Gouraud misses", Deed::Pin, Deed::Pin),
+    (
+        "03",
+        "Per pixel: Phong",
+        Deed::Set(&[("/shading_model", || json!("phong"))]),
+        Deed::Set(&[("/shading_model", || json!("derivative"))]),
+    ),
+    ("04", "The angle to N", Deed::Pin, Deed::Pin),
+    (
+        "04",
+        "The exponent",
+        Deed::Set(&[("/objects/0/material/alpha", || json!(60))]),
+        Deed::Set(&[("/objects/0/material/alpha", || json!(30))]),
+    ),
+    (
+        "04",
+        "Try it",
+        Deed::Set(&[
+            ("/reflection_model", || json!("blinn_phong")),
+            ("/objects/0/material/alpha", || json!(60)),
+        ]),
+        Deed::Set(&[("/reflection_model", || json!("blinn_phong"))]),
+    ),
+    (
+        "05",
+        "The inverse-square law",
+        Deed::Set(&[("/lights/0/position", || json!([5, 5, 9]))]),
+        Deed::Set(&[("/lights/0/intensity", || json!(0.5625))]),
+    ),
+    (
+        "05",
+        "Candela and lux",
+        Deed::Set(&[("/lights/0/intensity", || json!(9))]),
+        Deed::Set(&[("/lights/0/intensity", || json!(4.5))]),
+    ),
+    (
+        "05",
+        "By how much",
+        Deed::Set(&[("/display", || json!({ "exposure": 2 }))]),
+        Deed::Set(&[("/lights/0/intensity", || json!(9))]),
+    ),
+    ("06", "Find the code 128", Deed::Pin, Deed::Pin),
+    (
+        "06",
+        "Leaving it out",
+        Deed::Set(&[("/display", || json!({ "encoding": "off" }))]),
+        Deed::Set(&[("/display", || json!({ "exposure": -2 }))]),
+    ),
+    (
+        "06",
+        "Do it right",
+        Deed::Set(&[("/display", || json!({ "encoding": "srgb" }))]),
+        Deed::Set(&[("/display", || json!({ "encoding": "off", "exposure": 2 }))]),
+    ),
+    ("07", "Schlick's approximation", Deed::Pin, Deed::Pin),
+    (
+        "07",
+        "Two families",
+        Deed::Set(&[("/objects/0/material/metallic", || json!(1))]),
+        Deed::Set(&[("/objects/0/material/metallic", || json!(0.5))]),
+    ),
+    (
+        "07",
+        "Change the roughness",
+        Deed::Set(&[("/objects/0/material/roughness", || json!(0.15))]),
+        Deed::Set(&[("/objects/0/material/roughness", || json!(0.6))]),
+    ),
+    ("08", "Directional albedo", Deed::Pin, Deed::Pin),
+    (
+        "08",
+        "Giving it back",
+        Deed::Set(&[("/objects/3/material/multiple_scattering", || json!("kulla_conty"))]),
+        Deed::Set(&[
+            ("/objects/3/material/alpha_x", || json!(0.1)),
+            ("/objects/3/material/alpha_y", || json!(0.1)),
+        ]),
+    ),
+    (
+        "08",
+        "A model that gains",
+        Deed::Set(&[("/objects/4/material/k_d", || json!(0.5)), ("/objects/4/material/k_s", || json!(0.4))]),
+        Deed::Set(&[("/objects/4/material/k_d", || json!(0.5))]),
+    ),
+];
+
+#[test]
+fn every_task_of_every_lesson_can_be_solved_and_a_mistake_does_not_solve_it() {
+    let mut tasks = TASKS.iter();
+    for lesson in LESSONS.iter() {
+        let mut learner = Learner::new();
+        for (i, step) in lesson.steps.iter().enumerate() {
+            learner.enter(lesson, i);
+            let Some(goal) = step.task.as_ref().and_then(|task| task.goal()) else { continue };
+            let (id, title, solution, mistake) = tasks.next().expect("a solution for each task");
+            assert!(lesson.id.starts_with(id) && step.title == *title, "{}: {}", lesson.id, step.title);
+            let at = format!("{}, step {}: {}", lesson.id, i + 1, goal.until.text());
+            assert!(!learner.holds(goal), "{at}: done before it begins");
+            let terms = learner.window.terms;
+            assert!(!learner.does(mistake, goal, false), "{at}: a mistake is taken for the solution");
+            learner.enter(lesson, i);
+            learner.window.terms = terms;
+            assert!(learner.does(solution, goal, true), "{at}: the solution is not taken");
+        }
+    }
+    assert_eq!(tasks.count(), 0, "solutions without a task");
+}
+
+#[test]
+fn the_eight_lessons_are_of_a_length_for_one_sitting() {
+    // Each lesson says how long it takes, and none takes a lecture.
+    for lesson in LESSONS.iter() {
+        assert!(lesson.minutes.is_some_and(|minutes| (5..=20).contains(&minutes)), "{}", lesson.id);
+        assert!(lesson.summary.ends_with('.') && (5..=9).contains(&lesson.steps.len()), "{}", lesson.id);
+    }
+    assert_eq!(LESSONS.len(), 8);
+}
