@@ -102,4 +102,5 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<CookTorrance>();
     to.take::<MetallicRoughness>();
     to.take::<Disney>();
+    to.take::<OpenPbr>();
 }

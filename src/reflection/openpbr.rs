@@ -1,21 +1,25 @@
-// The CPU's half: the model is not in the list of built-in ones before it has a shader.
-
 use std::{f32::consts::PI, sync::LazyLock};
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::{
+    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Readout, ReflectionModel,
+    Term, preset,
+};
 use crate::{
     optics::{
         Frame, Terms,
-        albedo::{Albedos, Lines, LobeAlbedo, lobe_albedos},
+        albedo::{Albedos, Lines, LobeAlbedo, NamedCurve, Spacing, lobe_albedos},
         diffuse::eon,
         distribution::{MINIMUM_ALPHA, ggx},
+        film::thin_film,
         fresnel::{dielectric, schlick},
         geometry::half_vector,
         masking::{separable, smith_ggx},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, SPECULAR_COLOUR},
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, SPECULAR_COLOUR, Value},
     parameters,
+    shader::wgsl,
 };
 
 const fn fraction(name: &'static str, default: f32) -> Parameter {
@@ -214,6 +218,9 @@ parameters! {
     }
 }
 
+/// The number of quadruples of [`Prepared::values`].
+const PREPARED: usize = 7;
+
 /// What a material prepares before any direction is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prepared {
@@ -239,6 +246,8 @@ pub struct Prepared {
     darkening: Vec3,
     /// The share of the film.
     film: f32,
+    /// n and k of metal under a film, from its colours at normal and at grazing incidence.
+    metal_index: [Vec3; 2],
 }
 
 /// `a` to `b` for `t` from 0 to 1, exact at both ends.
@@ -265,6 +274,15 @@ fn mean_fresnel(ratio: f32) -> f32 {
         weight * 4.0 * x.powi(3) * dielectric(ratio, x * x)
     };
     (0..=n).map(point).sum::<f32>() / (3.0 * f32::from(n))
+}
+
+/// n and k of a metal with these reflectances at normal and (an edge tint) at grazing incidence: O. Gulbrandsen (2014).
+fn metal_index(f0: Vec3, edge: Vec3) -> [Vec3; 2] {
+    let r = f0.min(Vec3::splat(0.99));
+    let root = r.map(f32::sqrt);
+    let n = edge * (1.0 - r) / (1.0 + r) + (1.0 - edge) * (1.0 + root) / (1.0 - root);
+    let k2 = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
+    [n, k2.max(Vec3::ZERO).map(f32::sqrt)]
 }
 
 /// α of a roughness, and the same along and across the tangent: `α_t² + α_b² = 2 α²`.
@@ -317,7 +335,21 @@ impl Prepared {
             mean,
             darkening: Vec3::ONE + (darkening - Vec3::ONE) * (c * m.coat_darkening),
             film: m.thin_film_weight * t * t * (3.0 - 2.0 * t),
+            metal_index: metal_index(f0, m.specular_colour),
         }
+    }
+
+    /// What the shader reads, by the index of `value_prepared`.
+    fn values(&self) -> [Vec4; PREPARED] {
+        [
+            Vec4::new(self.indices.x, self.indices.y, self.ratio, self.film),
+            Vec4::new(self.base.x, self.base.y, self.coat.x, self.coat.y),
+            self.tint.extend(self.alpha),
+            self.mean.extend(0.0),
+            self.darkening.extend(0.0),
+            self.metal_index[0].extend(0.0),
+            self.metal_index[1].extend(0.0),
+        ]
     }
 
     /// `F_82` without a film.
@@ -330,72 +362,6 @@ impl Prepared {
 /// `D G / (4 (N·L)(N·V))` of GGX with separable masking, in the local frame.
 fn facets(l: Vec3, v: Vec3, alpha: Vec2) -> f32 {
     ggx(half_vector(l, v), alpha) * separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha))
-}
-
-/// Complex numbers, of which a film needs four operations.
-#[derive(Clone, Copy)]
-struct Complex(f32, f32);
-
-impl Complex {
-    fn plus(self, o: Self) -> Self {
-        Self(self.0 + o.0, self.1 + o.1)
-    }
-
-    fn times(self, o: Self) -> Self {
-        Self(self.0 * o.0 - self.1 * o.1, self.0 * o.1 + self.1 * o.0)
-    }
-
-    fn squared(self) -> f32 {
-        self.0 * self.0 + self.1 * self.1
-    }
-
-    /// `(a − self)/(a + self)`, `a` being real.
-    fn reflected(self, a: f32) -> Self {
-        let scale = (Self(a, 0.0).plus(self)).squared().max(f32::MIN_POSITIVE).recip();
-        Self((a * a - self.squared()) * scale, -2.0 * a * self.1 * scale)
-    }
-
-    /// The square root with an imaginary part of at least 0; that of this one is at least 0.
-    fn root(self) -> Self {
-        let modulus = self.0.hypot(self.1);
-        let half = |x: f32| (0.5 * x.max(0.0)).sqrt();
-        // The larger part first, the other from it, without cancellation.
-        if self.0 >= 0.0 {
-            let re = half(modulus + self.0);
-            Self(re, if re > 0.0 { 0.5 * self.1 / re } else { 0.0 })
-        } else {
-            let im = half(modulus - self.0);
-            Self(0.5 * self.1 / im, im)
-        }
-    }
-}
-
-/// The reflectance of a film of index `n_2` between media of the indices `n_1` and `n + ik`, for unpolarised light that
-/// meets it at the cosine c: G. Airy's sum. `turns` is its thickness over the wavelength.
-fn airy(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 {
-    let sin2 = 1.0 - c * c;
-    let cos2 = 1.0 - (n_1 / n_2) * (n_1 / n_2) * sin2;
-    if cos2 <= 0.0 {
-        return 1.0;
-    }
-    let c_2 = cos2.sqrt();
-    let phase = 4.0 * PI * n_2 * turns * c_2;
-    let wave = Complex(phase.cos(), phase.sin());
-    let n2 = Complex((n - k) * (n + k), 2.0 * n * k);
-    // n₃ cos θ₃, and the admittance n₃/cos θ₃ = n₃²/(n₃ cos θ₃) of the other polarisation.
-    let q = Complex(n2.0 - n_1 * n_1 * sin2, n2.1).root();
-    let scale = q.squared().max(1e-30).recip();
-    let other = n2.times(Complex(q.0 * scale, -q.1 * scale));
-    let sum = |first: f32, second: Complex| {
-        let bounced = second.times(wave);
-        let over = Complex(first, 0.0).plus(bounced).squared();
-        let under = Complex(1.0, 0.0).plus(Complex(first * bounced.0, first * bounced.1)).squared();
-        over / under.max(1e-30)
-    };
-    let real = |a: f32, b: f32| (a - b) / (a + b).max(f32::MIN_POSITIVE);
-    let s = sum(real(n_1 * c, n_2 * c_2), q.reflected(n_2 * c_2));
-    let p = sum(real(n_1 / c.max(1e-9), n_2 / c_2), other.reflected(n_2 / c_2));
-    (0.5 * (s + p)).clamp(0.0, 1.0)
 }
 
 /// Nodes of the table of fuzz over the cosine of the view, and as many over the roughness.
@@ -441,27 +407,26 @@ impl OpenPbr {
         Albedos::of([all, base, coat, LobeAlbedo::default()])
     }
 
-    /// The reflectances of the dielectric boundary and of metal, both with their film.
-    fn fresnel(&self, cos_d: f32) -> (Vec3, Vec3) {
+    /// The reflectance of the base, the mixture of a dielectric boundary and of metal, both with their film.
+    fn fresnel(&self, cos_d: f32) -> Vec3 {
+        let (glass, metal) = self.boundary_and_metal(cos_d);
+        (1.0 - self.metallic) * self.specular_colour * glass
+            + self.metallic * (self.specular_strength * metal).min(Vec3::ONE)
+    }
+
+    fn boundary_and_metal(&self, cos_d: f32) -> (Vec3, Vec3) {
         let p = &self.prepared;
         let (glass, metal) = (Vec3::splat(dielectric(p.ratio, cos_d)), p.metal(cos_d));
         if p.film <= 0.0 {
             return (glass, metal);
         }
+        let [n, k] = p.metal_index;
         let film = |channel: usize, n: f32, k: f32| {
             let turns = self.thin_film_thickness / WAVELENGTHS[channel];
-            airy(p.indices.x, self.thin_film_ior, n, k, turns, cos_d)
-        };
-        // O. Gulbrandsen (2014): n and k from the colours at normal and at grazing incidence.
-        let of_metal = |i: usize| {
-            let (r, g) = (p.f0[i].min(0.99), self.specular_colour[i]);
-            let root = r.sqrt();
-            let n = g * (1.0 - r) / (1.0 + r) + (1.0 - g) * (1.0 + root) / (1.0 - root);
-            let k2 = ((n + 1.0) * (n + 1.0) * r - (n - 1.0) * (n - 1.0)) / (1.0 - r);
-            film(i, n, k2.max(0.0).sqrt())
+            thin_film(p.indices.x, self.thin_film_ior, n, k, turns, cos_d)
         };
         let covered = Vec3::from_array([0, 1, 2].map(|i| film(i, p.indices.y, 0.0)));
-        let covered_metal = Vec3::from_array([0, 1, 2].map(of_metal));
+        let covered_metal = Vec3::from_array([0, 1, 2].map(|i| film(i, n[i], k[i])));
         (glass.lerp(covered, p.film), metal.lerp(covered_metal, p.film))
     }
 
@@ -471,10 +436,73 @@ impl OpenPbr {
         let passed = self.coat_colour.max(Vec3::splat(1e-9)).powf(0.5 / inside);
         Vec3::ONE.lerp(passed, self.coat_weight)
     }
+}
 
-    /// The response `π f_r cos θ_l`, by term: the body is diffuse, everything else specular.
-    #[must_use]
-    pub fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+impl ReflectionModel for OpenPbr {
+    const DECLARATION: Declaration = Declaration {
+        id: "openpbr",
+        name: "OpenPBR",
+        family: Family::Standard,
+        author: "Academy Software Foundation 2026",
+        source: "Z. Andersson and others (2026), OpenPBR Surface specification 1.1.1, Academy Software Foundation",
+        summary: "The exchange standard of film and design: metal and rough bodies under a coat, fuzz and thin films.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart {
+                term: Term::Total, text: "Z = 1 − F_z R(θ_V), S = T_L T_V (1 − C E_c(θ_V)) Δ"
+            },
+            EquationPart { term: Term::Diffuse, text: "I_d = π Z S f_b (N·L)" },
+            EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + S f_r)) (N·L)" },
+            EquationPart { term: Term::Specular, text: "f_r = D G F / (4 (N·L)(N·V)) + f_m" },
+            EquationPart { term: Term::Specular, text: "F = (1 − M) C_s F_g + M ξ F_{82}" },
+        ],
+        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: true,
+        wgsl: wgsl!("reflection/openpbr.wgsl"),
+    };
+
+    const GROUPS: &'static [Group] = &[
+        Group::new("Base", &["base_weight", "base_colour", "metallic", "base_diffuse_roughness"]),
+        Group::new(
+            "Specular",
+            &[
+                "specular_strength",
+                "specular_colour",
+                "roughness",
+                "specular_roughness_anisotropy",
+                "specular_ior",
+            ],
+        ),
+        Group::new(
+            "Coat",
+            &[
+                "coat_weight",
+                "coat_colour",
+                "coat_roughness",
+                "coat_roughness_anisotropy",
+                "coat_ior",
+                "coat_darkening",
+            ],
+        ),
+        Group::new("Fuzz", &["fuzz_weight", "fuzz_colour", "fuzz_roughness"]),
+        Group::new("Thin film", &["thin_film_weight", "thin_film_thickness", "thin_film_ior"]),
+    ];
+
+    const CURVES: &'static [NamedCurve] = &[
+        NamedCurve { name: "boundaries", spacing: Spacing::Cubic },
+        NamedCurve { name: "fuzz", spacing: Spacing::Linear(FUZZ_NODES) },
+        NamedCurve { name: "prepared", spacing: Spacing::Values(PREPARED) },
+    ];
+
+    fn curves(&self) -> Vec<Vec4> {
+        let mut all = [self.boundaries.values(), self.fuzz.values()].concat();
+        all.extend(self.prepared.values());
+        all
+    }
+
+    // The body is diffuse, everything else specular.
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
         // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
         if l.z.min(v.z) < 1e-9 {
@@ -485,11 +513,8 @@ impl OpenPbr {
         let (of_l, of_v, mean) = (self.boundaries.at(l.z), self.boundaries.at(v.z), self.boundaries.mean());
         let missing = |x: f32| (1.0 - x).max(0.0);
 
-        let (glass, metal) = self.fresnel(cos_d);
         let strength = self.specular_strength;
-        let once = (1.0 - self.metallic) * self.specular_colour * glass
-            + self.metallic * (strength * metal).min(Vec3::ONE);
-        let mut specular = PI * l.z * facets(l, v, p.base) * once;
+        let mut specular = PI * l.z * facets(l, v, p.base) * self.fresnel(cos_d);
         if p.alpha >= 0.0016 {
             let shape = missing(of_v.x) * missing(of_l.x) * l.z / missing(mean.x).max(1e-6);
             let again = (strength * p.mean).min(Vec3::ONE) * p.mean;
@@ -520,5 +545,34 @@ impl OpenPbr {
             specular = specular * below + self.fuzz_weight * lobe * l.z * self.fuzz_colour;
         }
         Terms { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        vec![Readout::of_f0(self.fresnel(1.0)), Readout::of_alpha(self.prepared.alpha)]
+    }
+
+    /// Those of the base, without its coat and fuzz.
+    fn factor(&self, factor: Factor) -> Option<Vec3> {
+        let alpha = self.prepared.base;
+        Some(match factor {
+            Factor::Fresnel { cos_d } => self.fresnel(cos_d),
+            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
+            Factor::Masking { l, v } => {
+                Factor::of_visibility(separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)), l, v)
+            }
+        })
+    }
+
+    /// A metal by its reflectances at normal incidence and at 82°, a dielectric by its refractive index.
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        if material.metal {
+            let tint = material.f82 / schlick(material.f0, 1.0 / 7.0);
+            let mut values = preset::base_colour_metallic(material);
+            values.push((BASE_WEIGHT.name, Value::Number(1.0)));
+            values.push((SPECULAR_COLOUR.name, preset::colour(tint)));
+            values
+        } else {
+            vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR_IOR.name, Value::Number(material.n[1]))]
+        }
     }
 }

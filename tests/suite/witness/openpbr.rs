@@ -12,7 +12,7 @@ use lights_camera_models::{
         masking::{height_correlated, smith_ggx},
     },
     parameter::{ParameterSet as _, Value, Values},
-    reflection::{OpenPbr, brdf_of},
+    reflection::{OpenPbr, ReflectionModel as _, brdf_of},
 };
 use serde_json::{Map, Value as Json};
 

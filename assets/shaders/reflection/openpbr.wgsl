@@ -1,47 +1,6 @@
 // OpenPBR Surface 1.1, the opaque subset. What depends on the parameters alone, and the albedos of the boundaries, are
 // calculated once per material: value_prepared(i), curve_boundaries(mu), curve_fuzz(mu).
 
-// (a − z)/(a + z) of a real and a complex number.
-fn openpbr_reflected(a: f32, z: vec2<f32>) -> vec2<f32> {
-    let scale = 1.0 / max((a + z.x) * (a + z.x) + z.y * z.y, 1e-37);
-    return scale * vec2(a * a - dot(z, z), -2.0 * a * z.y);
-}
-
-// |(r₁ + r₂ w)/(1 + r₁ r₂ w)|², w = e^{iφ}.
-fn openpbr_sum(first: f32, second: vec2<f32>, wave: vec2<f32>) -> f32 {
-    let b = vec2(second.x * wave.x - second.y * wave.y, second.x * wave.y + second.y * wave.x);
-    let over = vec2(first + b.x, b.y);
-    let under = vec2(1.0 + first * b.x, first * b.y);
-    return dot(over, over) / max(dot(under, under), 1e-30);
-}
-
-// The reflectance of a film of index n_2 between the indices n_1 and n + ik: G. Airy's sum.
-fn openpbr_airy(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 {
-    let sin2 = 1.0 - c * c;
-    let cos2 = 1.0 - (n_1 / n_2) * (n_1 / n_2) * sin2;
-    if cos2 <= 0.0 {
-        return 1.0;
-    }
-    let c_2 = sqrt(cos2);
-    // Whole turns first: sine and cosine of large angles have few digits on GPUs.
-    let phase = 2.0 * PI * fract(2.0 * n_2 * turns * c_2);
-    let wave = vec2(cos(phase), sin(phase));
-    let n2 = vec2((n - k) * (n + k), 2.0 * n * k);
-    // The root of n₃² − n₁² sin² θ with an imaginary part of at least 0.
-    let x = n2.x - n_1 * n_1 * sin2;
-    let modulus = length(vec2(x, n2.y));
-    let large = sqrt(0.5 * (modulus + abs(x)));
-    let small = 0.5 * n2.y / max(large, 1e-30);
-    let q = select(vec2(small, large), vec2(large, small), x >= 0.0);
-    let scale = 1.0 / max(dot(q, q), 1e-30);
-    let other = scale * vec2(n2.x * q.x + n2.y * q.y, n2.y * q.x - n2.x * q.y);
-    let s = openpbr_sum((n_1 * c - n_2 * c_2) / (n_1 * c + n_2 * c_2), openpbr_reflected(n_2 * c_2, q), wave);
-    let y_1 = n_1 / max(c, 1e-9);
-    let y_2 = n_2 / c_2;
-    let p = openpbr_sum((y_1 - y_2) / (y_1 + y_2), openpbr_reflected(y_2, other), wave);
-    return clamp(0.5 * (s + p), 0.0, 1.0);
-}
-
 // D G / (4 (N·L)(N·V)) in the local frame.
 fn openpbr_facets(h: vec3<f32>, l: vec3<f32>, v: vec3<f32>, alpha: vec2<f32>) -> f32 {
     return ggx(h, alpha) * separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha));
@@ -77,8 +36,8 @@ fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> T
         let n = value_prepared(5u).rgb;
         let k = value_prepared(6u).rgb;
         for (var i = 0u; i < 3u; i += 1u) {
-            let over_glass = openpbr_airy(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns[i], c);
-            let over_metal = openpbr_airy(of_base.x, m.thin_film_ior, n[i], k[i], turns[i], c);
+            let over_glass = thin_film(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns[i], c);
+            let over_metal = thin_film(of_base.x, m.thin_film_ior, n[i], k[i], turns[i], c);
             glass[i] = mix(glass[i], over_glass, of_base.w);
             metal[i] = mix(metal[i], over_metal, of_base.w);
         }
