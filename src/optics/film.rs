@@ -56,8 +56,10 @@ pub fn thin_film(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 
         return 1.0;
     }
     let c_2 = cos2.sqrt();
-    let phase = 4.0 * PI * n_2 * turns * c_2;
-    let wave = Complex(phase.cos(), phase.sin());
+    // Without whole turns, of which thick films have many: the last digits of the angle are kept.
+    let phase = 2.0 * n_2 * turns * c_2;
+    let (sin, cos) = (2.0 * PI * (phase - phase.round())).sin_cos();
+    let wave = Complex(cos, sin);
     let n2 = Complex((n - k) * (n + k), 2.0 * n * k);
     // n₃ cos θ₃, and the admittance n₃/cos θ₃ = n₃²/(n₃ cos θ₃) of the other polarisation.
     let q = Complex(n2.0 - n_1 * n_1 * sin2, n2.1).root();

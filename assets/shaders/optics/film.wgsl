@@ -22,9 +22,10 @@ fn thin_film(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 {
         return 1.0;
     }
     let c_2 = sqrt(cos2);
-    // Whole turns first: sine and cosine of large angles have few digits on GPUs.
-    let phase = 2.0 * PI * fract(2.0 * n_2 * turns * c_2);
-    let wave = vec2(cos(phase), sin(phase));
+    // Without whole turns: sine and cosine of large angles have few digits on GPUs.
+    let phase = 2.0 * n_2 * turns * c_2;
+    let angle = 2.0 * PI * (phase - round(phase));
+    let wave = vec2(cos(angle), sin(angle));
     let n2 = vec2((n - k) * (n + k), 2.0 * n * k);
     // The root of n₃² − n₁² sin² θ with an imaginary part of at least 0.
     let x = n2.x - n_1 * n_1 * sin2;
