@@ -290,7 +290,7 @@ fn coated_metal(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, (f64, f
         normal.push(colours[0].1);
         bands.push((name, band(&colours, size, name)?));
         let mut row = vec![name.to_owned()];
-        for angle in [0.0, 60.0, 80.0] {
+        for angle in [0.0, 80.0] {
             let rgb = colours.iter().find(|c| (c.0 - angle).abs() < 0.1).map_or(Vec3::ZERO, |c| c.1);
             let three = rgb.to_array().map(|x| fixed(f64::from(x), 2)).join("  ");
             row.extend([three, fixed(saturation(rgb), 2)]);
@@ -303,7 +303,7 @@ fn coated_metal(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, (f64, f
     );
     let table = lab.table(
         &html! { "Albedo in linear red, green and blue, and saturation (one minus the smallest over the largest of them)." },
-        &["Surface", "0°", "saturation", "60°", "saturation", "80°", "saturation"],
+        &["Surface", "0°", "saturation", "80°", "saturation"],
         &rows,
     );
     let loss = f64::from(1.0 - normal[2].y / normal[0].y);
