@@ -8,6 +8,7 @@ use std::sync::{
 use glam::{Vec3, Vec4};
 use naga::Module;
 
+use super::curves::Reads;
 use crate::{
     optics::{
         Frame, Terms,
@@ -90,29 +91,24 @@ impl crate::reflection::Interpreted for OnCpu {
     }
 }
 
+/// The model whose lobe is read.
+fn lobe_of(reads: &Reads) -> Lobe {
+    reads.lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id))
+}
+
 /// The entry of a model whose WGSL is in a valid module.
 pub(super) fn entry(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
-    lobe: Option<ModelEntry>,
+    reads: Reads,
     module: &Module,
 ) -> ModelEntry {
-    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, lobe.is_some()));
-    let reads = lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
-    let curves = lobe.as_ref().map_or(&[][..], ModelEntry::curves);
+    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, reads.any()));
+    let (lobe, curves) = (lobe_of(&reads), reads.named());
     let instantiate: Instantiate = {
         let on_cpu = on_cpu.clone();
         Arc::new(move |values, encoding| {
-            let read = lobe.as_ref().map(|model| {
-                // Undeclared parameters must not affect its look.
-                let mut own = Values::default();
-                for p in parameters {
-                    own.set(p.name, values.get(p));
-                }
-                let surface = model.instantiate(&own, encoding);
-                // A model of curves alone has no lobe; its row holds that which reflects everything.
-                (surface.lobe().unwrap_or_default(), model.curves_of(&*surface))
-            });
+            let read = reads.any().then(|| reads.values(parameters, values, encoding));
             Arc::new(Interpreted {
                 on_cpu: on_cpu.clone(),
                 ambient: declaration.ambient,
@@ -126,7 +122,7 @@ pub(super) fn entry(
             })
         })
     };
-    ModelEntry::custom(declaration, parameters, reads, curves, instantiate, Some(on_cpu))
+    ModelEntry::custom(declaration, parameters, lobe, curves, instantiate, Some(on_cpu))
 }
 
 /// The entry of a model known only by its declaration: the CPU draws the same stand-in as the WGSL, Lambert's law in
@@ -134,13 +130,11 @@ pub(super) fn entry(
 pub(super) fn stand_in(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
-    lobe: Option<&ModelEntry>,
+    reads: &Reads,
 ) -> ModelEntry {
-    let reads = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
-    let curves = lobe.map_or(&[][..], ModelEntry::curves);
     let instantiate: Instantiate =
         Arc::new(move |_, _| Arc::new(Grey { ambient: declaration.ambient, curve: OnceLock::new() }));
-    ModelEntry::custom(declaration, parameters, reads, curves, instantiate, None)
+    ModelEntry::custom(declaration, parameters, lobe_of(reads), reads.named(), instantiate, None)
 }
 
 /// The albedo of stand-ins.

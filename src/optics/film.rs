@@ -9,10 +9,6 @@ use std::f32::consts::PI;
 struct Complex(f32, f32);
 
 impl Complex {
-    fn plus(self, o: Self) -> Self {
-        Self(self.0 + o.0, self.1 + o.1)
-    }
-
     fn times(self, o: Self) -> Self {
         Self(self.0 * o.0 - self.1 * o.1, self.0 * o.1 + self.1 * o.0)
     }
@@ -23,22 +19,16 @@ impl Complex {
 
     /// `(a − self)/(a + self)`, `a` being real.
     fn reflected(self, a: f32) -> Self {
-        let scale = (Self(a, 0.0).plus(self)).squared().max(f32::MIN_POSITIVE).recip();
+        let scale = ((a + self.0) * (a + self.0) + self.1 * self.1).max(f32::MIN_POSITIVE).recip();
         Self((a * a - self.squared()) * scale, -2.0 * a * self.1 * scale)
     }
 
     /// The square root with an imaginary part of at least 0; that of this one is at least 0.
     fn root(self) -> Self {
-        let modulus = self.0.hypot(self.1);
-        let half = |x: f32| (0.5 * x.max(0.0)).sqrt();
         // The larger part first, the other from it, without cancellation.
-        if self.0 >= 0.0 {
-            let re = half(modulus + self.0);
-            Self(re, if re > 0.0 { 0.5 * self.1 / re } else { 0.0 })
-        } else {
-            let im = half(modulus - self.0);
-            Self(0.5 * self.1 / im, im)
-        }
+        let large = (0.5 * (self.squared().sqrt() + self.0.abs())).sqrt();
+        let small = 0.5 * self.1 / large.max(1e-30);
+        if self.0 >= 0.0 { Self(large, small) } else { Self(small, large) }
     }
 }
 
@@ -59,17 +49,16 @@ pub fn thin_film(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 
     // Without whole turns, of which thick films have many: the last digits of the angle are kept.
     let phase = 2.0 * n_2 * turns * c_2;
     let (sin, cos) = (2.0 * PI * (phase - phase.round())).sin_cos();
-    let wave = Complex(cos, sin);
     let n2 = Complex((n - k) * (n + k), 2.0 * n * k);
     // n₃ cos θ₃, and the admittance n₃/cos θ₃ = n₃²/(n₃ cos θ₃) of the other polarisation.
     let q = Complex(n2.0 - n_1 * n_1 * sin2, n2.1).root();
     let scale = q.squared().max(1e-30).recip();
     let other = n2.times(Complex(q.0 * scale, -q.1 * scale));
+    // |r₁₂ + r₂₃ w|² and |1 + r₁₂ r₂₃ w|²: r₁₂ is real, |w| = 1.
     let sum = |first: f32, second: Complex| {
-        let bounced = second.times(wave);
-        let over = Complex(first, 0.0).plus(bounced).squared();
-        let under = Complex(1.0, 0.0).plus(Complex(first * bounced.0, first * bounced.1)).squared();
-        over / under.max(1e-30)
+        let (first2, second2) = (first * first, second.squared());
+        let crossed = 2.0 * first * (second.0 * cos - second.1 * sin);
+        (first2 + second2 + crossed) / (1.0 + first2 * second2 + crossed).max(1e-30)
     };
     let real = |a: f32, b: f32| (a - b) / (a + b).max(f32::MIN_POSITIVE);
     let s = sum(real(n_1 * c, n_2 * c_2), q.reflected(n_2 * c_2));

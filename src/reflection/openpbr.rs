@@ -111,10 +111,10 @@ parameters! {
     ///
     /// ```text
     /// f = F_z C_f f_fuzz + (1 − F_z R(V)) (C f_coat + S f_base)
-    /// f_base = C_s (1 − M) f_d + M min(1, ξ F_82) D G / (4 (N·L)(N·V)) + f_ms + f_body
+    /// f_base = C_s (1 − m) f_d + m min(1, ξ F_82) D G / (4 (N·L)(N·V)) + f_ms + f_body
     /// S = T_V T_L (1 − C E_c(V)) Δ',   T_X = 1 + C (C_c^(1/(2 μ'_X)) − 1),   μ'² = 1 − (1 − μ²)/n_c²
-    /// f_ms = M min(1, ξ F̄_82) F̄_82 (1 − E_1(V))(1 − E_1(L))/(π (1 − Ē_1))
-    /// f_body = EON((1 − M) w_b C_b, σ) (1 − E_d(V))(1 − E_d(L))/(1 − Ē_d)
+    /// f_ms = m min(1, ξ F̄_82) F̄_82 (1 − E_1(V))(1 − E_1(L))/(π (1 − Ē_1))
+    /// f_body = EON((1 − m) w_b C_b, σ) (1 − E_d(V))(1 − E_d(L))/(1 − Ē_d)
     /// F_82 = F_S(c) − c (1 − c)⁶ (1 − C_s) F_S(1/7) / (1/7 (6/7)⁶),   F_S = w_b C_b + (1 − w_b C_b)(1 − c)⁵
     /// Δ' = 1 + C δ (Δ − 1),   Δ = (1 − K)/(1 − E_b K)
     /// f_fuzz = R(V) a²/(π |(a x + b z, a y, z)|⁴),   L = (x, y, z) with V in the plane y = 0
@@ -128,7 +128,7 @@ parameters! {
     /// |---|---|---|---|---|
     /// | `base_weight` | w_b | – | 0–1 | 1 |
     /// | `base_colour` | C_b | sRGB | 0–255 | 231 |
-    /// | `metallic` | M | – | 0–1 | 0 |
+    /// | `metallic` | m | – | 0–1 | 0 |
     /// | `base_diffuse_roughness` | σ | – | 0–1 | 0 |
     /// | `specular_strength` | ξ | – | 0–10 | 1 |
     /// | `specular_colour` | C_s | sRGB | 0–255 | white |
@@ -169,7 +169,7 @@ parameters! {
         base_weight: number = BASE_WEIGHT,
         /// `C_b`, linear.
         base_colour: colour = BASE,
-        /// `M`.
+        /// `m`.
         metallic: number = METALLIC,
         /// `σ`.
         base_diffuse_roughness: number = BASE_DIFFUSE_ROUGHNESS,
@@ -409,25 +409,26 @@ impl OpenPbr {
 
     /// The reflectance of the base, the mixture of a dielectric boundary and of metal, both with their film.
     fn fresnel(&self, cos_d: f32) -> Vec3 {
-        let (glass, metal) = self.boundary_and_metal(cos_d);
-        (1.0 - self.metallic) * self.specular_colour * glass
-            + self.metallic * (self.specular_strength * metal).min(Vec3::ONE)
-    }
-
-    fn boundary_and_metal(&self, cos_d: f32) -> (Vec3, Vec3) {
         let p = &self.prepared;
-        let (glass, metal) = (Vec3::splat(dielectric(p.ratio, cos_d)), p.metal(cos_d));
-        if p.film <= 0.0 {
-            return (glass, metal);
-        }
-        let [n, k] = p.metal_index;
-        let film = |channel: usize, n: f32, k: f32| {
-            let turns = self.thin_film_thickness / WAVELENGTHS[channel];
-            thin_film(p.indices.x, self.thin_film_ior, n, k, turns, cos_d)
+        let film = |bare: Vec3, [n, k]: [Vec3; 2]| {
+            let covered = |i: usize| {
+                let turns = self.thin_film_thickness / WAVELENGTHS[i];
+                thin_film(p.indices.x, self.thin_film_ior, n[i], k[i], turns, cos_d)
+            };
+            if p.film > 0.0 { bare.lerp(Vec3::from_array([0, 1, 2].map(covered)), p.film) } else { bare }
         };
-        let covered = Vec3::from_array([0, 1, 2].map(|i| film(i, p.indices.y, 0.0)));
-        let covered_metal = Vec3::from_array([0, 1, 2].map(|i| film(i, n[i], k[i])));
-        (glass.lerp(covered, p.film), metal.lerp(covered_metal, p.film))
+        let mut reflected = Vec3::ZERO;
+        // Films are expensive, and of the two most materials have one.
+        if self.metallic < 1.0 {
+            let bare = Vec3::splat(dielectric(p.ratio, cos_d));
+            let covered = film(bare, [Vec3::splat(p.indices.y), Vec3::ZERO]);
+            reflected += (1.0 - self.metallic) * self.specular_colour * covered;
+        }
+        if self.metallic > 0.0 {
+            let covered = film(p.metal(cos_d), p.metal_index);
+            reflected += self.metallic * (self.specular_strength * covered).min(Vec3::ONE);
+        }
+        reflected
     }
 
     /// The fraction of light that passes the coat once, at a cosine.
@@ -454,7 +455,7 @@ impl ReflectionModel for OpenPbr {
             EquationPart { term: Term::Diffuse, text: "I_d = π Z S f_b (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + S f_r)) (N·L)" },
             EquationPart { term: Term::Specular, text: "f_r = D G F / (4 (N·L)(N·V)) + f_m" },
-            EquationPart { term: Term::Specular, text: "F = (1 − M) C_s F_g + M ξ F_{82}" },
+            EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m ξ F_{82}" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

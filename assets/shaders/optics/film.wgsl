@@ -6,12 +6,12 @@ fn film_reflected(a: f32, z: vec2<f32>) -> vec2<f32> {
     return scale * vec2(a * a - dot(z, z), -2.0 * a * z.y);
 }
 
-// |(r₁ + r₂ w)/(1 + r₁ r₂ w)|², w = e^{iφ}.
+// |(r₁ + r₂ w)/(1 + r₁ r₂ w)|², |w| = 1.
 fn film_sum(first: f32, second: vec2<f32>, wave: vec2<f32>) -> f32 {
-    let b = vec2(second.x * wave.x - second.y * wave.y, second.x * wave.y + second.y * wave.x);
-    let over = vec2(first + b.x, b.y);
-    let under = vec2(1.0 + first * b.x, first * b.y);
-    return dot(over, over) / max(dot(under, under), 1e-30);
+    let first2 = first * first;
+    let second2 = dot(second, second);
+    let crossed = 2.0 * first * (second.x * wave.x - second.y * wave.y);
+    return (first2 + second2 + crossed) / max(1.0 + first2 * second2 + crossed, 1e-30);
 }
 
 // The reflectance of a film of index n_2 between the indices n_1 and n + ik: G. Airy's sum.

@@ -36,10 +36,15 @@ fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> T
         let n = value_prepared(5u).rgb;
         let k = value_prepared(6u).rgb;
         for (var i = 0u; i < 3u; i += 1u) {
-            let over_glass = thin_film(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns[i], c);
-            let over_metal = thin_film(of_base.x, m.thin_film_ior, n[i], k[i], turns[i], c);
-            glass[i] = mix(glass[i], over_glass, of_base.w);
-            metal[i] = mix(metal[i], over_metal, of_base.w);
+            // Films are expensive, and of the two most materials have one.
+            if m.metallic < 1.0 {
+                let covered = thin_film(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns[i], c);
+                glass[i] = mix(glass[i], covered, of_base.w);
+            }
+            if m.metallic > 0.0 {
+                let covered = thin_film(of_base.x, m.thin_film_ior, n[i], k[i], turns[i], c);
+                metal[i] = mix(metal[i], covered, of_base.w);
+            }
         }
     }
     let at_l = curve_boundaries(l.z);

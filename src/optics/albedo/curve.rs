@@ -130,7 +130,8 @@ impl LobeAlbedo {
         Self::from_nodes(AlbedoCurve::new(response, true).harmonics[0].map(|e| e.x))
     }
 
-    pub(super) fn from_nodes(nodes: [f32; NODES]) -> Self {
+    #[must_use]
+    pub fn from_nodes(nodes: [f32; NODES]) -> Self {
         let mut lobe = Self { nodes, average: 0.0 };
         // 2 ∫ E μ dμ = 6 ∫ E x⁵ dx with x³ = μ, by the midpoint rule, whose points cost little.
         let n = 960;
