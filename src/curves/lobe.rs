@@ -211,6 +211,26 @@ pub fn scale(lobes: &[&Lobe], log: bool) -> Axis {
     span(Kind::Polar, log, true, &values.collect::<Vec<_>>())
 }
 
+/// The longest value of a scale that does not follow the surface: white Lambert, 1/π sr⁻¹, or on a logarithmic scale 10 sr⁻¹.
+const FULL: [f64; 2] = [std::f64::consts::FRAC_1_PI, 10.0];
+/// The start of a logarithmic scale that does not follow the surface, sr⁻¹.
+const LEAST: f64 = 0.001;
+
+/// The scale of lobes that are compared over time: a darker surface has a smaller lobe, as it should. It ends at the BRDF of
+/// white Lambert, 1/π, or runs from 0.001 to 10 sr⁻¹ if it is logarithmic; only a taller lobe raises its end, and `kept`, an
+/// end that it had before.
+#[must_use]
+pub fn steady(lobes: &[&Lobe], log: bool, kept: Option<f64>) -> Axis {
+    let own = scale(lobes, log);
+    let least = FULL[usize::from(log)];
+    // White is no taller than itself, whatever the last digit of its value is.
+    let taller = lobes.iter().any(|lobe| lobe.largest() > least * (1.0 + 1e-4));
+    let end = if taller { own.to } else { least };
+    let to = end.max(least).max(kept.unwrap_or(0.0));
+    let from = if log { LEAST } else { 0.0 };
+    Axis { from, to, ..own }
+}
+
 /// The length of a value on a scale: 1 at its end, 0 at its start and below.
 #[must_use]
 pub fn length(scale: &Axis, value: f64) -> f32 {

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     registry::Registry,
-    text::{did_you_mean, listed, quoted},
+    text::{did_you_mean, listed, nearest, quoted},
 };
 
 /// The kinds of blocks.
@@ -29,6 +29,8 @@ pub(super) struct Draft {
     pub(super) settings: Vec<(&'static str, usize)>,
     /// The controls of a block `point`.
     pub(super) points: Vec<usize>,
+    /// Texts that should name parts of the scene, and do not.
+    pub(super) misnamed: Vec<(usize, String)>,
     /// The condition of the task.
     pub(super) until: Option<usize>,
     /// True if the block `scene` could not be read.
@@ -70,6 +72,9 @@ pub(super) fn read(
     }
     match kind {
         "equation" => {
+            if let Some((inside, what)) = brackets(body.text) {
+                problems.at(body.at + inside, what);
+            }
             let lines: Vec<_> = lines(body.text, body.at).map(|line| line.text.trim_end()).collect();
             draft.step.blocks.push(Block::Equation(lines.join("\n").trim_matches('\n').to_owned()));
         }
@@ -81,7 +86,7 @@ pub(super) fn read(
         "view" => {
             let mut given = Vec::new();
             for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
-                window::setting(&line, &mut given, &mut draft.settings, &mut draft.step.window, problems);
+                window::setting(&line, &mut given, draft, problems);
             }
         }
         "point" => {
@@ -93,9 +98,13 @@ pub(super) fn read(
                     );
                     continue;
                 };
-                if let Some(control) = controls::control(key, value, registry, problems) {
-                    draft.points.push(value.at);
-                    draft.step.points.push(control);
+                match controls::control(key, value, registry, problems) {
+                    Some(control) => {
+                        draft.points.push(value.at);
+                        draft.step.points.push(control);
+                    }
+                    None if key.text == "part" => draft.misnamed.push((value.at, value.text.to_owned())),
+                    None => {}
                 }
             }
         }
@@ -112,6 +121,22 @@ pub(super) fn read(
             };
         }
     }
+}
+
+/// The byte of a bracket of an equation without its other one, and a sentence. Intervals may mix ( and [.
+fn brackets(equation: &str) -> Option<(usize, &'static str)> {
+    let mut open = Vec::new();
+    for (at, c) in equation.char_indices() {
+        match c {
+            '(' | '[' | '{' => open.push((at, c == '{')),
+            ')' | ']' | '}' => match open.pop() {
+                Some((_, curly)) if curly == (c == '}') => {}
+                _ => return Some((at, "there is no opening bracket for this one")),
+            },
+            _ => {}
+        }
+    }
+    open.last().map(|(at, _)| (*at, "this bracket is never closed"))
 }
 
 /// The mark of an answer, and true if it is right.
@@ -181,6 +206,24 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     (problems.count() == before).then_some(Task::Predict { question: text, answers })
 }
 
+/// The part of a task that a word was meant for.
+fn part_meant(word: &str) -> Option<&'static str> {
+    const MEANT: [(&str, &str); 10] = [
+        ("until", "until"),
+        ("condition", "until"),
+        ("when", "until"),
+        ("goal", "until"),
+        ("hint", "hint"),
+        ("tip", "hint"),
+        ("help", "hint"),
+        ("clue", "hint"),
+        ("note", "hint"),
+        ("advice", "hint"),
+    ];
+    let near = nearest(word, MEANT.into_iter())?;
+    MEANT.into_iter().map(|(_, part)| part).find(|part| *part == near)
+}
+
 /// Reads a task with its condition.
 fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> Option<Goal> {
     const PARTS: [&str; 2] = ["until", "hint"];
@@ -213,9 +256,25 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
         hint = Some(markdown::inline(written, problems));
     }
     let Some(written) = piece("until").filter(|until| !until.text.is_empty()) else {
-        problems.at(at, "the task has no condition; add a line until: with the condition that ends it");
+        let meant = lines(body.text, body.at)
+            .find_map(|line| pair(&line).filter(|(key, _)| part_meant(key.text) == Some("until")));
+        match meant {
+            Some((key, _)) => {
+                problems.at(key.at, format!("a task has no {}; did you mean until:?", quoted(key.text)))
+            }
+            None => {
+                problems
+                    .at(at, "the task has no condition; add a line until: with the condition that ends it");
+            }
+        }
         return None;
     };
+    // A condition has no colon: a line with one was meant for another part.
+    if let Some((key, _)) = lines(written.text, written.at).skip(1).find_map(|line| pair(&line)) {
+        let meant = part_meant(key.text).map_or_else(String::new, |part| format!("; did you mean {part}:?"));
+        problems.at(key.at, format!("a task has no {}; it has until and hint{meant}", quoted(key.text)));
+        return None;
+    }
     draft.until = Some(written.at);
     match Condition::parse(written.text) {
         Ok(until) => (problems.count() == before).then_some(Goal { text, until, hint }),

@@ -1,9 +1,10 @@
 //! The steps one after the other, with the scenes in which they begin: parts, views and conditions that do not fit.
 
 use super::{
-    Situation, WindowFacts,
+    Block, Situation, Task, WindowFacts,
     blocks::{self, Draft},
     condition::Knowledge,
+    controls,
     problem::Problems,
 };
 use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plural};
@@ -12,7 +13,7 @@ use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plu
 pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, problems: &mut Problems) {
     let mut scene = start.clone();
     let mut window = WindowFacts::default();
-    let mut known = Knowledge { scene: true, ..Knowledge::default() };
+    let mut known = Knowledge::at_the_beginning();
     for draft in drafts {
         // Without the scene that is meant, everything after it would seem wrong.
         if draft.is_lost {
@@ -28,12 +29,19 @@ pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, proble
                     return;
                 }
             }
-            known.scene |= change.opens();
+            if change.opens() {
+                known.scene_opened();
+            }
+            change.paths().for_each(|path| known.scene_set(path));
         }
         step(draft, &scene, &mut window, &mut known, registry, problems);
-        if draft.until.is_some() {
-            // The learner changes things from here on.
-            known = Knowledge::default();
+        if let Some(task) = &draft.step.task
+            && let Some(goal) = task.goal()
+        {
+            known.done(&goal.until, matches!(task, Task::Find(_)));
+        } else if draft.step.task.is_none() && draft.step.blocks.contains(&Block::Task) {
+            // A task that could not be read may have been about anything.
+            known = Knowledge::lost();
         }
     }
 }
@@ -49,6 +57,12 @@ fn step(
     let place = |setting: &str| {
         draft.settings.iter().find(|(known, _)| *known == setting).map_or(draft.at, |(_, at)| *at)
     };
+    // The names of the scene were not known where the part was read.
+    for (at, written) in &draft.misnamed {
+        if let Some(near) = controls::nearest_part(written, scene) {
+            problems.add(*at, &format!("; did you mean {near}?"));
+        }
+    }
     let change = &draft.step.window;
     window.views = scene.variants.len() + 1;
     if let Some(active) = change.active {

@@ -5,7 +5,7 @@ use crate::{
     document::Selection,
     registry::Registry,
     scene::Scene,
-    text::{did_you_mean, listed, quoted},
+    text::{did_you_mean, listed, nearest, quoted},
 };
 
 /// A control of the window.
@@ -133,6 +133,24 @@ impl PartName {
             _ => Err(format!("this is {}, but {rule}", quoted(piece.text))),
         }
     }
+}
+
+/// The part of a scene whose name is nearest to a text that names none, as it must be written.
+pub(super) fn nearest_part(written: &str, scene: &Scene) -> Option<String> {
+    let word = |text: &str| -> Option<usize> { text.find(char::is_whitespace) };
+    let bare = match word(written).map(|end| (&written[..end], written[end..].trim())) {
+        Some(("object" | "light", name)) => name,
+        _ => written,
+    };
+    let bare = bare.trim_matches(['"', '“', '”', '\'', '‘', '’']);
+    let parts = |kind: &'static str, names: Vec<Option<&str>>| {
+        let names: Vec<_> = names.into_iter().flatten().map(str::to_owned).collect();
+        names.into_iter().map(move |name| (format!("{kind} {}", quoted(&name)), name))
+    };
+    let objects = parts("object", scene.objects.iter().map(|part| part.name.as_deref()).collect());
+    let lights = parts("light", scene.lights.iter().map(|part| part.name.as_deref()).collect());
+    let all: Vec<_> = objects.chain(lights).collect();
+    nearest(bare, all.iter().map(|(part, name)| (name.as_str(), part.as_str()))).map(str::to_owned)
 }
 
 /// The names of all parameters: of materials, lights and shapes.

@@ -20,6 +20,8 @@ fn options() -> Options {
 struct Runs {
     runs: Vec<Run>,
     styles: Vec<RunStyle>,
+    /// The byte of the stray sign that was said last.
+    stray: Option<usize>,
 }
 
 impl Runs {
@@ -33,6 +35,23 @@ impl Runs {
     fn take(&mut self) -> Vec<Run> {
         self.styles.clear();
         std::mem::take(&mut self.runs)
+    }
+
+    /// Says a sign of emphasis that stands in a text as it is; once for a row of them.
+    fn check(
+        &mut self,
+        event: &Event,
+        whole: Piece,
+        range: &std::ops::Range<usize>,
+        problems: &mut Problems,
+    ) {
+        let Some((at, what)) = matches!(event, Event::Text(_)).then(|| stray(whole.text, range)).flatten()
+        else {
+            return;
+        };
+        if self.stray.replace(at).is_none_or(|last| last + 1 != at) {
+            problems.at(whole.at + at, what);
+        }
     }
 
     /// Takes text and styles; false for everything else.
@@ -76,11 +95,31 @@ fn refusal(event: &Event) -> &'static str {
     }
 }
 
+/// The byte of a sign of emphasis that stands in the text as it is, and a sentence. `2 * 3` is meant.
+fn stray(whole: &str, range: &std::ops::Range<usize>) -> Option<(usize, String)> {
+    let text = whole.get(range.clone())?;
+    let word = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
+    let space = |c: Option<char>| c.is_none_or(char::is_whitespace);
+    let (inside, sign) = text.char_indices().find(|(i, sign)| {
+        let at = range.start + i;
+        let before = whole[..at].trim_end_matches(*sign).chars().next_back();
+        let after = whole[at..].trim_start_matches(*sign).chars().next();
+        let is_meant = before == Some('\\') || word(before) && word(after) || space(before) && space(after);
+        matches!(sign, '*' | '`') && !is_meant
+    })?;
+    let names = if sign == '*' { "emphasis is *word*, bold is **word**" } else { "code is `word`" };
+    Some((
+        range.start + inside,
+        format!("this {sign} has no counterpart: {names}, and \\{sign} the sign itself"),
+    ))
+}
+
 /// Reads a text that is one paragraph: a question, an answer, a hint.
 pub(super) fn inline(piece: Piece, problems: &mut Problems) -> Vec<Run> {
     let mut runs = Runs::default();
     let (mut skipped, mut paragraphs) = (0usize, 0);
     for (event, range) in Parser::new_ext(piece.text, options()).into_offset_iter() {
+        runs.check(&event, piece, &range, problems);
         match &event {
             Event::Start(_) if skipped > 0 => skipped += 1,
             Event::End(_) if skipped > 0 => skipped -= 1,
@@ -209,6 +248,7 @@ impl Reader<'_, '_, '_> {
 
     /// Takes an event from one byte to another. True if it was refused, with everything in it.
     fn event(&mut self, event: &Event, at: usize, end: usize) -> bool {
+        self.runs.check(event, Piece { at: 0, text: self.whole }, &(at..end), self.problems);
         if self.runs.takes(event) {
             return false;
         }
@@ -227,6 +267,13 @@ impl Reader<'_, '_, '_> {
                 };
                 if let Some(problem) = problem {
                     self.problems.at(at, problem);
+                    if is_marked {
+                        // Meant as a step: its blocks are not those of the step before.
+                        if let Some(before) = self.steps.last_mut() {
+                            before.is_empty = false;
+                        }
+                        self.steps.push(Draft { at, ..Draft::default() });
+                    }
                     return true;
                 }
                 if !self.items.is_empty() {

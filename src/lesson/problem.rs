@@ -77,6 +77,13 @@ impl<'a> Problems<'a> {
         self.found.push((at, message.into()));
     }
 
+    /// Adds words to the problem that was found last at a byte.
+    pub(super) fn add(&mut self, at: usize, words: &str) {
+        if let Some((_, message)) = self.found.iter_mut().rev().find(|(found, _)| *found == at) {
+            message.push_str(words);
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.found.is_empty()
     }

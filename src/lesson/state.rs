@@ -20,7 +20,7 @@ use crate::{
         load::{self, Defaults, Loaded},
         syntax::check_syntax,
     },
-    text::{did_you_mean, quoted, sentence},
+    text::{did_you_mean, quoted, sentence, shortened},
 };
 
 /// The name of the scene in the reader of scene files, which decides on the format by it.
@@ -53,6 +53,14 @@ impl SceneChange {
     /// True if another scene takes the place of what was there.
     pub(super) fn opens(&self) -> bool {
         self.operations.iter().any(|operation| matches!(operation.what, What::Open(_)))
+    }
+
+    /// The paths that it sets.
+    pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.operations.iter().filter_map(|operation| match &operation.what {
+            What::Set(path, _) => Some(path),
+            What::Open(_) => None,
+        })
     }
 
     /// The scene after the change.
@@ -230,8 +238,10 @@ pub(super) fn read(
             continue;
         }
         let begins = piece.text.starts_with("open:")
-            || piece.text.split_once('=').is_some_and(|(path, _)| {
-                path.starts_with(|c: char| c.is_alphabetic() || c == '$') && !path.contains('"')
+            || ['=', ':'].into_iter().any(|sign| {
+                piece.text.split_once(sign).is_some_and(|(path, _)| {
+                    path.starts_with(|c: char| c.is_alphabetic() || c == '$') && !path.contains('"')
+                })
             });
         match statements.last_mut() {
             Some(last) if !begins => last.1 = piece.end(),
@@ -250,7 +260,18 @@ pub(super) fn read(
             }
             continue;
         }
-        let Some(equals) = piece.text.find('=') else {
+        let equals = piece.text.find('=');
+        // As in a block view.
+        let colon = piece.text.find(':').filter(|colon| equals.is_none_or(|equals| *colon < equals));
+        if let Some(colon) = colon.filter(|colon| path(piece.text[..*colon].trim_end()).is_ok()) {
+            let value = piece.text[colon + 1..].trim();
+            let value = if value.is_empty() { "VALUE" } else { value };
+            let meant = format!("{} = {value}", piece.text[..colon].trim_end());
+            problems
+                .at(piece.at + colon, format!("a scene block sets values by =; write {}", shortened(&meant)));
+            continue;
+        }
+        let Some(equals) = equals else {
             problems.at(
                 piece.at,
                 "this is neither PATH = VALUE nor open: FILE, as every line of a scene block must be",

@@ -194,7 +194,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     // The window.
     ("## S\n\n```view\nchanel: n_dot_l\n```\n", "9:1: a view block has no \"chanel\""),
-    ("## S\n\n```view\nchannel: n_dot_q\n```\n", "9:10: this is \"n_dot_q\", but it must be"),
+    ("## S\n\n```view\nchannel: n_dot_q\n```\n", "9:10: channel is \"n_dot_q\", but it must be"),
     ("## S\n\n```view\nnonsense\n```\n", "9:1: this is not SETTING: VALUE"),
     ("## S\n\n```view\nterms: all\nterms: all\n```\n", "10:1: terms is given twice"),
     (
@@ -213,6 +213,49 @@ const MISTAKES: &[(&str, &str)] = &[
     ("## S\n\n```point\ntab: plot\n```\n", "9:6: there is no tab \"plot\""),
     ("## S\n\n```point\nlamp: x\n```\n", "9:1: a lesson cannot point at a \"lamp\""),
     ("## S\n\n```point\npart: light \"sun\"\n```\n", "9:7: there is no such part: the scene has 1 light"),
+    // Near misses.
+    (
+        "## S\n\n```scene\nobjects[0].size = 3\nshading_model: \"phong\"\n```\n",
+        "10:14: a scene block sets values by =; write shading_model = \"phong\"",
+    ),
+    (
+        "## S\n\n```scene\nshading_model:\n```\n",
+        "9:14: a scene block sets values by =; write shading_model = VALUE",
+    ),
+    (
+        "## S\n\n```do\nX.\nuntil: probe.pinned\ntip: Press **E**.\n```\n",
+        "11:1: a task has no \"tip\"; it has until and hint; did you mean hint:?",
+    ),
+    (
+        "## S\n\n```do\nX.\nuntil: probe.pinned\nfoo: Press **E**.\n```\n",
+        "11:1: a task has no \"foo\"; it has until and hint",
+    ),
+    (
+        "## S\n\n```do\nX.\nuntill: probe.pinned\n```\n",
+        "10:1: a task has no \"untill\"; did you mean until:?",
+    ),
+    (
+        "## S\n\n```scene\nobjects[0].name = \"tomato\"\n```\n\n```view\nselect: tomato\n```\n",
+        "13:9: this is \"tomato\", but a part must be room, observer, object N or light N, with its number from 1 or its name in quotes; did you mean object \"tomato\"?",
+    ),
+    (
+        "## S\n\n```point\npart: light Key-Light\n```\n",
+        "9:7: this is \"light Key-Light\", but a part must be",
+    ),
+    ("## S\n\n```view\nchannel: ndotl\n```\n", "9:10: channel is \"ndotl\", but it must be"),
+    (
+        "## S\n\n```do\nX.\nuntil: probe.pinned\n```\n\n### Try it\n\n```do\nX.\nuntil: probe.pinned\n```\n",
+        "13:1: headings of steps begin with ##",
+    ),
+    // Brackets and emphasis.
+    ("## S\n\n```equation\nI = max(0, N·L I(p)\n```\n", "9:8: this bracket is never closed"),
+    ("## S\n\n```equation\nI = k_d\n  + a) b\n```\n", "10:6: there is no opening bracket for this one"),
+    ("## S\n\n```equation\nI = {a]\n```\n", "9:7: there is no opening bracket for this one"),
+    ("## S\n\nA **bold* word.\n", "8:3: this * has no counterpart"),
+    ("## S\n\nA **bold word.\n", "8:3: this * has no counterpart"),
+    ("## S\n\nA word* here.\n", "8:7: this * has no counterpart"),
+    ("## S\n\nA `word here.\n", "8:3: this ` has no counterpart: code is `word`, and \\` the sign itself"),
+    ("## S\n\n```do\nPress **E*.\nuntil: probe.pinned\n```\n", "9:7: this * has no counterpart"),
     // Scenes.
     ("## S\n\n```scene\nnonsense\n```\n", "9:1: this is neither PATH = VALUE nor open: FILE"),
     (
@@ -272,6 +315,94 @@ fn every_mistake_is_said_at_its_place() {
 }
 
 #[test]
+fn what_looks_like_a_mistake_and_is_none_is_taken() {
+    for steps in [
+        "## S\n\n2 * 3, 2*3, \\*, \\**, \\`, ***both***, **a** *b* `c*`.\n",
+        "## S\n\n```equation\nx ∈ [0, 1), |f(x)| = {a}\n```\n",
+        "## S\n\n```scene\nvariants[0] = {\n  \"name\": \"B\",\n  \"exposure\":\n   1\n}\n```\n",
+        "## S\n\n```do\nNote: X: y.\nuntil: probe.pinned\nhint: tip: z\nnote: more\n```\n",
+    ] {
+        assert_eq!(problems(&with(steps)), [""; 0], "{steps}");
+    }
+}
+
+#[test]
+fn names_that_are_near_are_offered() {
+    for (line, near) in [
+        ("select: Tomato", "object \"tomato\""),
+        ("select: object tomatoe", "object \"tomato\""),
+        ("select: key light", "light \"key light\""),
+        ("select: light key light", "light \"key light\""),
+        ("channel: ndotl", "\"n_dot_l\""),
+    ] {
+        let scene = "objects[0].name = \"tomato\"\nlights[0].name = \"key light\"";
+        let found = problems(&with(&format!("## S\n\n```scene\n{scene}\n```\n\n```view\n{line}\n```\n")));
+        assert!(found.len() == 1 && found[0].ends_with(&format!("; did you mean {near}?")), "{found:?}");
+    }
+    let far = problems(&with("## S\n\n```view\nselect: elephant\n```\n"));
+    assert!(far.len() == 1 && far[0].ends_with("its name in quotes"), "{far:?}");
+}
+
+/// A learner is taken to change only what the tasks name.
+#[test]
+fn a_task_that_is_done_before_it_begins_is_found_in_later_steps_too() {
+    let task = |kind: &str, until: &str| format!("```{kind}\nX.\nuntil: {until}\n```\n");
+    let two = |first: &str, extra: &str, second: &str| {
+        let done = |line: &String| line.contains("already done");
+        let found = problems(&with(&format!("## A\n\n{first}\n## B\n\n{extra}{second}")));
+        assert!(found.iter().all(done) && found.len() < 2, "{found:?}");
+        !found.is_empty()
+    };
+    let select = "```view\nselect: object 1\nactive: A\n```\n";
+    for (kind, first, then, is_done) in [
+        ("do", "scene.objects[0].size > 3", "scene.lights.count >= 1", true),
+        ("do", "scene.objects[0].size > 3", "scene.lights[0].intensity > 1", true),
+        ("do", "scene.objects[0].size > 3", "window.views >= 1", true),
+        ("do", "scene.objects[0].size > 3", "scene.objects[0].size > 1", false),
+        ("do", "scene.objects.count = 2", "scene.objects[0].size = 2", false),
+        ("do", "scene.objects[0].size > 3", "scene.objects.count = 1", false),
+        ("do", "window.terms = \"specular\"", "scene.lights.count = 1 and window.channel = \"none\"", true),
+        ("do", "window.terms = \"specular\"", "window.terms = \"all\"", false),
+        ("do", "window.terms = \"specular\"", "window.shows_term_alone", false),
+        ("do", "window.channel = \"n_dot_l\"", "window.channel = \"none\"", false),
+        ("do", "window.views = 2", "window.views = 1", false),
+        ("do", "window.views = 2", "scene.variants.count = 0", false),
+        ("do", "window.active = \"B\" or window.terms = \"diffuse\"", "scene.lights.count = 1", false),
+        // The luminance can be changed by anything, but finding it changes nothing.
+        ("do", "probe.luminance > 3", "scene.lights.count = 1", false),
+        ("find", "probe.luminance > 3", "scene.lights.count = 1", true),
+        ("find", "probe.luminance > 3", "window.explain", false),
+        ("do", "knob.alpha > 300", "scene.objects[0].material.alpha = 32", false),
+        ("do", "knob.alpha > 300", "scene.objects[0].material.k_s = 0.5", true),
+        ("do", "window.reflection_model = \"phong\"", "scene.reflection_model = \"lambert\"", false),
+        ("do", "window.shading_model = \"phong\"", "scene.objects[0].shading_model = \"gouraud\"", false),
+        ("do", "curve.peak > 1", "scene.objects[0].size = 2", false),
+    ] {
+        let first_task = format!("{select}\n{}", task(kind, first));
+        assert_eq!(two(&first_task, "", &task("do", then)), is_done, "{first}; {then}");
+    }
+    // Knobs and curves need the selection, which a click may have changed.
+    let first = format!("{select}\n{}", task("do", "knob.alpha > 300"));
+    assert!(!two(&first, "", &task("do", "knob.k_s = 0.5")));
+    assert!(two(&first, &format!("{select}\n"), &task("do", "knob.k_s = 0.5")));
+    assert!(!two(&first, &format!("{select}\n"), &task("do", "knob.alpha = 32")));
+    assert!(!two(&first, &format!("{select}\n"), &task("do", "curve.peak >= 0")));
+    // What a step sets is known again.
+    let size = task("do", "scene.objects[0].size > 3");
+    let set = "```scene\nobjects[0].size = 4\n```\n\n";
+    assert!(two(&size, set, &task("do", "scene.objects[0].size = 4")));
+    let open = "```scene\nopen: default.json\n```\n\n";
+    assert!(two(&size, open, &task("do", "scene.objects[0].size > 1")));
+    // A task that cannot be read may have been about anything.
+    let broken = problems(&with(&format!(
+        "## A\n\n{}\n## B\n\n{}",
+        task("do", "probe.pined"),
+        task("do", "scene.lights.count = 1")
+    )));
+    assert!(broken.len() == 1 && broken[0].contains("probe.pined"), "{broken:?}");
+}
+
+#[test]
 fn mistakes_of_the_whole_text_are_said_too() {
     let step = "## S\n\nt\n";
     let deep = format!("## S\n\n{}\n", ">".repeat(20_000));
@@ -320,7 +451,7 @@ fn mistakes_of_the_whole_text_are_said_too() {
         assert_eq!(a.blocks, b.blocks);
     }
     let broken = with("## S\n\n```view\nterms: al\n```\n").replace('\n', "\r\n");
-    assert!(problems(&broken)[0].starts_with("9:8: this is \"al\""), "{:?}", problems(&broken));
+    assert!(problems(&broken)[0].starts_with("9:8: terms is \"al\""), "{:?}", problems(&broken));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! The block `view`: the window on entering a step.
 
 use super::{
-    PartName, WindowChange,
+    PartName,
+    blocks::Draft,
     problem::Problems,
     words::{Line, Piece, pair},
 };
@@ -29,7 +30,7 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
 ];
 
 /// A word of a list, or what is wrong with it.
-fn one_of<T>(value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T>
+fn one_of<T>(key: &str, value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T>
 where
     T: Clone,
 {
@@ -39,7 +40,7 @@ where
         let near = did_you_mean(value.text, words.iter().map(|w| (*w, *w)));
         problems.at(
             value.at,
-            format!("this is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")),
+            format!("{key} is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")),
         );
     }
     found.map(|(_, meaning)| meaning.clone())
@@ -49,10 +50,11 @@ where
 pub(super) fn setting(
     line: &Line,
     given: &mut Vec<&'static str>,
-    places: &mut Vec<(&'static str, usize)>,
-    window: &mut WindowChange,
+    draft: &mut Draft,
     problems: &mut Problems,
 ) {
+    let Draft { settings: places, misnamed, step, .. } = draft;
+    let window = &mut step.window;
     let Some((key, value)) = pair(line) else {
         problems.at(line.piece().at, "this is not SETTING: VALUE, as every line of a view block must be");
         return;
@@ -76,22 +78,25 @@ pub(super) fn setting(
         "channel" => {
             let channels = DebugChannel::ALL.map(|channel| (channel.id(), Some(channel)));
             let all: Vec<_> = channels.into_iter().chain([("none", None)]).collect();
-            window.channel = one_of(value, &all, problems);
+            window.channel = one_of(known, value, &all, problems);
         }
-        "terms" => window.terms = one_of(value, &TermSelection::ALL.map(|t| (t.id(), t)), problems),
-        "explain" => window.explain = one_of(value, &[("on", true), ("off", false)], problems),
+        "terms" => window.terms = one_of(known, value, &TermSelection::ALL.map(|t| (t.id(), t)), problems),
+        "explain" => window.explain = one_of(known, value, &[("on", true), ("off", false)], problems),
         "plots" => {
             let kinds = Kind::ALL.map(|kind| (kind.id(), Some(kind)));
             window.plots =
-                one_of(value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
+                one_of(known, value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
         }
         "active" => {
             let letters: Vec<_> = LETTERS.into_iter().enumerate().map(|(i, letter)| (letter, i)).collect();
-            window.active = one_of(value, &letters, problems);
+            window.active = one_of(known, value, &letters, problems);
         }
         "select" => match PartName::parse(value) {
             Ok(part) => window.select = Some(part),
-            Err(what) => problems.at(value.at, what),
+            Err(what) => {
+                problems.at(value.at, what);
+                misnamed.push((value.at, value.text.to_owned()));
+            }
         },
         _ => window.pin = pin(value, problems),
     }

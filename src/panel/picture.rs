@@ -17,7 +17,6 @@ use super::{
     wires,
 };
 use crate::{
-    document::Selection,
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
@@ -61,7 +60,7 @@ pub fn overlays(
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
-    all.written.extend(explain::vectors(ui, rect, session.active(), session));
+    all.written.extend(explain::vectors(ui, rect, session.active(), session, registry));
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
         let (asked, covered) = stale(ui, free, session, registry);
@@ -105,10 +104,8 @@ fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &R
     if session.view.presenting {
         return;
     }
-    // They would cover the vectors of what is pinned.
-    let covers = session.explains()
-        && session.view.pinned.is_some()
-        && matches!(session.selection, Selection::Object(_));
+    // They would cover the pixel that is explained or that a lesson is about, and look like vectors.
+    let covers = session.explains() || session.lesson.is_some();
     let paints = [marks::marks, handles::handles];
     for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
         let (asked, places) = paint(ui, rect, written, session, registry);
@@ -142,7 +139,7 @@ pub fn views(
     }
     for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
         // Views that lie over each other have the same rectangle.
-        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session));
+        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
     let mut stale_in = None;

@@ -161,9 +161,10 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CARD.y), Sense::click());
     let begun = past.map(|past| format!("Go on: {}", past.words()));
     let minutes = shipped.and_then(|lesson| lesson.minutes);
-    let small = begun.unwrap_or_else(|| match minutes {
-        Some(minutes) => format!("Begin here: {minutes} min"),
-        None => "Begin here".to_owned(),
+    let small = begun.unwrap_or_else(|| {
+        let is_new = session.progress.lessons.values().all(|past| !past.finished && past.step == 0);
+        let way = if is_new { "Begin here" } else { "Go on" };
+        minutes.map_or_else(|| way.to_owned(), |minutes| format!("{way}: {minutes} min"))
     });
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{small}, {title}")));
     focus::first(ui.ctx(), response.id);

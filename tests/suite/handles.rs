@@ -6,7 +6,10 @@ use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
     panel::{
         marks::Lens,
-        state::{Action, CompareCommand, HandleChange, HandleMode, Session, ViewChange},
+        state::{
+            Action, CompareCommand, EXPLAIN_TAB, HandleChange, HandleMode, LessonCommand, LessonSource,
+            Session, ViewChange,
+        },
     },
     scene::{Light, Scene, comparison::Layout},
 };
@@ -286,6 +289,27 @@ fn an_open_menu_or_question_keeps_the_handles_from_the_pointer() {
     bench.apply(Action::New);
     drag(&mut bench, at, vec2(40.0, 0.0), Modifiers::NONE);
     assert_eq!(bench.session.document.done(), 1);
+}
+
+#[test]
+fn what_is_explained_is_not_covered_by_handles() {
+    let mut bench = bench(scene());
+    let count = |bench: &Bench| bench.tree.iter().filter(|s| s.label.starts_with("Handle: ")).count();
+    for part in [Selection::Object(0), Selection::Light(0)] {
+        bench.apply(Action::Select(part));
+        bench.settle();
+        assert!(count(&bench) > 0, "{part:?}");
+        bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+        bench.settle();
+        assert!(bench.session.explains() && count(&bench) == 0, "{part:?}");
+        bench.apply(Action::View(ViewChange::Bottom(false)));
+        bench.settle();
+        assert!(!bench.session.explains() && count(&bench) > 0, "{part:?}");
+    }
+    bench.apply(Action::Lesson(LessonCommand::Open(LessonSource::Shipped(0))));
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.settle();
+    assert!(bench.session.lesson.is_some() && count(&bench) == 0, "a lesson is about the picture");
 }
 
 #[test]

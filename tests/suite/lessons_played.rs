@@ -78,17 +78,25 @@ impl Learner {
         self.explainer.pixel(&scene, &self.registry, &settings, pixel).expect("within the picture")
     }
 
-    fn holds(&mut self, goal: &Goal) -> bool {
+    fn asks<T>(&mut self, of: impl FnOnce(&Situation) -> T) -> T {
         let probe = self.pin.map(|pixel| self.explained(pixel));
-        let situation = Situation {
+        of(&Situation {
             scene: &self.seen(),
             registry: &self.registry,
             selection: self.selection,
             window: self.window,
             probe: probe.as_ref(),
             pinned: probe.is_some(),
-        };
-        goal.until.holds(&situation)
+        })
+    }
+
+    fn holds(&mut self, goal: &Goal) -> bool {
+        self.asks(|situation| goal.until.holds(situation))
+    }
+
+    /// What the window says of a task that is not done.
+    fn unmet(&mut self, goal: &Goal) -> Option<String> {
+        self.asks(|situation| goal.until.unmet(situation))
     }
 
     /// Does something; true if the goal is reached then.
@@ -136,7 +144,7 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
     (
         "01",
         "Colour of the surface",
-        Deed::Set(&[("/objects/0/material", || json!({ "base_colour": [230, 30, 30] }))]),
+        Deed::Set(&[("/objects/0/material", || json!({ "base_colour": [238, 68, 68] }))]),
         Deed::Set(&[("/objects/0/material", || json!({ "base_colour": [30, 30, 30] }))]),
     ),
     (
@@ -165,7 +173,7 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
         Deed::Set(&[("/shading_model", || json!("flat"))]),
         Deed::Set(&[("/shading_model", || json!("derivative"))]),
     ),
-    ("03", "Find what Gouraud misses", Deed::Pin, Deed::Pin),
+    ("03", "Between the vertices", Deed::Pin, Deed::Pin),
     (
         "03",
         "Per pixel: Phong",
@@ -264,6 +272,8 @@ fn every_task_of_every_lesson_can_be_solved_and_a_mistake_does_not_solve_it() {
             assert!(!learner.holds(goal), "{at}: done before it begins");
             let terms = learner.window.terms;
             assert!(!learner.does(mistake, goal, false), "{at}: a mistake is taken for the solution");
+            let why = learner.unmet(goal);
+            assert!(why.is_some_and(|why| !why.contains("scene.") && why.len() > 10), "{at}: no reason");
             learner.enter(lesson, i);
             learner.window.terms = terms;
             assert!(learner.does(solution, goal, true), "{at}: the solution is not taken");

@@ -572,7 +572,7 @@ fn explain_has_the_columns_that_have_room() {
             lowest.unwrap_or_else(|| panic!("no {label} in {size:?}, {scale} %"))
         };
         let lefts =
-            ["computed per vertex", "Light 1", "From light to the code"].map(|label| place(label).left());
+            ["computed per vertex", "Point 1: ", "From light to the code"].map(|label| place(label).left());
         let [surface, lights, display] = lefts;
         let found = match () {
             () if display > lights && lights > surface => 3,

@@ -25,6 +25,7 @@ fn bench(scene: Scene) -> Bench {
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.settle();
+    bench.apply(Action::View(ViewChange::Lobe(LobeChoice { scale: LobeScale::Linear, all: false })));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
     wait(&mut bench);
     bench
@@ -153,6 +154,54 @@ fn it_is_calculated_when_something_changed_and_only_then() {
 }
 
 #[test]
+fn it_hides_nothing_until_it_is_asked_for() {
+    let mut bench = Bench::with_registry(Session::new(scene("phong", "phong")), Registry::builtin());
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+    bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
+    wait(&mut bench);
+    assert!(bench.session.explains() && triangles(&mut bench) == 0 && !is_written(&mut bench, "Lobe"));
+    bench.key(Key::E, Modifiers::SHIFT);
+    wait(&mut bench);
+    assert!(triangles(&mut bench) > 200 && is_written(&mut bench, "Lobe"));
+}
+
+#[test]
+fn its_scale_stays_while_a_pixel_is_pinned() {
+    let paint = |bench: &mut Bench, code: u8| {
+        let colour = Edit::Object(0, ObjectField::Material("base_colour", Value::Colour([code; 3])));
+        bench.apply(Action::Edit(colour));
+        wait(bench);
+    };
+    let mut lambert = bench(scene("lambert", "phong"));
+    for code in [255, 120, 40] {
+        paint(&mut lambert, code);
+        assert!(is_written(&mut lambert, "Length of the vectors: 0.318, that of a white"), "{code}");
+    }
+    choose(&mut lambert, LobeScale::Logarithmic, false);
+    for code in [255, 40] {
+        paint(&mut lambert, code);
+        assert!(is_written(&mut lambert, "Centre: 0.001; length of the vectors: 10"), "{code}");
+    }
+    // A taller lobe raises the scale, which another pixel forgets and a darker surface does not.
+    let ends = |bench: &mut Bench| {
+        let line = written(bench).into_iter().find_map(|text| {
+            Some(text.lines().find_map(|line| line.strip_prefix("Length of the vectors: "))?.to_owned())
+        });
+        line.unwrap_or_else(|| panic!("no legend: {:?}", written(bench)))
+    };
+    let mut phong = bench(scene("blinn_phong", "phong"));
+    let tall = ends(&mut phong);
+    assert!(tall.parse::<f32>().expect("a number") > 0.4, "{tall}");
+    phong.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    wait(&mut phong);
+    assert_eq!(ends(&mut phong), tall);
+    phong.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at: [0.01, 0.01] }))));
+    wait(&mut phong);
+    assert!(ends(&mut phong).starts_with("0.318"), "{}", ends(&mut phong));
+}
+
+#[test]
 fn menu_button_and_key_choose_it() {
     let mut bench = bench(scene("phong", "phong"));
     assert!(is_written(&mut bench, "BRDF f in sr⁻¹") && is_written(&mut bench, "Length of the vectors: "));
@@ -198,7 +247,7 @@ fn each_light_that_reaches_the_point_has_a_lobe() {
         lights
     };
     assert_eq!(of(&bench), [0, 1], "not the one behind, nor ambient light");
-    assert!(is_written(&mut bench, "Light 1") && is_written(&mut bench, "Light 2"));
+    assert!(is_written(&mut bench, "Point 1") && is_written(&mut bench, "Point 2"));
     // More than there are colours: the brightest, and it is said.
     let mut many = three_lights();
     let first = many.lights[0].clone();

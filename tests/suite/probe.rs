@@ -16,7 +16,9 @@ use lights_camera_models::{
     reference::{self, Settings},
     reflection::{Declaration, ReflectionModel},
     registry::{Register, Registry},
-    scene::{Observer, Scene, comparison::Layout, examples::EXAMPLES, observer::vertical_field_of_view},
+    scene::{
+        Light, Observer, Scene, comparison::Layout, examples::EXAMPLES, observer::vertical_field_of_view,
+    },
     shader::Source,
     testing::random,
 };
@@ -141,6 +143,66 @@ fn the_code_is_that_of_the_picture_in_every_shading_model() {
             );
         }
     }
+}
+
+#[test]
+fn a_sentence_says_which_light_and_which_term_give_the_most() {
+    let of = |scene: Scene| {
+        let mut bench = bench(scene);
+        point_at_sphere(&mut bench);
+        bench
+    };
+    let says = |bench: &Bench, text: &str| {
+        let all: Vec<_> =
+            bench.tree.iter().map(|s| s.label.clone()).filter(|l| l.starts_with("This ")).collect();
+        assert!(bench.says(text), "no “{text}” in {all:?}");
+    };
+    let light = |at: [f32; 3], intensity: f32, name: Option<&str>| Light {
+        position: Some(at.into()),
+        intensity,
+        name: name.map(str::to_owned),
+        ..Scene::default().lights[0].clone()
+    };
+    let at = [3.0, 8.0, 9.0];
+    let lit = |model: &str, lights: Vec<Light>| Scene { lights, ..scene(model, "phong") };
+
+    let one = of(lit("lambert", vec![light(at, 60.0, None)]));
+    let [r, g, b] = shown(&one).code();
+    says(&one, &format!("This pixel is ({r}, {g}, {b}): "));
+    says(&one, "Point 1 gives all of its light, by the diffuse term.");
+    let two = of(lit("lambert", vec![light(at, 30.0, None), light(at, 90.0, Some("warm lamp"))]));
+    says(&two, "warm lamp gives 75 % of its light, by the diffuse term.");
+    let gouraud = Scene { shading_model: "gouraud".to_owned(), ..(*two.session.document).clone() };
+    says(&of(gouraud), "warm lamp gives 75 % of its light");
+    says(&of(lit("lambert", Vec::new())), "no light is switched on.");
+    says(&of(lit("lambert", vec![light([5.0, 5.0, 1.0], 60.0, None)])), "no light leaves this point");
+    says(&of(lit("lambert", vec![light(at, 1e6, None)])), "brighter than the display can show, and clipped.");
+    let everywhere =
+        Light { light_type: "ambient".to_owned(), position: None, intensity: 0.2, ..Light::default() };
+    says(&of(lit("lambert", vec![everywhere])), "gives all of its light, by the ambient term.");
+    let mut background = bench(Scene::default());
+    let at = corner(&background);
+    point(&mut background, at);
+    says(&background, "no object is here, and the background shows.");
+}
+
+#[test]
+fn a_presentation_keeps_the_vectors_of_a_pinned_pixel() {
+    let mut bench = bench(scene("phong", "phong"));
+    point_at_sphere(&mut bench);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    // The equation of Phong has no H.
+    let has_h = |bench: &mut Bench| words(bench).iter().any(|word| word == "H");
+    assert!(bench.session.view.presenting && !has_h(&mut bench), "nothing is pinned");
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    point_at_sphere(&mut bench);
+    bench.key(Key::E, Modifiers::NONE);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    assert!(bench.session.view.presenting && bench.session.view.pinned.is_some());
+    assert!(has_h(&mut bench));
 }
 
 #[test]
@@ -317,7 +379,7 @@ fn vertices_can_be_chosen_and_per_pixel_shading_compared() {
     assert!(chosen.is_some());
     bench.click("Point: per pixel");
     assert!(bench.says("per-pixel shading would give"));
-    let light = "Light 1";
+    let light = "Point 1: ";
     let blocks = |bench: &Bench| bench.tree.iter().filter(|s| s.label.starts_with(light)).count();
     assert_eq!(blocks(&bench), 1);
     assert!(bench.says("light to the observer"), "the brightest is unfolded");

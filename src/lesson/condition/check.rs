@@ -1,62 +1,22 @@
-//! Mistakes in a condition that was read: quantities that do not exist, types that do not fit, tasks that are
-//! done before they begin.
+//! Mistakes in a condition that was read: quantities that do not exist, types that do not fit, values that they
+//! never have.
 
 use super::{
     Condition, Expression, Operand, Sign, Term, Value,
-    evaluate::{self, operands},
-    quantity::{Argument, Asked, DISPLAY, Kind, kind_of_parameter},
+    evaluate::operands,
+    never,
+    quantity::{Argument, Kind, kind_of_parameter},
     scene,
 };
 use crate::{
     document::Selection,
-    lesson::{Situation, controls},
+    lesson::controls,
     registry::Registry,
     scene::Scene,
     text::{did_you_mean, listed, quoted},
 };
 
-/// The facts that are known when a step begins.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Knowledge {
-    pub selection: Option<Selection>,
-    pub channel: bool,
-    pub terms: bool,
-    pub plots: bool,
-    pub explain: bool,
-    pub active: bool,
-    /// True if the learner has changed nothing of the scene yet.
-    pub scene: bool,
-}
-
-impl Knowledge {
-    fn of(&self, asked: &Asked) -> bool {
-        match asked.quantity.name {
-            "window.selected" | "window.selected_index" => self.selection.is_some(),
-            "window.channel" => self.channel,
-            "window.terms" | "window.shows_term_alone" => self.terms,
-            "window.plots" => self.plots,
-            "window.explain" => self.explain,
-            "window.active" => self.active,
-            "window.views" => self.scene,
-            "window.presenting" => false,
-            "scene.PATH" => self.scene,
-            "knob.PARAMETER" if matches!(&asked.argument, Argument::Name(n) if DISPLAY.contains(&n.as_str())) => {
-                self.scene
-            }
-            _ => asked.group() != "probe" && self.scene && self.selection.is_some(),
-        }
-    }
-}
-
 impl Condition {
-    /// True if it surely holds when the step begins.
-    pub(in crate::lesson) fn holds_at_once(&self, situation: &Situation, known: &Knowledge) -> bool {
-        let ask = |asked: &Asked| {
-            if known.of(asked) { asked.value(situation) } else { Err(String::new()) }
-        };
-        evaluate::holds(&self.expression, &ask) == Some(true)
-    }
-
     /// Every mistake, by its byte, for a scene in which the step begins.
     pub(in crate::lesson) fn problems(
         &self,
@@ -73,7 +33,7 @@ impl Condition {
             }
         };
         let mut mistakes = Vec::new();
-        for part in comparisons(&self.expression) {
+        for (part, wanted) in comparisons(&self.expression, true) {
             match part {
                 Expression::Truth(operand) => {
                     if let Some(kind @ (Kind::Number | Kind::Text)) = kinds(operand) {
@@ -88,9 +48,11 @@ impl Condition {
                 }
                 Expression::Comparison { left, sign, right } => {
                     if let (Some(a), Some(b)) = (kinds(left), kinds(right)) {
+                        let meant = if wanted { *sign } else { sign.opposite() };
                         mistakes.extend(compared(left, (a, b), *sign, right));
-                        mistakes.extend(spelling(left, right, registry));
-                        mistakes.extend(spelling(right, left, registry));
+                        mistakes.extend(never::beyond(left, meant, right, registry));
+                        mistakes.extend(spelling(left, right, scene, registry));
+                        mistakes.extend(spelling(right, left, scene, registry));
                     }
                 }
                 _ => {}
@@ -104,12 +66,14 @@ impl Condition {
     }
 }
 
-/// The comparisons in an expression.
-fn comparisons(expression: &Expression) -> Vec<&Expression> {
+/// The comparisons in an expression, and true for each that is to hold, false for each that is not to.
+fn comparisons(expression: &Expression, wanted: bool) -> Vec<(&Expression, bool)> {
     match expression {
-        Expression::All(parts) | Expression::Any(parts) => parts.iter().flat_map(comparisons).collect(),
-        Expression::Not(part) => comparisons(part),
-        Expression::Comparison { .. } | Expression::Truth(_) => vec![expression],
+        Expression::All(parts) | Expression::Any(parts) => {
+            parts.iter().flat_map(|part| comparisons(part, wanted)).collect()
+        }
+        Expression::Not(part) => comparisons(part, !wanted),
+        Expression::Comparison { .. } | Expression::Truth(_) => vec![(expression, wanted)],
     }
 }
 
@@ -136,11 +100,25 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
 }
 
 /// A text that a quantity never has.
-fn spelling(quantity: &Operand, text: &Operand, registry: &Registry) -> Option<(usize, String)> {
+fn spelling(
+    quantity: &Operand,
+    text: &Operand,
+    scene: &Scene,
+    registry: &Registry,
+) -> Option<(usize, String)> {
     let (Term::Quantity(asked), Term::Value(Value::Text(written))) = (&quantity.what, &text.what) else {
         return None;
     };
     let mut known = (asked.quantity.texts)(registry);
+    let names = object_names(scene);
+    if asked.quantity.name == "probe.object" {
+        // The learner may add objects.
+        let added = written.strip_prefix("object ").and_then(|number| number.parse::<usize>().ok());
+        if added.is_some_and(|number| number > scene.objects.len()) {
+            return None;
+        }
+        known = names.iter().map(String::as_str).collect();
+    }
     match &asked.argument {
         Argument::Name(name) => {
             let parameter = registry.material_parameter(name);
@@ -171,6 +149,14 @@ fn spelling(quantity: &Operand, text: &Operand, registry: &Registry) -> Option<(
         Argument::None | Argument::Angle(_) => asked.quantity.name.to_owned(),
     };
     Some((text.at, format!("{name} is never {}{all}{near}", quoted(written))))
+}
+
+/// The names of the objects as the probe has them.
+fn object_names(scene: &Scene) -> Vec<String> {
+    let name = |(i, object): (usize, &crate::scene::Object)| {
+        object.name.clone().unwrap_or_else(|| format!("object {}", i + 1))
+    };
+    scene.objects.iter().enumerate().map(name).collect()
 }
 
 /// The type of an operand, or why it does not exist.

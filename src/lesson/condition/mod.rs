@@ -2,14 +2,18 @@
 
 mod check;
 mod evaluate;
+mod known;
+mod never;
 mod parse;
 mod probe;
 mod quantity;
 mod scene;
+mod subject;
+mod unmet;
 
 use std::{fmt, sync::Arc};
 
-pub(super) use check::Knowledge;
+pub(super) use known::Knowledge;
 pub use quantity::{QUANTITIES, Quantity};
 
 use quantity::Asked;
@@ -75,6 +79,31 @@ enum Sign {
     GreaterOrEqual,
     Equal,
     NotEqual,
+}
+
+impl Sign {
+    /// The comparison that holds where this one does not.
+    fn opposite(self) -> Self {
+        match self {
+            Self::Less => Self::GreaterOrEqual,
+            Self::LessOrEqual => Self::Greater,
+            Self::Greater => Self::LessOrEqual,
+            Self::GreaterOrEqual => Self::Less,
+            Self::Equal => Self::NotEqual,
+            Self::NotEqual => Self::Equal,
+        }
+    }
+
+    /// The same comparison with its sides exchanged.
+    fn mirrored(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::LessOrEqual => Self::GreaterOrEqual,
+            Self::Greater => Self::Less,
+            Self::GreaterOrEqual => Self::LessOrEqual,
+            Self::Equal | Self::NotEqual => self,
+        }
+    }
 }
 
 impl Condition {

@@ -134,6 +134,7 @@ impl<'a> Parser<'a> {
             length += 1 + after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
         }
         let written = &digits[..length];
+        self.unit(written, &digits[length..], start + length)?;
         let is_number = written.starts_with(|c: char| c.is_ascii_digit() || c == '.');
         let value = written.parse::<f64>().ok().filter(|value| is_number && value.is_finite());
         let Some(value) = value else {
@@ -152,6 +153,25 @@ impl<'a> Parser<'a> {
             return Ok((Token::Number(value / 100.0), end + spaces + 1));
         }
         Ok((Token::Number(value), end))
+    }
+
+    /// Refuses a unit in words, with its sign: `20 degrees`, `20deg`.
+    fn unit(&self, written: &str, after: &str, length: usize) -> Result<(), Failure> {
+        let joined = written.trim_start_matches(|c: char| !c.is_ascii_alphabetic());
+        let spaced = after.trim_start_matches(' ');
+        let end = spaced.find(|c: char| !c.is_alphabetic()).unwrap_or(spaced.len());
+        let (word, at) = if joined.is_empty() {
+            (&spaced[..end], length + after.len() - spaced.len())
+        } else {
+            (joined, length - joined.len())
+        };
+        let (sign, meant) = match word.to_lowercase().as_str() {
+            "degrees" | "degree" | "deg" => ("°", "degrees"),
+            "percent" | "per" => ("%", "per cent"),
+            _ => return Ok(()),
+        };
+        let number = &written[..written.len() - joined.len()];
+        Err((self.at + at, format!("{meant} are written {sign}: write {number}{sign}")))
     }
 
     fn is_word(&self, wanted: &str) -> bool {

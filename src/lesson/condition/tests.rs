@@ -244,6 +244,11 @@ const BROKEN: &[(&str, usize, &str)] = &[
     ("curve.albedo < 1", 0, "the angle of the viewer is missing"),
     ("curve.albedo(90) < 1", 13, "the angle is \"90\", but it must be from 0° to less than 90°"),
     ("curve.albedo(NaN) < 1", 13, "the angle is \"NaN\""),
+    ("probe.angle_n_l < 20 degrees", 21, "degrees are written °: write 20°"),
+    ("probe.angle_n_l < 20 Degree and probe.pinned", 21, "degrees are written °: write 20°"),
+    ("probe.angle_n_l < 2.5deg", 21, "degrees are written °: write 2.5°"),
+    ("curve.albedo(30) < 50 percent", 22, "per cent are written %: write 50%"),
+    ("knob.alpha < 3 metres", 15, "expected and, or, or the end of the condition, not \"metres\""),
     ("curve.peak(3) < 1", 0, "there is no quantity \"curve.peak(3)\""),
     ("scene.objects[1 = 2", 13, "this bracket is never closed"),
     ("scene.objects[-1].size = 2", 14, "\"-1\" is no place in a list"),
@@ -301,12 +306,35 @@ const SENSELESS: &[(&str, usize, &str)] = &[
     ),
     ("scene.shading_model = \"goraud\"", 22, "scene.shading_model is never \"goraud\""),
     ("1 = 2", 0, "the condition asks for no quantity"),
+    // Never true.
+    ("probe.n_dot_l > 2", 16, "probe.n_dot_l is never more than 2; it goes from -1 to 1"),
+    ("2 < probe.n_dot_l", 0, "probe.n_dot_l is never more than 2; it goes from -1 to 1"),
+    ("probe.n_dot_l > 1", 16, "probe.n_dot_l is never more than 1"),
+    ("probe.red >= 300", 13, "probe.red is never at least 300; it goes from 0 to 255"),
+    ("probe.red = 256", 12, "probe.red is never 256"),
+    ("not probe.red < 256", 16, "probe.red is never at least 256"),
+    ("probe.luminance < 0", 18, "probe.luminance is never less than 0; its least value is 0"),
+    ("window.views > 4", 15, "window.views is never more than 4; it goes from 1 to 4"),
+    ("curve.largest_albedo <= -1", 24, "curve.largest_albedo is never at most -1"),
+    ("knob.k_d < 0.5", 11, "knob.k_d is never less than 0.5; it goes from 0.5 to 1"),
+    (
+        "scene.objects[0].material.base_colour[1] > 255",
+        43,
+        "scene.objects[0].material.base_colour[1] is never more than 255",
+    ),
+    ("scene.lights.count < 0", 21, "scene.lights.count is never less than 0"),
+    (
+        "probe.pinned and probe.object = \"tomatoe\"",
+        32,
+        "probe.object is never \"tomatoe\"; it is tomato; did you mean \"tomato\"?",
+    ),
 ];
 
 #[test]
 fn senseless_conditions_say_where_and_why() {
     let registry = Registry::builtin();
-    let scene = Scene::default();
+    let mut scene = Scene::default();
+    scene.objects[0].name = Some("tomato".to_owned());
     for (text, at, expected) in SENSELESS {
         let found = condition(text).problems(&scene, Some(Selection::Object(0)), &registry);
         assert_eq!(found.len(), 1, "{text}: {found:?}");
@@ -317,6 +345,14 @@ fn senseless_conditions_say_where_and_why() {
     let room = condition("curve.peak > 1").problems(&scene, Some(Selection::Room), &registry);
     assert_eq!(room.len(), 1);
     assert!(condition("curve.peak > 1").problems(&scene, None, &registry).is_empty());
+    // The ends of ranges can be reached, a learner may add objects, and what is never true may be excluded.
+    for sound in [
+        "probe.red = 255 and probe.n_dot_l <= -1 and probe.luminance = 0 and knob.k_d >= 1 and knob.alpha > 9e9",
+        "probe.object = \"tomato\" or probe.object = \"object 2\"",
+        "not probe.red > 300 and probe.green != 300 and scene.lights[0].colour[0] >= 255",
+    ] {
+        assert_eq!(condition(sound).problems(&scene, Some(Selection::Object(0)), &registry), [], "{sound}");
+    }
     // The path of a variant may have no value yet.
     let sound = "scene.comparison.layout = \"wipe\" and knob.alpha > 5 and probe.red < 5 or window.views > 1";
     assert_eq!(condition(sound).problems(&scene, Some(Selection::Object(0)), &registry), []);
@@ -331,4 +367,127 @@ fn every_quantity_is_reachable_by_its_name() {
         assert_eq!(asked.quantity.name, quantity.name);
         assert!(!quantity.meaning.is_empty() && !quantity.meaning.ends_with('.'), "{name}");
     }
+}
+
+#[test]
+fn the_part_that_fails_is_said_with_its_value() {
+    let registry = Registry::builtin();
+    let mut scene = scene(15);
+    scene.objects[0].material.set("base_colour", Given::Colour([230, 68, 30]));
+    let situation = situation(&scene, &registry);
+    for (text, said) in [
+        // Numbers, with their units and as many digits as tell them from their bound.
+        ("knob.alpha > 50", "the shininess α is 15; it must be above 50"),
+        ("50 < knob.alpha", "the shininess α is 15; it must be above 50"),
+        ("not knob.alpha <= 50", "the shininess α is 15; it must be above 50"),
+        ("knob.alpha <= 14.9999", "the shininess α is 15; it must be at most 14.9999"),
+        ("knob.k_d > 0.8", "the diffuse coefficient k_d is 0.8; it must be above 0.8"),
+        ("scene.display.exposure >= 1", "the exposure is 0 EV; it must be at least 1 EV"),
+        (
+            "knob.alpha < knob.k_d",
+            "the shininess α is 15; it must be below the diffuse coefficient k_d, which is 0.8",
+        ),
+        (
+            "scene.objects[0].material.base_colour[0] > 200 and scene.objects[0].material.base_colour[1] < 60",
+            "green of the base colour is 68; it must be below 60",
+        ),
+        ("scene.lights[0].position[2] < 0", "z of the position is 9; it must be below 0"),
+        ("scene.objects.count = 2", "the number of objects is 1; it must be higher"),
+        // A number that must be met is the solution.
+        ("knob.k_s = 0", "the specular coefficient k_s is 0.5; it must be lower"),
+        ("knob.alpha != 15", "the shininess α is 15; it must be another number"),
+        // Names, without the one that is wanted.
+        ("window.reflection_model = \"phong\"", "the reflection model is Blinn–Phong"),
+        ("scene.objects[0].shading_model = \"flat\"", "the shading model is Gouraud"),
+        (
+            "window.reflection_model != \"blinn_phong\"",
+            "the reflection model is Blinn–Phong; it must be another",
+        ),
+        ("window.terms = \"all\"", "the specular term alone is shown"),
+        ("window.channel = \"none\"", "the picture shows the debug channel N·L"),
+        ("window.active = \"A\" and knob.alpha > 50", "view B is active"),
+        ("window.selected = \"light\"", "an object is selected"),
+        ("window.selected_index = 2", "object 1 is selected"),
+        ("window.plots = \"off\"", "the plot in sight is that of the directional albedo E"),
+        ("scene.display.encoding = \"off\"", "the encoding is sRGB"),
+        ("scene.display.tone_mapping = \"reinhard\"", "the tone mapping is None (clip)"),
+        // True and false.
+        ("window.presenting", "the picture is not presented"),
+        ("not window.explain", "the panel Explain is in sight"),
+        ("window.explain = false", "the panel Explain is in sight"),
+        ("scene.objects[0].visible = false", "visible is true"),
+        ("probe.pinned", "nothing is pinned"),
+        ("probe.n_dot_l > 0.5", "nothing is pinned"),
+        // The first part that fails, and all alternatives.
+        ("probe.n_dot_l > 0.5 and window.active = \"A\"", "nothing is pinned"),
+        (
+            "knob.alpha > 50 or knob.k_s < 0.1",
+            "the shininess α is 15; it must be above 50. Or: the specular coefficient k_s is 0.5; it must be below 0.1",
+        ),
+        ("window.terms = \"all\" or window.terms = \"diffuse\"", "the specular term alone is shown"),
+        ("not (knob.alpha < 20 or knob.k_s < 1)", "the shininess α is 15; it must be at least 20"),
+        (
+            "not (knob.alpha < 20 and knob.k_s < 1)",
+            "the shininess α is 15; it must be at least 20. Or: the specular coefficient k_s is 0.5; it must be at least 1",
+        ),
+    ] {
+        assert_eq!(condition(text).unmet(&situation).as_deref(), Some(said), "{text}");
+    }
+    assert_eq!(condition("knob.alpha = 15").unmet(&situation), None);
+    let albedo = condition("curve.albedo(30) > 10").unmet(&situation).unwrap_or_default();
+    assert!(
+        albedo.starts_with("the albedo at 30° is ") && albedo.ends_with("; it must be above 10"),
+        "{albedo}"
+    );
+    let width = condition("curve.highlight_width < 20°").unmet(&situation).unwrap_or_default();
+    assert!(
+        width.starts_with("the width of the highlight is ") && width.ends_with("°; it must be below 20°"),
+        "{width}"
+    );
+    // Of several parts the one is named.
+    let mut two = scene.clone();
+    two.objects.push(two.objects[0].clone());
+    two.objects[1].name = Some("ball".to_owned());
+    let two = Situation { scene: &two, ..situation };
+    assert_eq!(
+        condition("scene.objects[1].size > 3 or scene.objects[0].size > 3").unmet(&two).as_deref(),
+        Some(
+            "the size of “ball” is 2; it must be above 3. Or: the size of object 1 is 2; it must be above 3"
+        )
+    );
+}
+
+#[test]
+fn the_pinned_pixel_says_how_near_it_is() {
+    let registry = Registry::builtin();
+    let scene = scene(20);
+    let settings = Settings { width: 160, height: 90, ..Settings::default() };
+    let explained = explain::pixel(&scene, &registry, &settings, [80, 45]).expect("inside");
+    let here = Situation { probe: Some(&explained), pinned: true, ..situation(&scene, &registry) };
+    let said = |text: &str| condition(text).unmet(&here).unwrap_or_default();
+    let spot = explained.seen.as_ref().and_then(|seen| seen.per_pixel.as_ref()).expect("Gouraud");
+    let cosine = f64::from(spot.brightest()[0].geometry.expect("a point light").cosine("N·L"));
+    assert!(cosine > 0.5 && cosine < 0.98);
+    assert_eq!(
+        said("probe.n_dot_l > 0.98"),
+        format!("N·L is {}; it must be above 0.98", (cosine * 1e3).round() / 1e3)
+    );
+    // A bound so near that three digits do not tell it.
+    let near = cosine + 1e-6;
+    let close = said(&format!("probe.n_dot_l > {near}"));
+    let shown: f64 =
+        close.split(' ').nth(2).and_then(|word| word.trim_end_matches(';').parse().ok()).expect("a number");
+    assert!(shown < near, "{close}");
+    assert_eq!(said("probe.object = \"x\""), "the pinned pixel is on “object 1”");
+    assert_eq!(said("probe.background"), "the pinned pixel shows an object");
+    assert!(
+        said("probe.angle_n_l > 90°").starts_with("the angle between N and L is "),
+        "{}",
+        said("probe.angle_n_l > 90°")
+    );
+    assert_eq!(
+        said("probe.is_highlight"),
+        "the specular term is not brighter than the diffuse one at the pinned pixel"
+    );
+    assert!(said("probe.brightest_vertex").contains("vertex"));
 }

@@ -25,7 +25,13 @@ use crate::{
 const MOST: usize = 32;
 
 /// The point that is shown, and its lights, the brightest first.
-pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice: Choice) {
+pub(super) fn lights(
+    ui: &mut Ui,
+    explanation: &Explanation,
+    seen: &Seen,
+    choice: Choice,
+    name: &dyn Fn(usize) -> String,
+) {
     rows::close(ui);
     let spots = probe::spots(seen);
     let shown = probe::shown_spot(seen, choice);
@@ -59,9 +65,11 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, choice
     let lights = spot.brightest();
     for lit in lights.iter().take(MOST) {
         let open = unfolded == Some(lit.light.index);
-        let name = lit.light.name.clone().unwrap_or_else(|| format!("Light {}", lit.light.index + 1));
+        let name = name(lit.light.index);
+        // A light without a name of its own is called by its type.
+        let kind = if lit.light.name.is_some() { lit.light.type_name } else { "" };
         let id = Id::new(("light of an explanation", lit.light.index));
-        if rows::fold(ui, id, &name, lit.light.type_name, open, lit.contribution).clicked() {
+        if rows::fold(ui, id, &name, kind, open, lit.contribution).clicked() {
             let light = if open { Unfolded::None } else { Unfolded::Light(lit.light.index) };
             probe::choose(ui.ctx(), Choice { light, ..choice });
         }

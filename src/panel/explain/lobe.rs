@@ -26,13 +26,13 @@ use crate::{
     curves::{
         Lobe,
         draw::{Axis, COLOURS},
-        lobe::scale,
+        lobe::steady,
     },
     explain::{Lit, Seen, Spot},
     optics::TermSelection,
     panel::{
         channels, segmented,
-        state::{Action, LobeChoice, LobeScale, Session, ViewChange},
+        state::{Action, LobeChoice, LobeScale, Pin, Session, ViewChange},
         theme,
     },
     progress::Progress,
@@ -77,7 +77,12 @@ struct Work {
     shown: Option<Arc<Lobes>>,
     running: Option<(Question, Receiver<Vec<LightLobe>>)>,
     calculations: u64,
+    /// The end of the scale, which a pinned pixel keeps.
+    kept: Option<(Pin, LobeScale, f64)>,
 }
+
+/// The name of a light, as the list of the scene has it.
+type Name<'a> = &'a dyn Fn(usize) -> String;
 
 type Shared = Arc<Mutex<Work>>;
 
@@ -127,14 +132,25 @@ fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), 
     }
 }
 
-/// The name of a light as the panel has it.
-fn name_of(lit: &Lit) -> String {
-    lit.light.name.clone().unwrap_or_else(|| format!("Light {}", lit.light.index + 1))
-}
-
 impl Work {
+    /// The scale of lobes; while the same pixel is pinned it never gets smaller.
+    fn scale(&mut self, lobes: &[LightLobe], wanted: LobeScale, pinned: Option<Pin>) -> Axis {
+        let kept = self.kept.filter(|(pin, of, _)| Some(*pin) == pinned && *of == wanted);
+        let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
+        let scale = steady(&each, wanted == LobeScale::Logarithmic, kept.map(|(.., to)| to));
+        self.kept = pinned.map(|pin| (pin, wanted, scale.to));
+        scale
+    }
+
     /// The lobes; while they are calculated those before, if they are of the same point.
-    fn answer(&mut self, ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Option<Arc<Lobes>> {
+    fn answer(
+        &mut self,
+        ctx: &Context,
+        question: &Question,
+        seen: &Seen,
+        spot: &Spot,
+        name: Name<'_>,
+    ) -> Option<Arc<Lobes>> {
         let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
         // What still runs may be older.
         for _ in 0..2 {
@@ -142,8 +158,9 @@ impl Work {
                 break;
             }
             let new = self.running.is_none();
-            let (asked, receiver) =
-                self.running.get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot)));
+            let (asked, receiver) = self
+                .running
+                .get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot, name)));
             self.calculations += u64::from(new);
             let lobes = match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
                 Err(RecvTimeoutError::Timeout) => break,
@@ -168,13 +185,19 @@ fn place(question: &Question) -> Option<Vec3> {
 }
 
 /// Begins to calculate lobes.
-fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiver<Vec<LightLobe>> {
+fn start(
+    ctx: &Context,
+    question: &Question,
+    seen: &Seen,
+    spot: &Spot,
+    name: Name<'_>,
+) -> Receiver<Vec<LightLobe>> {
     let (sender, receiver) = mpsc::channel();
     let terms = question.explained.explanation.terms;
     let (surface, frame, ctx) = (seen.surface.0.clone(), spot.frame, ctx.clone());
     let of = |index: &usize| {
         let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
-        Some((*index, name_of(lit), lit.geometry?.l))
+        Some((*index, name(*index), lit.geometry?.l))
     };
     let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
     thread::spawn(move || {
@@ -190,9 +213,19 @@ fn start(ctx: &Context, question: &Question, seen: &Seen, spot: &Spot) -> Receiv
 }
 
 /// Paints the lobes of an explained point into the picture, and their legend, whose place it returns.
-pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &Session) -> Option<Rect> {
+pub(super) fn paint(
+    ui: &Ui,
+    rect: Rect,
+    explained: &Arc<Explained>,
+    session: &Session,
+    name: Name<'_>,
+) -> Option<Rect> {
     let LobeChoice { scale: wanted, all } = session.view.lobe;
-    let seen = explained.explanation.seen.as_ref().filter(|_| wanted != LobeScale::Off)?;
+    if wanted == LobeScale::Off {
+        shared(ui.ctx()).lock().unwrap_or_else(PoisonError::into_inner).kept = None;
+        return None;
+    }
+    let seen = explained.explanation.seen.as_ref()?;
     let choice = probe::choice(ui.ctx());
     let number = probe::shown_spot(seen, choice);
     let spot = *probe::spots(seen).get(number)?;
@@ -215,16 +248,17 @@ pub(super) fn paint(ui: &Ui, rect: Rect, explained: &Arc<Explained>, session: &S
     };
     let shared = shared(ui.ctx());
     let mut work = shared.lock().unwrap_or_else(PoisonError::into_inner);
-    let shown = work.answer(ui.ctx(), &question, seen, spot);
+    let shown = work.answer(ui.ctx(), &question, seen, spot, name);
+    let scale = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
+    let scale = scale.map(|lobes| work.scale(lobes, wanted, session.view.pinned));
     drop(work);
     let calculating =
         || Legend { title: "Lobe: calculating…".to_owned(), scale: None, colours: Vec::new() };
     let Some(shown) = shown else { return plate(ui, rect, calculating()) };
-    match &shown.lobes {
-        Err(why) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
-        Ok(lobes) => {
-            let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
-            let scale = scale(&each, wanted == LobeScale::Logarithmic);
+    match (&shown.lobes, scale) {
+        (Err(why), _) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
+        (Ok(_), None) => plate(ui, rect, calculating()),
+        (Ok(lobes), Some(scale)) => {
             surface::paint(ui, rect, session, shown.position, lobes, &scale);
             plate(ui, rect, legend(lobes, count, &scale, terms))
         }
@@ -240,7 +274,11 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
         (terms, false) => format!("Lobe: {} term of f in sr⁻¹", terms.id()),
         (terms, true) => format!("Lobe: {} term of f in sr⁻¹, logarithmic", terms.id()),
     }];
+    let white = (scale.to - std::f64::consts::FRAC_1_PI).abs() < 1e-9;
     lines.push(match scale.log {
+        false if white => {
+            format!("Length of the vectors: {}, that of a white matte surface", number(scale.to))
+        }
         false => format!("Length of the vectors: {}", number(scale.to)),
         true => format!("Centre: {}; length of the vectors: {}", number(scale.from), number(scale.to)),
     });

@@ -31,6 +31,7 @@ mod pairs;
 mod point;
 mod probe;
 mod rows;
+mod sentence;
 mod surface;
 mod vectors;
 
@@ -79,6 +80,9 @@ impl Panel for Explain {
             return;
         };
         header(ui, session, &explained, actions);
+        let name = |light: usize| session.name_of(Selection::Light(light), registry);
+        let sentence = sentence::sentence(&explained.explanation, &name);
+        ui.add(egui::Label::new(theme::strong(ui, sentence)).wrap().selectable(true));
         for (severity, text) in remarks(&explained, session) {
             remark(ui, severity, &text);
         }
@@ -196,11 +200,12 @@ type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 fn columns(ui: &mut Ui, explained: &Arc<Explained>, session: &Session, registry: &Registry) {
     let explanation = &explained.explanation;
     let choice = probe::choice(ui.ctx());
+    let name = |light: usize| session.name_of(Selection::Light(light), registry);
     let end: Part = (0.28, Box::new(|ui| display::display(ui, explanation)));
     let parts: Vec<Part> = match &explanation.seen {
         Some(seen) => vec![
             (0.3, Box::new(|ui| surface(ui, seen, session, registry))),
-            (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice))),
+            (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice, &name))),
             end,
         ],
         None => vec![(0.36, Box::new(background)), end],

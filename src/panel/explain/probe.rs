@@ -197,7 +197,7 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
 /// has changed.
 pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) {
     let shared = shared(ctx);
-    if !session.explains() && !session.needs_probe() {
+    if !session.shows_vectors() && !session.needs_probe() {
         let mut probe = lock(&shared);
         (probe.hovered, probe.asked, probe.answer) = (false, None, None);
         return;

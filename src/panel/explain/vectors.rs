@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::{lobe, pairs, probe, rows, surface::LENGTH};
 use crate::{
+    document::Selection,
     explain::{Explanation, Lit, Model, Place, Seen, Spot},
     panel::{
         is_in_sight, linked,
@@ -12,6 +13,7 @@ use crate::{
         state::Session,
         theme,
     },
+    registry::Registry,
     shading::Stage,
 };
 
@@ -66,13 +68,14 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 
 /// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
 /// Returns the place of the legend of their lobe.
-pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session) -> Option<Rect> {
+pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let explained = probe::explained(ui.ctx())
         .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)?;
     // With the panel closed, a lesson wants to see which pixel it is about, and no more.
-    let explains = session.explains();
-    let legend = if explains { lobe::paint(ui, rect, &explained, session) } else { None };
+    let explains = session.shows_vectors();
+    let name = |light: usize| session.name_of(Selection::Light(light), registry);
+    let legend = if explains { lobe::paint(ui, rect, &explained, session, &name) } else { None };
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));

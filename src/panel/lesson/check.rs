@@ -28,7 +28,16 @@ struct Question {
 #[derive(Clone, Debug)]
 struct Checked {
     question: Question,
-    missing: Option<String>,
+    /// The question on entering the step, before the learner has done anything.
+    entered: Question,
+    unmet: Option<String>,
+}
+
+impl Question {
+    /// True if the learner did something between the other question and this one. Explanations come of themselves.
+    fn follows_a_deed(&self, entered: &Self) -> bool {
+        *self != Self { explained: self.explained, ..entered.clone() }
+    }
 }
 
 fn memory() -> Id {
@@ -41,9 +50,9 @@ pub fn evaluations(ctx: &Context) -> u64 {
     ctx.data(|d| d.get_temp(memory().with("count"))).unwrap_or(0)
 }
 
-/// The reason why the condition cannot be told now, if there is one.
-pub(super) fn missing(ctx: &Context) -> Option<String> {
-    ctx.data(|d| d.get_temp::<Checked>(memory()))?.missing
+/// The reason why the task is not done, once the learner has done something; at once if the condition cannot be told.
+pub(super) fn unmet(ctx: &Context) -> Option<String> {
+    ctx.data(|d| d.get_temp::<Checked>(memory()))?.unmet
 }
 
 /// Looks; the step's task is done as soon as its condition holds.
@@ -61,15 +70,22 @@ pub(in crate::panel) fn look(ctx: &Context, session: &Session, registry: &Regist
         plots: session.plots.clone(),
         explained: explain::calculations(ctx),
     };
-    if ctx.data(|d| d.get_temp::<Checked>(memory())).is_some_and(|known| known.question == question) {
-        return None;
-    }
+    let known: Option<Checked> = ctx.data(|d| d.get_temp(memory()));
+    let entered = match known {
+        Some(known) if known.question == question => return None,
+        Some(known) if known.question.entry == question.entry => known.entered,
+        _ => question.clone(),
+    };
     ctx.data_mut(|d| *d.get_temp_mut_or_default::<u64>(memory().with("count")) += 1);
     let explained = explain::explained(ctx);
     let situation = situation(session, registry, explained.as_deref());
     let holds = goal.until.holds(&situation);
-    let missing = if holds { None } else { goal.until.missing(&situation) };
-    ctx.data_mut(|d| d.insert_temp(memory(), Checked { question, missing }));
+    let unmet = if question.follows_a_deed(&entered) {
+        goal.until.unmet(&situation)
+    } else {
+        goal.until.missing(&situation)
+    };
+    ctx.data_mut(|d| d.insert_temp(memory(), Checked { question, entered, unmet }));
     holds.then_some(Action::Lesson(LessonCommand::Solved(open.step)))
 }
 

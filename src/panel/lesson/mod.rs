@@ -211,11 +211,11 @@ fn body(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     let Some(step) = open.now() else { return };
     let heading = egui::RichText::new(&step.title).heading();
     ui.add(Label::new(heading).wrap());
-    let missing = check::missing(ui.ctx());
+    let unmet = check::unmet(ui.ctx());
     for block in &step.blocks {
         text::block(ui, block, |ui| {
             if let Some(task) = &step.task {
-                task::task(ui, open, task, missing.as_deref(), actions);
+                task::task(ui, open, task, unmet.as_deref(), actions);
             }
         });
     }

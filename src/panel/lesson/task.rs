@@ -1,8 +1,8 @@
 //! The task of a step: a question with answers, or something to be done or found.
 
 use bevy_egui::egui::{
-    self, Align, Label, Layout, Rect, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
+    self, Align, Label, Layout, Rect, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, WidgetType, pos2,
+    vec2,
 };
 
 use super::text::{job, paragraph, spoken};
@@ -10,6 +10,7 @@ use crate::{
     lesson::{AnswerChoice, Goal, Run, Task},
     panel::{
         icon::{self, Icon},
+        maths,
         state::{Action, LessonCommand, OpenLesson},
         theme::{self, Palette},
     },
@@ -20,12 +21,12 @@ const BAR: f32 = 3.0;
 /// The room of the circle before an answer, points.
 const CIRCLE: f32 = 24.0;
 
-/// Shows the task. `missing` says why its condition cannot be told now.
+/// Shows the task. `unmet` says why it is not done.
 pub(super) fn task(
     ui: &mut Ui,
     open: &OpenLesson,
     task: &Task,
-    missing: Option<&str>,
+    unmet: Option<&str>,
     actions: &mut Vec<Action>,
 ) {
     let palette = Palette::here(ui);
@@ -47,7 +48,7 @@ pub(super) fn task(
         heading(ui, name, open.is_done());
         match task {
             Task::Predict { question, answers } => predict(ui, open, question, answers, actions),
-            Task::Do(goal) | Task::Find(goal) => reach(ui, open, goal, missing, actions),
+            Task::Do(goal) | Task::Find(goal) => reach(ui, open, goal, unmet, actions),
         }
     });
     let rect = shown.response.rect;
@@ -155,13 +156,14 @@ fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool
     response.clicked()
 }
 
-fn reach(ui: &mut Ui, open: &OpenLesson, goal: &Goal, missing: Option<&str>, actions: &mut Vec<Action>) {
+fn reach(ui: &mut Ui, open: &OpenLesson, goal: &Goal, unmet: Option<&str>, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     paragraph(ui, &goal.text);
     if !open.is_done()
-        && let Some(why) = missing
+        && let Some(why) = unmet
     {
-        let text = RichText::new(format!("Not yet: {why}.")).small().color(palette.weak);
+        let mut text = maths::prose(ui, &format!("Not yet: {why}."), TextStyle::Small);
+        text.sections.iter_mut().for_each(|section| section.format.color = palette.weak);
         ui.add(Label::new(text).wrap());
     }
     let Some(hint) = &goal.hint else { return };

@@ -64,6 +64,7 @@ impl Session {
             LessonCommand::Answer(answer) => self.choose_answer(answer),
             LessonCommand::Point(pin) => {
                 self.view.pinned = Some(pin);
+                self.view.unfold(EXPLAIN_TAB);
                 Vec::new()
             }
             LessonCommand::Solved(step) => self.solved(step),

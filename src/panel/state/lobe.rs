@@ -3,10 +3,10 @@
 /// The lengths of the lobe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LobeScale {
-    /// There is no lobe.
+    /// There is no lobe: it would hide the surface that is explained.
+    #[default]
     Off,
     /// In proportion to the BRDF.
-    #[default]
     Linear,
     /// In proportion to its logarithm.
     Logarithmic,

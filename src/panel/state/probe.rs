@@ -58,6 +58,13 @@ impl Session {
         self.view.bottom_open && self.view.bottom_tab == EXPLAIN_TAB && !self.view.presenting
     }
 
+    /// True if the vectors of a pixel are in the picture: while it is explained, and also in a presentation if it is pinned.
+    #[must_use]
+    pub fn shows_vectors(&self) -> bool {
+        let pinned = self.view.presenting && self.view.pinned.is_some();
+        self.explains() || pinned && self.view.bottom_open && self.view.bottom_tab == EXPLAIN_TAB
+    }
+
     /// Pins the pixel in the middle of the active view, or lets go of the one that is pinned. What is pinned out of
     /// sight is shown first.
     pub(super) fn toggle_pin(&mut self) {

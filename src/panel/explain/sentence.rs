@@ -1,0 +1,126 @@
+//! The explanation in one sentence: which light gives the most of the pixel, and by which term.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    curves::Channel,
+    explain::{Explanation, Place, Seen},
+    optics::TermSelection,
+};
+
+/// Above this part, a term gives all of the light of a lamp.
+const ALL: f64 = 0.995;
+
+/// What lights give to a pixel, as luminances.
+#[derive(Default)]
+struct Given {
+    /// By the number of the light: the sum, and that of its ambient, diffuse and specular terms.
+    lights: BTreeMap<usize, [f64; 4]>,
+}
+
+impl Given {
+    /// The light of a pixel: with Gouraud shading, that of the vertices with their weights.
+    fn of(seen: &Seen) -> Self {
+        let mut given = Self::default();
+        for spot in &seen.spots {
+            let weight = match spot.place {
+                Place::Vertex { weight, .. } => f64::from(weight),
+                Place::Polygon | Place::Pixel => 1.0,
+            };
+            for lit in &spot.lights {
+                let sums = given.lights.entry(lit.light.index).or_default();
+                let terms = [lit.response.ambient, lit.response.diffuse, lit.response.specular];
+                let all = [lit.contribution].into_iter().chain(terms.map(|term| term * lit.arriving));
+                for (sum, light) in sums.iter_mut().zip(all) {
+                    *sum += weight * Channel::Luminance.of(light);
+                }
+            }
+        }
+        given
+    }
+}
+
+/// The term that gives the most of the light of a lamp, in words.
+fn by_term(terms: [f64; 3]) -> Option<String> {
+    let sum: f64 = terms.iter().sum();
+    let parts = terms.map(|term| term / sum);
+    let (most, name) = parts
+        .into_iter()
+        .zip(["ambient", "diffuse", "specular"])
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|_| parts.iter().all(|part| part.is_finite() && *part >= 0.0))?;
+    match most {
+        m if m >= ALL => Some(format!(", by the {name} term")),
+        m if m > 0.5 => Some(format!(", mostly by the {name} term")),
+        _ => None,
+    }
+}
+
+/// The part of the light that the brightest lamp gives.
+fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> String {
+    let given = Given::of(seen).lights;
+    if given.is_empty() {
+        return if seen.spots.is_empty() {
+            "the shading model did not evaluate the reflection model".to_owned()
+        } else {
+            "no light is switched on".to_owned()
+        };
+    }
+    if given.values().any(|sums| !sums[0].is_finite()) {
+        return "some of its light is not a finite number".to_owned();
+    }
+    if given.values().any(|sums| sums[0] < 0.0) {
+        return "some light has a value below 0, so the parts of the lights have no meaning".to_owned();
+    }
+    let sum: f64 = given.values().map(|sums| sums[0]).sum();
+    let brightest = given.iter().max_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    let Some((index, sums)) = brightest.filter(|_| sum > 0.0) else {
+        return match terms {
+            TermSelection::All => "no light leaves this point towards the observer".to_owned(),
+            terms => format!("the {} term gives no light here", terms.id()),
+        };
+    };
+    let part = sums[0] / sum;
+    let alone = given.values().filter(|sums| sums[0] > 0.0).count() == 1;
+    let part = match part {
+        _ if alone => "all of its light".to_owned(),
+        part if part >= ALL => "nearly all of its light".to_owned(),
+        part => format!("{:.0} % of its light", 100.0 * part),
+    };
+    let by = match terms {
+        TermSelection::All => by_term([sums[1], sums[2], sums[3]]).unwrap_or_default(),
+        terms => format!(", by the {} term, the only one shown", terms.id()),
+    };
+    format!("{} gives {part}{by}", name(*index))
+}
+
+/// The explanation in a sentence, with the names of lights as the list of the scene has them.
+pub(super) fn sentence(explanation: &Explanation, name: &dyn Fn(usize) -> String) -> String {
+    let [r, g, b] = explanation.code();
+    let Some(seen) = &explanation.seen else {
+        return format!("This pixel is ({r}, {g}, {b}): no object is here, and the background shows.");
+    };
+    let mapped = explanation.steps.mapped;
+    let end = match () {
+        () if mapped.is_nan() => " Its light is not a number, and shown as 0.",
+        () if mapped.max_element() > 1.0 => " It is brighter than the display can show, and clipped.",
+        () => "",
+    };
+    format!("This pixel is ({r}, {g}, {b}): {}.{end}", most(seen, explanation.terms, name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_term_is_named_that_gives_the_most() {
+        assert_eq!(by_term([0.0, 0.0, 2.0]).as_deref(), Some(", by the specular term"));
+        assert_eq!(by_term([0.1, 0.7, 0.2]).as_deref(), Some(", mostly by the diffuse term"));
+        assert_eq!(by_term([0.3, 0.3, 0.4]), None);
+        assert_eq!(
+            (by_term([0.0; 3]), by_term([f64::NAN, 1.0, 0.0]), by_term([-1.0, 3.0, 0.0])),
+            (None, None, None)
+        );
+    }
+}
