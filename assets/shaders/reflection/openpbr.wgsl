@@ -31,20 +31,18 @@ fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> T
     let d = 1.0 - c;
     var glass = vec3(dielectric(of_base.z, cos_d));
     var metal = clamp(schlick(f0, c) - tint.rgb * (c * d * d * d * d * d * d), vec3(0.0), vec3(1.0));
-    if of_base.w > 0.0 {
-        let turns = m.thin_film_thickness / vec3(0.62, 0.54, 0.45);
-        let n = value_prepared(5u).rgb;
-        let k = value_prepared(6u).rgb;
-        for (var i = 0u; i < 3u; i += 1u) {
-            // Films are expensive, and of the two most materials have one.
-            if m.metallic < 1.0 {
-                let covered = thin_film(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns[i], c);
-                glass[i] = mix(glass[i], covered, of_base.w);
-            }
-            if m.metallic > 0.0 {
-                let covered = thin_film(of_base.x, m.thin_film_ior, n[i], k[i], turns[i], c);
-                metal[i] = mix(metal[i], covered, of_base.w);
-            }
+    // Films: three channels of the boundary, then three of metal; a loop, which costs nothing where there are none.
+    let first = select(0u, 3u, m.metallic >= 1.0);
+    let last = select(select(6u, 3u, m.metallic <= 0.0), 0u, of_base.w <= 0.0);
+    for (var i = first; i < last; i += 1u) {
+        let channel = i % 3u;
+        let turns = m.thin_film_thickness / vec3(0.62, 0.54, 0.45)[channel];
+        let below = select(vec2(of_base.y, 0.0), vec2(value_prepared(5u)[channel], value_prepared(6u)[channel]), i >= 3u);
+        let covered = thin_film(of_base.x, m.thin_film_ior, below.x, below.y, turns, c);
+        if i < 3u {
+            glass[channel] = mix(glass[channel], covered, of_base.w);
+        } else {
+            metal[channel] = mix(metal[channel], covered, of_base.w);
         }
     }
     let at_l = curve_boundaries(l.z);
