@@ -13,6 +13,7 @@ use lights_camera_models::{
         Registry,
         compose::{compose, compose_evaluation},
     },
+    scene::examples::looks,
     shader::{
         check::validate,
         compose::{Composed, Sources},
@@ -39,9 +40,17 @@ fn models(c: &mut Criterion) {
     let pairs = pairs(&frame);
     let mut group = c.benchmark_group("evaluations");
     group.sample_size(20).throughput(Throughput::Elements(pairs.len() as u64));
-    for model in Registry::builtin().models() {
-        let surface = model.instantiate(&Values::default(), Encoding::Srgb);
-        group.bench_function(model.declaration.id, |b| {
+    let registry = Registry::builtin();
+    let mut all: Vec<_> =
+        registry.models().iter().map(|m| (m.declaration.id.to_owned(), m, Values::default())).collect();
+    // Layers that are off cost nothing.
+    for look in looks() {
+        let model = registry.model(&look.model).expect("built in");
+        all.push((format!("{}, {}", look.model, look.name), model, look.material.clone()));
+    }
+    for (name, model, values) in all {
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        group.bench_function(name, |b| {
             b.iter(|| {
                 for (l, v) in &pairs {
                     black_box(surface.response(black_box(*l), black_box(*v), &frame));

@@ -178,7 +178,7 @@ enum Command {
     /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine; 0 below the
     /// surface (theta beyond 90°).
     Evaluate(evaluate::Arguments),
-    /// Compare Blinn–Phong with physically based models: a report on four phenomena, with numbers
+    /// Compare Blinn–Phong with physically based models and take OpenPBR apart: a report with numbers
     Study(study::Arguments),
     /// Print the directional albedo of a model at given viewing angles, as CSV
     ///

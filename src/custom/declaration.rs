@@ -4,6 +4,7 @@
 use jsonc_parser::{ParseOptions, common::Ranged as _};
 
 use super::{
+    curves::Curve,
     intern,
     text::{Mistake, comment, humanised},
 };
@@ -20,6 +21,8 @@ use crate::{
     },
 };
 
+/// JSON with comments and trailing commas.
+const OPTIONS: ParseOptions = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
 /// The keys of a declaration.
 const MODEL_KEYS: &[&str] = &[
     "name",
@@ -30,6 +33,7 @@ const MODEL_KEYS: &[&str] = &[
     "laws",
     "anisotropic",
     "lobe",
+    "curves",
     "parameters",
     "groups",
 ];
@@ -60,6 +64,8 @@ pub(super) struct Said {
     pub anisotropic: bool,
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
+    /// Further curves, of other built-in models.
+    pub curves: Vec<Curve>,
     pub parameters: &'static [Parameter],
     pub groups: &'static [Group],
     /// The byte after the comment.
@@ -81,8 +87,7 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         let what = format!("the declaration is longer than {} KiB, the most allowed", MOST_BYTES >> 10);
         return Err(vec![(comment.start, what)]);
     }
-    let options = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
-    let parsed = json::parse(comment.json, &options).map_err(|(at, what)| {
+    let parsed = json::parse(comment.json, &OPTIONS).map_err(|(at, what)| {
         vec![(comment.start + at, format!("the declaration is not JSON: {}", lower(&what)))]
     })?;
     let Some(root) = parsed else {
@@ -100,6 +105,13 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
             Err(mistakes)
         }
     }
+}
+
+/// The text of the value under a key of a declaration.
+pub(super) fn written<'a>(json: &'a str, key: &'static str) -> Option<&'a str> {
+    let root = json::parse(json, &OPTIONS).ok()??;
+    let range = Cursor::root(&root).get(key)?.value.range();
+    json.get(range.start..range.end)
 }
 
 /// With a lower-case first letter.
@@ -167,6 +179,8 @@ impl Reader<'_> {
             .words(&fields, "summary", LONGEST_TEXT)
             .unwrap_or_else(|| intern::text(&format!("A custom model, in {file}.")));
         let parameters = self.parameters(&fields);
+        let lobe = self.lobe(&fields);
+        let taken = lobe.and_then(|id| self.registry.model(id)).map_or(&[][..], ModelEntry::curves);
         Some(Said {
             name,
             author,
@@ -177,7 +191,8 @@ impl Reader<'_> {
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
             parameters,
             groups: self.groups(&fields, parameters),
-            lobe: self.lobe(&fields),
+            lobe,
+            curves: self.curves(&fields, parameters, taken),
             end,
         })
     }
@@ -357,7 +372,7 @@ impl Reader<'_> {
         intern::groups(groups)
     }
 
-    fn built_in_models(&self) -> impl Iterator<Item = &ModelEntry> {
+    pub(super) fn built_in_models(&self) -> impl Iterator<Item = &ModelEntry> {
         self.registry.models().iter().filter(|m| self.registry.custom_file(m.declaration.id).is_none())
     }
 

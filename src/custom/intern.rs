@@ -7,6 +7,7 @@ use std::{
 };
 
 use crate::{
+    optics::albedo::NamedCurve,
     parameter::Parameter,
     reflection::{Declaration, EquationPart, Group},
 };
@@ -62,6 +63,12 @@ pub(super) fn equation(parts: Vec<EquationPart>) -> &'static [EquationPart] {
 pub(super) fn groups(groups: Vec<Group>) -> &'static [Group] {
     static ALL: Kept<[Group]> = Mutex::new(Vec::new());
     kept(&ALL, groups, |new| new.leak())
+}
+
+/// The curves that a model reads.
+pub(super) fn curves(curves: Vec<NamedCurve>) -> &'static [NamedCurve] {
+    static ALL: Kept<[NamedCurve]> = Mutex::new(Vec::new());
+    kept(&ALL, curves, |new| new.leak())
 }
 
 /// The parameters of a model.

@@ -23,13 +23,14 @@
 use std::path::Path;
 
 use crate::{
-    reflection::{Ambient, Declaration, Family, ModelEntry},
+    reflection::{Ambient, Declaration, Family},
     registry::{Registry, check::wgsl, compose::compose},
     shader::{Source, check::ShaderProblem, limits, whole::validate_drawing},
     shading::Stage,
 };
 
 mod condition;
+mod curves;
 mod declaration;
 pub mod file;
 pub mod folder;
@@ -39,6 +40,7 @@ mod surface;
 mod text;
 mod write;
 
+use curves::Reads;
 pub use surface::OnCpu;
 pub use text::MARKER;
 pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
@@ -97,7 +99,7 @@ fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProbl
 /// # Errors
 /// Everything that is wrong with the declaration, or the first error in the WGSL.
 pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
-    let (model, lobe) = declared(path, text, registry)?;
+    let (model, reads) = declared(path, text, registry)?;
     let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
     // It may hide the function.
     if let Some((at, what)) = limits::unfinished(text) {
@@ -114,7 +116,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| vec![*found])?;
     }
-    let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module)
+    let entry = surface::entry(model.entry.declaration, model.entry.parameters, reads, &module)
         .grouped(model.entry.groups);
     Ok(CustomModel { entry, ..model })
 }
@@ -128,12 +130,12 @@ pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<CustomMod
     declared(path, text, registry).map(|(model, _)| model)
 }
 
-/// The declared model, drawn as the stand-in; and the model whose lobe it uses.
+/// The declared model, drawn as the stand-in; and the curves that it reads.
 fn declared(
     path: &Path,
     text: &str,
     registry: &Registry,
-) -> Result<(CustomModel, Option<ModelEntry>), Vec<ShaderProblem>> {
+) -> Result<(CustomModel, Reads), Vec<ShaderProblem>> {
     let wrong = |mistake| problem(path, text, mistake);
     let id = usable_id(path, registry).map_err(|what| vec![wrong((0, what))])?;
     let said = declaration::read(text, id, registry)
@@ -154,8 +156,9 @@ fn declared(
         wgsl: Source { path: intern::text(&source_path(id)), text: stand_in(ambient) },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
-    let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref()).grouped(said.groups);
-    Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, lobe))
+    let reads = Reads { lobe, own: said.curves.into() };
+    let entry = surface::stand_in(declaration, said.parameters, &reads).grouped(said.groups);
+    Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, reads))
 }
 
 /// The id of a file, if valid.

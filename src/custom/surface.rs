@@ -5,9 +5,10 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use naga::Module;
 
+use super::curves::Reads;
 use crate::{
     optics::{
         Frame, Terms,
@@ -90,38 +91,38 @@ impl crate::reflection::Interpreted for OnCpu {
     }
 }
 
+/// The model whose lobe is read.
+fn lobe_of(reads: &Reads) -> Lobe {
+    reads.lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id))
+}
+
 /// The entry of a model whose WGSL is in a valid module.
 pub(super) fn entry(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
-    lobe: Option<ModelEntry>,
+    reads: Reads,
     module: &Module,
 ) -> ModelEntry {
-    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, lobe.is_some()));
-    let reads = lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, reads.any()));
+    let (lobe, curves) = (lobe_of(&reads), reads.named());
     let instantiate: Instantiate = {
         let on_cpu = on_cpu.clone();
         Arc::new(move |values, encoding| {
-            let lobe = lobe.as_ref().and_then(|model| {
-                // Undeclared parameters must not affect its look.
-                let mut own = Values::default();
-                for p in parameters {
-                    own.set(p.name, values.get(p));
-                }
-                model.instantiate(&own, encoding).lobe()
-            });
+            let read = reads.any().then(|| reads.values(parameters, values, encoding));
             Arc::new(Interpreted {
                 on_cpu: on_cpu.clone(),
                 ambient: declaration.ambient,
                 anisotropic: declaration.anisotropic,
                 parameters: flattened(parameters, values, encoding),
-                row: lobe.map_or_else(Vec::new, |lobe| row(declaration, parameters, values, encoding, lobe)),
-                lobe,
+                row: read.as_ref().map_or_else(Vec::new, |(lobe, curves)| {
+                    row(declaration, parameters, values, encoding, *lobe, curves)
+                }),
+                read,
                 curve: OnceLock::new(),
             })
         })
     };
-    ModelEntry::custom(declaration, parameters, reads, instantiate, Some(on_cpu))
+    ModelEntry::custom(declaration, parameters, lobe, curves, instantiate, Some(on_cpu))
 }
 
 /// The entry of a model known only by its declaration: the CPU draws the same stand-in as the WGSL, Lambert's law in
@@ -129,12 +130,11 @@ pub(super) fn entry(
 pub(super) fn stand_in(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
-    lobe: Option<&ModelEntry>,
+    reads: &Reads,
 ) -> ModelEntry {
-    let reads = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
     let instantiate: Instantiate =
         Arc::new(move |_, _| Arc::new(Grey { ambient: declaration.ambient, curve: OnceLock::new() }));
-    ModelEntry::custom(declaration, parameters, reads, instantiate, None)
+    ModelEntry::custom(declaration, parameters, lobe_of(reads), reads.named(), instantiate, None)
 }
 
 /// The albedo of stand-ins.
@@ -192,17 +192,18 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
     words
 }
 
-/// The row of an object as read by the shader, with the albedo of the lobe.
+/// The row of an object as read by the shader, with the albedo of the lobe and the further curves.
 fn row(
     declaration: &Declaration,
     parameters: &[Parameter],
     values: &Values,
     encoding: Encoding,
     lobe: LobeAlbedo,
+    curves: &[Vec4],
 ) -> Vec<u32> {
     let mut bytes = pack(parameters, values, encoding);
     let harmonics = if declaration.anisotropic { 3 } else { 1 };
-    append_curve(&mut bytes, harmonics, None, Some(lobe));
+    append_curve(&mut bytes, harmonics, None, Some(lobe), curves);
     bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
@@ -214,7 +215,8 @@ struct Interpreted {
     parameters: Vec<u32>,
     /// The row as in the shader's table, without the curve; empty if it is not read.
     row: Vec<u32>,
-    lobe: Option<LobeAlbedo>,
+    /// The lobe and the further curves that the shader reads.
+    read: Option<(LobeAlbedo, Vec<Vec4>)>,
     curve: OnceLock<Option<AlbedoCurve>>,
 }
 
@@ -263,7 +265,11 @@ impl Surface for Interpreted {
     }
 
     fn lobe(&self) -> Option<LobeAlbedo> {
-        self.lobe
+        self.read.as_ref().map(|(lobe, _)| *lobe)
+    }
+
+    fn curves(&self) -> Vec<Vec4> {
+        self.read.as_ref().map_or_else(Vec::new, |(_, curves)| curves.clone())
     }
 
     fn readouts(&self) -> Vec<Readout> {

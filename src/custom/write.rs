@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value as Json, json};
 
 use super::{
+    declaration::written,
     source_path,
     text::{LONGEST_ID, MARKER, comment, humanised, identifier},
 };
@@ -185,9 +186,13 @@ pub fn duplicate(
     if let Some(lobe) = entry.lobe_of() {
         let _ = writeln!(
             out,
-            "    // The shader calls lobe_albedo and average_lobe_albedo: the lobe of this model."
+            "    // The shader reads the albedo of the lobe, or the curves, of this model."
         );
         let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
+    }
+    // Of models from files: the declaration does not keep the text of their settings.
+    if let Some(curves) = comment(source).ok().and_then(|c| written(c.json, "curves")) {
+        let _ = writeln!(out, "    \"curves\": {curves},");
     }
     out.push_str("    \"parameters\": [\n");
     let built_in = Registry::builtin();

@@ -8,6 +8,7 @@ pub mod colour;
 pub mod diffuse;
 pub mod distribution;
 pub mod equivalence;
+pub mod film;
 pub mod fresnel;
 pub mod geometry;
 pub mod lobe;

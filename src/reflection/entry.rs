@@ -10,7 +10,7 @@ use std::{
     },
 };
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::{
     declaration::{Ambient, Declaration},
@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     optics::{
-        albedo::{AlbedoCurve, LobeAlbedo, NODES},
+        albedo::{AlbedoCurve, LobeAlbedo, NODES, NamedCurve},
         colour::Encoding,
     },
     parameter::{Parameter, Value, Values, pack},
@@ -40,6 +40,7 @@ pub struct ModelEntry {
     /// See [`ReflectionModel::preset`].
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
     lobe: Lobe,
+    curves: &'static [NamedCurve],
     pub(super) instantiate: Instantiate,
     on_cpu: Option<Arc<dyn Interpreted>>,
     identity: Identity,
@@ -101,7 +102,8 @@ impl ModelEntry {
             parameters: M::PARAMETERS,
             groups: M::GROUPS,
             preset: M::preset,
-            lobe: if M::LOBE { Lobe::Own } else { Lobe::None },
+            lobe: if M::LOBE || !M::CURVES.is_empty() { Lobe::Own } else { Lobe::None },
+            curves: M::CURVES,
             instantiate: Arc::new(|values, encoding| {
                 Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
             }),
@@ -111,11 +113,12 @@ impl ModelEntry {
         }
     }
 
-    /// The entry of a model from a file.
+    /// The entry of a model from a file; the shader reads the lobe and the curves of the same model.
     pub(crate) fn custom(
         declaration: &'static Declaration,
         parameters: &'static [Parameter],
         lobe: Lobe,
+        curves: &'static [NamedCurve],
         instantiate: Instantiate,
         on_cpu: Option<Arc<dyn Interpreted>>,
     ) -> Self {
@@ -128,6 +131,7 @@ impl ModelEntry {
             groups,
             preset,
             lobe,
+            curves,
             instantiate,
             on_cpu,
             identity,
@@ -172,13 +176,13 @@ impl ModelEntry {
         self.on_cpu.is_some()
     }
 
-    /// True if the model has a specular lobe whose albedo its shader reads.
+    /// True if the model has a specular lobe whose albedo its shader reads, or other curves.
     #[must_use]
     pub fn has_lobe(&self) -> bool {
         self.lobe == Lobe::Own
     }
 
-    /// The id of the model whose lobe albedo the shader reads.
+    /// The id of the model whose lobe albedo and curves the shader reads.
     #[must_use]
     pub fn lobe_of(&self) -> Option<&'static str> {
         match self.lobe {
@@ -210,13 +214,27 @@ impl ModelEntry {
     /// True if the row of an object has a curve beside the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
-        self.lobe != Lobe::None || self.declaration.ambient == Ambient::Albedo
+        self.lobe != Lobe::None
+            || !self.curves.is_empty()
+            || self.declaration.ambient == Ambient::Albedo
     }
 
     /// The number of harmonics of the azimuth in a curve.
     #[must_use]
     pub fn harmonics(&self) -> usize {
         if self.declaration.anisotropic { 3 } else { 1 }
+    }
+
+    /// The further curves that the shader reads; see [`ReflectionModel::CURVES`].
+    #[must_use]
+    pub fn curves(&self) -> &'static [NamedCurve] {
+        self.curves
+    }
+
+    /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the further curves.
+    #[must_use]
+    pub fn curve_length(&self) -> usize {
+        self.harmonics() * NODES + self.curves.iter().map(NamedCurve::length).sum::<usize>()
     }
 
     /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
@@ -228,9 +246,16 @@ impl ModelEntry {
         if self.has_curve() {
             let surface = self.instantiate(values, encoding);
             let curve = if uniform_light { surface.curve() } else { None };
-            append_curve(&mut row, self.harmonics(), curve, surface.lobe());
+            append_curve(&mut row, self.harmonics(), curve, surface.lobe(), &self.curves_of(&*surface));
         }
         row
+    }
+
+    /// The values of the further curves of a surface; zeros for one that has none, such as a stand-in.
+    pub(crate) fn curves_of(&self, surface: &dyn Surface) -> Vec<Vec4> {
+        let mut values = surface.curves();
+        values.resize(self.curve_length() - self.harmonics() * NODES, Vec4::ZERO);
+        values
     }
 
     /// The parameter with that name, if the model uses it.
@@ -246,6 +271,7 @@ pub(crate) fn append_curve(
     harmonics: usize,
     curve: Option<AlbedoCurve>,
     lobe: Option<LobeAlbedo>,
+    curves: &[Vec4],
 ) {
     let lobe = lobe.unwrap_or_default();
     row.resize(row.len().next_multiple_of(16), 0);
@@ -256,6 +282,7 @@ pub(crate) fn append_curve(
             row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
         }
     }
+    row.extend(curves.iter().flat_map(Vec4::to_array).flat_map(f32::to_le_bytes));
     row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
 }
 

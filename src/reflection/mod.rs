@@ -31,6 +31,7 @@ mod minnaert;
 mod mod_lambert;
 mod model;
 mod modified_phong;
+mod openpbr;
 mod oren_nayar;
 mod phong;
 mod readout;
@@ -61,6 +62,7 @@ pub use minnaert::Minnaert;
 pub use mod_lambert::ModLambert;
 pub use model::ReflectionModel;
 pub use modified_phong::ModifiedPhong;
+pub use openpbr::OpenPbr;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
 pub use preset::Measured;
@@ -100,4 +102,5 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<CookTorrance>();
     to.take::<MetallicRoughness>();
     to.take::<Disney>();
+    to.take::<OpenPbr>();
 }

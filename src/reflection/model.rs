@@ -1,10 +1,13 @@
 //! The trait of reflection models.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::{declaration::Declaration, factor::Factor, group::Group, preset::Measured, readout::Readout};
 use crate::{
-    optics::{Frame, Terms, albedo::LobeAlbedo},
+    optics::{
+        Frame, Terms,
+        albedo::{LobeAlbedo, NamedCurve},
+    },
     parameter::{ParameterSet, Value},
 };
 
@@ -20,6 +23,10 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// `lobe_albedo(mu)` and `average_lobe_albedo()`.
     const LOBE: bool = false;
 
+    /// Further curves over a cosine that the model calculates once per surface, see [`curves`](Self::curves). Its WGSL may
+    /// call `curve_NAME(mu)` and `mean_NAME()` of each.
+    const CURVES: &'static [NamedCurve] = &[];
+
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
     /// formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
@@ -34,6 +41,13 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// receives the same numbers.
     fn lobe(&self) -> Option<LobeAlbedo> {
         None
+    }
+
+    /// The values of the [`CURVES`](Self::CURVES), in their order: for each the nodes, then the mean. A model keeps them as
+    /// derived fields, as it does the lobe; [`Albedos`](crate::optics::albedo::Albedos) and
+    /// [`Lines`](crate::optics::albedo::Lines) have them ready.
+    fn curves(&self) -> Vec<Vec4> {
+        Vec::new()
     }
 
     /// Values derived from the parameters to help interpret them: the reflectance at normal incidence, the same

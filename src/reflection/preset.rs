@@ -29,6 +29,8 @@ pub struct Measured {
     pub k: [f32; 3],
     /// Unpolarised reflectance at normal incidence, linear sRGB under D65, clamped to [0, 1].
     pub f0: Vec3,
+    /// The same at 82° (the cosine 1/7).
+    pub f82: Vec3,
     /// The source of the measurement and its publication.
     pub source: &'static str,
 }
@@ -72,6 +74,7 @@ fn read(constants: &'static str, sources: &'static str) -> Vec<Option<Measured>>
         let cell = |column: &str| cells.get(header.iter().position(|h| *h == column)?).copied();
         let number = |column: &str| cell(column)?.parse::<f32>().ok().filter(|v| v.is_finite());
         let three = |[r, g, b]: [&str; 3]| Some([number(r)?, number(g)?, number(b)?]);
+        let reflectance = |columns| Some(Vec3::from(three(columns)?).clamp(Vec3::ZERO, Vec3::ONE));
         let id = cell("name")?;
         let origin = origins.get(id)?;
         Some(Measured {
@@ -80,7 +83,8 @@ fn read(constants: &'static str, sources: &'static str) -> Vec<Option<Measured>>
             metal: origin.metal,
             n: three(["n630", "n532", "n465"])?,
             k: three(["k630", "k532", "k465"])?,
-            f0: Vec3::from(three(["F0_R", "F0_G", "F0_B"])?).clamp(Vec3::ZERO, Vec3::ONE),
+            f0: reflectance(["F0_R", "F0_G", "F0_B"])?,
+            f82: reflectance(["F82_R", "F82_G", "F82_B"])?,
             source: origin.source,
         })
     };

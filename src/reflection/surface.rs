@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::{declaration::Ambient, factor::Factor, model::ReflectionModel, readout::Readout};
 use crate::optics::{
@@ -21,6 +21,10 @@ pub trait Surface: Send + Sync {
     fn curve(&self) -> Option<AlbedoCurve>;
     /// See [`ReflectionModel::lobe`].
     fn lobe(&self) -> Option<LobeAlbedo>;
+    /// See [`ReflectionModel::curves`].
+    fn curves(&self) -> Vec<Vec4> {
+        Vec::new()
+    }
     /// See [`ReflectionModel::readouts`].
     fn readouts(&self) -> Vec<Readout>;
     /// See [`ReflectionModel::factor`].
@@ -73,6 +77,10 @@ impl<M: ReflectionModel> Surface for M {
         ReflectionModel::lobe(self)
     }
 
+    fn curves(&self) -> Vec<Vec4> {
+        ReflectionModel::curves(self)
+    }
+
     fn readouts(&self) -> Vec<Readout> {
         ReflectionModel::readouts(self)
     }
@@ -106,6 +114,10 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn lobe(&self) -> Option<LobeAlbedo> {
         ReflectionModel::lobe(&self.model)
+    }
+
+    fn curves(&self) -> Vec<Vec4> {
+        ReflectionModel::curves(&self.model)
     }
 
     fn readouts(&self) -> Vec<Readout> {

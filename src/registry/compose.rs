@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 use crate::{
     light::LightEntry,
-    optics::albedo::NODES,
+    optics::albedo::{NODES, NamedCurve, Spacing},
     parameter::{Parameter, Values},
     reflection::{Ambient, Family, ModelEntry},
     shader::{
@@ -49,8 +49,48 @@ fn lobe_mean() -> f32 {{
     return parameter_table[object_row].lobe_mean;
 }}
 ",
-        harmonics * NODES
+        model.curve_length()
     );
+    text
+}
+
+/// The functions that read the further curves of a model by name: each begins where the one before ends.
+#[must_use]
+pub fn named_curves(model: &ModelEntry) -> String {
+    let mut text = String::new();
+    let mut first = model.harmonics() * NODES;
+    for curve in model.curves() {
+        let NamedCurve { name, spacing } = curve;
+        let _ = match spacing {
+            Spacing::Cubic => {
+                write!(
+                    text,
+                    "fn curve_{name}(mu: f32) -> vec4<f32> {{\n    return curve_from(mu, {first}u);\n}}\n"
+                )
+            }
+            Spacing::Values(_) => write!(
+                text,
+                "fn value_{name}(i: u32) -> vec4<f32> {{\n    return curve_node({first}u + i);\n}}\n"
+            ),
+            Spacing::Linear(count) => write!(
+                text,
+                "fn curve_{name}(mu: f32) -> vec4<f32> {{
+    let x = clamp(mu, 0.0, 1.0) * {:?};
+    let i = min(u32(x), {}u);
+    return mix(curve_node({first}u + i), curve_node({}u + i), x - f32(i));
+}}
+",
+                (count - 1) as f32,
+                count - 2,
+                first + 1
+            ),
+        };
+        if !matches!(spacing, Spacing::Values(_)) {
+            let mean = first + curve.nodes();
+            let _ = write!(text, "fn mean_{name}() -> vec4<f32> {{\n    return curve_node({mean}u);\n}}\n");
+        }
+        first += curve.length();
+    }
     text
 }
 
@@ -59,6 +99,9 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     c.push("(row)", &row_struct(model, more));
     if model.has_curve() {
         c.source(&ALBEDO);
+    }
+    if !model.curves().is_empty() {
+        c.push("(curves)", &named_curves(model));
     }
     c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {

@@ -7,7 +7,7 @@ use super::{
     error::LoadError,
     load::{self, Defaults},
 };
-use crate::registry::Registry;
+use crate::{parameter::Values, registry::Registry};
 
 /// A shipped scene.
 #[derive(Clone, Debug)]
@@ -55,11 +55,60 @@ const TEXTS: [(&str, &str); 23] = texts![
     "compare_tone_mappings.json",
 ];
 
+/// Scenes of one object each: their materials are the [`looks`].
+const LOOKS: [(&str, &str); 10] = texts![
+    "openpbr_car_paint.json",
+    "openpbr_satin.json",
+    "openpbr_velvet.json",
+    "openpbr_soap_film_on_black.json",
+    "openpbr_anodised_titanium.json",
+    "openpbr_lacquered_wood.json",
+    "openpbr_brushed_steel.json",
+    "openpbr_wet_stone.json",
+    "openpbr_pearl.json",
+    "openpbr_ceramic.json",
+];
+
+/// A material that artists reach for, a preset of its reflection model.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The id of the reflection model.
+    pub model: String,
+    /// Its name: "Car paint".
+    pub name: String,
+    /// One line: its parts.
+    pub description: String,
+    /// The values of its parameters.
+    pub material: Values,
+}
+
+/// All of them, in the order of lists.
+#[must_use]
+pub fn looks() -> &'static [Look] {
+    static ALL: LazyLock<Vec<Look>> = LazyLock::new(|| {
+        let registry = Registry::builtin();
+        let look = |(file, text): (&str, &str)| {
+            // A scene that cannot be read, or has no object, is skipped; a test ensures that there is none.
+            let scene = load::from_text(text, file, &registry, Defaults::Use).ok()?.scene;
+            let material = scene.objects.first()?.material.clone();
+            Some(Look {
+                model: scene.reflection_model,
+                name: scene.name?,
+                description: scene.description?,
+                material,
+            })
+        };
+        LOOKS.into_iter().filter_map(look).collect()
+    });
+    &ALL
+}
+
 /// All of them, in the order of lists.
 pub static EXAMPLES: LazyLock<Vec<Example>> = LazyLock::new(|| {
     let registry = Registry::builtin();
     TEXTS
         .into_iter()
+        .chain(LOOKS)
         .map(|(file, text)| {
             let (name, description) = head(file, text, &registry);
             Example { file, text, name, description }
@@ -98,6 +147,24 @@ impl Example {
 mod tests {
     use super::*;
     use crate::scene::formats;
+
+    #[test]
+    fn every_look_sets_each_parameter_of_its_model_and_differs_from_the_others() {
+        let registry = Registry::builtin();
+        assert_eq!(looks().len(), LOOKS.len());
+        for (i, look) in looks().iter().enumerate() {
+            let model = registry.model(&look.model).expect("built in");
+            for p in model.parameters {
+                assert!(
+                    look.material.0.get(p.name).is_some_and(|v| p.allows(v)),
+                    "{}: {}",
+                    look.name,
+                    p.name
+                );
+            }
+            assert!(!looks()[..i].iter().any(|other| other.material == look.material), "{}", look.name);
+        }
+    }
 
     #[test]
     fn every_shipped_scene_is_an_example_with_a_name_and_a_description() {

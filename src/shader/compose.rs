@@ -21,6 +21,7 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/masking.wgsl"),
     wgsl!("optics/diffuse.wgsl"),
     wgsl!("optics/lobe.wgsl"),
+    wgsl!("optics/film.wgsl"),
 ];
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");

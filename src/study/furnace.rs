@@ -101,7 +101,7 @@ fn largest(lab: &Lab, id: &str, angles: &[f64]) -> Result<(f64, i64), StudyError
 }
 
 /// The verdict on a curve of albedos.
-fn verdict(least: f64, most: f64) -> &'static str {
+pub(super) fn verdict(least: f64, most: f64) -> &'static str {
     match (least < 1.0 - TOLERANCE, most > 1.0 + TOLERANCE) {
         (false, false) => "conserves",
         (true, false) => "loses",

@@ -1,8 +1,8 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
-//! reproduce and Blinn–Phong does not.
+//! reproduce and Blinn–Phong does not, and of the layers of OpenPBR.
 //!
 //! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe` (the shape of
-//! the highlight); their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
+//! the highlight), `layers`; their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
 //! Every sentence of a conclusion that depends on a number is chosen by that number.
 
 use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
@@ -29,11 +29,12 @@ pub mod fit;
 mod fresnel;
 mod furnace;
 mod gold;
+mod layers;
 mod lobe;
 mod report;
 
 /// The number of steps reported by [`run`].
-pub const STEPS: u64 = 5;
+pub const STEPS: u64 = 6;
 
 /// The file name of the report in its folder.
 pub const PAGE: &str = "index.html";
@@ -103,7 +104,7 @@ impl Table {
     }
 }
 
-/// A phenomenon: its section of the report, the finding, and the numbers.
+/// A phenomenon, or the layers: its section of the report, the finding, and the numbers.
 struct Chapter {
     title: &'static str,
     body: Markup,
@@ -337,8 +338,10 @@ pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Resu
     let gold = gold::chapter(&mut lab)?;
     tell("shape of the specular lobe");
     let lobe = lobe::chapter(&mut lab)?;
+    tell("layers of OpenPBR");
+    let layers = layers::chapter(&mut lab)?;
     tell("writing the report");
-    let chapters = [fresnel, furnace, gold, lobe];
-    let html = report::page(&chapters, settings);
-    Ok(Study { html, tables: chapters.into_iter().flat_map(|c| c.tables).collect() })
+    let phenomena = [fresnel, furnace, gold, lobe];
+    let html = report::page(&phenomena, &layers, settings);
+    Ok(Study { html, tables: phenomena.into_iter().chain([layers]).flat_map(|c| c.tables).collect() })
 }

@@ -93,6 +93,7 @@ const GLOSSARY: &[(&str, &str)] = &[
 
 /// The sources of the report.
 const SOURCES: &[&str] = &[
+    "Z. Andersson and others (2026). OpenPBR Surface specification 1.1.1. Academy Software Foundation.",
     "M. Bagher, C. Soler, N. Holzschuch (2012). Accurate Fitting of Measured Reflectances Using a Shifted Gamma Micro-Facet Distribution. Computer Graphics Forum 31(4), 1509–1518. Parameters as in dj_brdf (J. Dupuy, public domain).",
     "J. F. Blinn (1977). Models of Light Reflection for Computer Synthesized Pictures. SIGGRAPH ’77, 192–198.",
     "R. L. Cook, K. E. Torrance (1982). A Reflectance Model for Computer Graphics. ACM Transactions on Graphics 1(1), 7–24.",
@@ -113,7 +114,7 @@ const SOURCES: &[&str] = &[
 ];
 
 /// The whole page.
-pub(super) fn page(chapters: &[Chapter], settings: Settings) -> String {
+pub(super) fn page(chapters: &[Chapter], layers: &Chapter, settings: Settings) -> String {
     let shown = chapters.iter().filter(|c| c.shown).count();
     let threads = rayon::current_num_threads();
     let page = html! {
@@ -136,7 +137,7 @@ pub(super) fn page(chapters: &[Chapter], settings: Settings) -> String {
                     }
                 }
                 main {
-                    (summary(chapters, shown))
+                    (summary(chapters, layers, shown))
                     @for (i, chapter) in chapters.iter().enumerate() {
                         section #(format!("phenomenon-{}", i + 1)) {
                             h2 { (i + 1) ". " (chapter.title) }
@@ -144,7 +145,11 @@ pub(super) fn page(chapters: &[Chapter], settings: Settings) -> String {
                         }
                     }
                     (discussion(chapters, shown))
-                    (appendix(settings, threads, chapters))
+                    section #layers {
+                        h2 { "6. " (layers.title) }
+                        (layers.body)
+                    }
+                    (appendix(settings, threads, chapters.iter().chain([layers])))
                 }
             }
         }
@@ -152,7 +157,7 @@ pub(super) fn page(chapters: &[Chapter], settings: Settings) -> String {
     page.into_string()
 }
 
-fn summary(chapters: &[Chapter], shown: usize) -> Markup {
+fn summary(chapters: &[Chapter], layers: &Chapter, shown: usize) -> Markup {
     html! {
         section #summary {
             h2 { "Summary" }
@@ -173,6 +178,10 @@ fn summary(chapters: &[Chapter], shown: usize) -> Markup {
                         ". " (chapter.finding)
                     }
                 }
+            }
+            p {
+                "Beyond the comparison, a last chapter takes a standard of today apart: "
+                a href="#layers" { (layers.title) } ". " (layers.finding)
             }
         }
         section #method {
@@ -244,7 +253,7 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
     }
 }
 
-fn appendix(settings: Settings, threads: usize, chapters: &[Chapter]) -> Markup {
+fn appendix<'a>(settings: Settings, threads: usize, chapters: impl Iterator<Item = &'a Chapter>) -> Markup {
     html! {
         section #settings {
             h2 { "Versions and settings" }
@@ -258,7 +267,7 @@ fn appendix(settings: Settings, threads: usize, chapters: &[Chapter]) -> Markup 
                     tr { th scope="row" { "Precision" } td { "models in 32-bit floating point; fits and integrals in 64-bit" } }
                     tr { th scope="row" { "Scenes" } td { code { "scenes/fresnel_effect.json" } ", " code { "white_furnace.json" } ", " code { "gold_three_lights.json" } ", " code { "lobe_shape.json" } ": " code { "lcm view" } " opens them" } }
                     tr { th scope="row" { "Numbers" } td {
-                        @for (i, table) in chapters.iter().flat_map(|c| &c.tables).enumerate() {
+                        @for (i, table) in chapters.flat_map(|c| &c.tables).enumerate() {
                             @if i > 0 { ", " } code { (table.name) ".csv" }
                         }
                     } }

@@ -2,11 +2,11 @@
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use lights_camera_models::{
     optics::{
         Frame, TermSelection, Terms,
-        albedo::{AlbedoCurve, LobeAlbedo, directional},
+        albedo::{AlbedoCurve, Albedos, Lines, LobeAlbedo, NamedCurve, Spacing, directional},
         colour::{BACKGROUND, Encoding},
     },
     parameter::{BASE_COLOUR, Parameter, Value, Values},
@@ -102,6 +102,73 @@ fn lobe_of_test(l: vec3<f32>, v: vec3<f32>, frame: Frame, alpha_x: f32, alpha_y:
     };
 }
 
+parameters! {
+    /// A body that reflects what its named curves say: a sum of the albedos of two lobes and of a polygonal line.
+    pub struct Named {
+        /// Roughness of the first lobe.
+        alpha_x: number = ALPHA_X,
+        /// Roughness of the second.
+        alpha_y: number = ALPHA_Y,
+    }
+    derived {
+        /// The albedos of the lobes.
+        lobes: Albedos = |this: &Self| {
+            let lobe = |a: f32| LobeAlbedo::new(move |l, v| ggx(l, v, &Frame::LOCAL, a, a));
+            Albedos::of([lobe(this.alpha_x), lobe(this.alpha_y), LobeAlbedo::default(), LobeAlbedo::default()])
+        },
+        /// A polygonal line.
+        line: Lines<5> = |this: &Self| {
+            Lines::new([0.0, 0.9, 0.1, 0.5, this.alpha_x].map(|y| Vec4::new(y, 0.5 * y, 0.0, 0.0)))
+        }
+    }
+}
+
+const NAMED: reflection::Declaration = reflection::Declaration::new(
+    "named",
+    "Named",
+    Source::new(
+        "named.wgsl",
+        "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    let cos_l = dot(l, frame.n);
+    let cos_v = dot(v, frame.n);
+    if cos_l <= 0.0 || cos_v <= 0.0 { return Terms(vec3(0.0), vec3(0.0), vec3(0.0)); }
+    let red = curve_lobes(cos_l).x * (1.0 - curve_lobes(cos_v).y) * mean_lobes().x;
+    let green = curve_line(cos_v).x + value_seen(1u).z;
+    let blue = curve_line(cos_l).y + mean_line().x;
+    return Terms(vec3(0.0), cos_l * vec3(red, green, blue), vec3(0.0));
+}
+",
+    ),
+)
+.summary("What its named curves say.")
+.non_negative()
+.ambient_by_albedo();
+
+impl ReflectionModel for Named {
+    const DECLARATION: reflection::Declaration = NAMED;
+    const CURVES: &'static [NamedCurve] = &[
+        NamedCurve { name: "lobes", spacing: Spacing::Cubic },
+        NamedCurve { name: "line", spacing: Spacing::Linear(5) },
+        NamedCurve { name: "seen", spacing: Spacing::Values(2) },
+    ];
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let red = self.lobes.at(cos_l).x * (1.0 - self.lobes.at(cos_v).y) * self.lobes.mean().x;
+        let (green, blue) =
+            (self.line.at(cos_v).x + self.alpha_x, self.line.at(cos_l).y + self.line.mean().x);
+        Terms { diffuse: cos_l * Vec3::new(red, green, blue), ..Terms::default() }
+    }
+
+    fn curves(&self) -> Vec<Vec4> {
+        let seen = vec![Vec4::ZERO, Vec4::new(0.0, 0.0, self.alpha_x, 0.0)];
+        [self.lobes.values(), self.line.values(), seen].concat()
+    }
+}
+
 const PATCHWORK: reflection::Declaration = reflection::Declaration::new(
     "patchwork",
     "Patchwork",
@@ -185,6 +252,7 @@ impl ReflectionModel for Brushed {
 fn register(to: &mut impl Register) {
     to.add_reflection_model::<Patchwork>();
     to.add_reflection_model::<Brushed>();
+    to.add_reflection_model::<Named>();
 }
 
 fn registry() -> Registry {
@@ -307,6 +375,44 @@ fn the_lobe_in_the_row_is_the_lobe_of_the_model() {
     assert!(right < 1e-4, "{right}");
     // The wrong twin: without compensation.
     assert!(worst(&|l, v| ggx(l, v, &Frame::LOCAL, 0.9, 0.4)) > 1e-2);
+}
+
+/// Whether every response of the GPU is that of a surface.
+fn agrees(model: &ModelEntry, set: &Values, surface: &dyn reflection::Surface) -> bool {
+    let pairs: Vec<_> = (0..400)
+        .map(|i| {
+            let i = i as f32;
+            (view((i * 0.618).fract().max(0.001), i), view((i * 0.754).fract().max(0.001), 1.7 * i))
+        })
+        .collect();
+    let gpu = evaluate(&Sources::default(), model, set, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+    let near = |((l, v), gpu): (&(Vec3, Vec3), &Terms)| {
+        let cpu = surface.response(*l, *v, &Frame::LOCAL).diffuse;
+        (cpu - gpu.diffuse).abs().max_element() <= 1e-4 * cpu.abs().max_element()
+    };
+    pairs.iter().zip(&gpu).all(near)
+}
+
+#[test]
+fn named_curves_in_the_row_are_those_of_the_model() {
+    let registry = registry();
+    let model = registry.model("named").unwrap();
+    assert_eq!(model.curve_length(), 16 + 17 + 6 + 2);
+    assert!(model.has_curve() && model.has_lobe());
+    let set = values(&[("alpha_x", 0.9), ("alpha_y", 0.4)]);
+    let row = model.row(&set, Encoding::Srgb, false);
+    let surface = model.instantiate(&set, Encoding::Srgb);
+    let first = row.len() - 16 - 16 * (17 + 6 + 2);
+    let at = |i: usize| f32::from_le_bytes(row[i..i + 4].try_into().unwrap());
+    assert_eq!(at(first), surface.curves()[0].x);
+    assert_eq!(at(first + 16 * 18 + 4), surface.curves()[18].y);
+    assert!(agrees(model, &set, &*surface));
+    // The wrong twin: the curves of other parameters.
+    let other = values(&[("alpha_x", 0.9), ("alpha_y", 0.5)]);
+    assert!(!agrees(model, &set, &*model.instantiate(&other, Encoding::Srgb)));
+    // A model without named curves has none in its row.
+    let plain = registry.model("patchwork").unwrap();
+    assert!(plain.curves().is_empty() && plain.curve_length() == 16);
 }
 
 #[test]

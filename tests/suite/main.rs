@@ -11,6 +11,7 @@ mod command_line;
 mod compare;
 mod comparing;
 mod cost;
+mod custom_curves;
 mod custom_folder;
 mod custom_models;
 mod cycles;

@@ -24,13 +24,17 @@ use lights_camera_models::{
             ThemeChoice, ViewChange,
         },
     },
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, ROUGHNESS, Value, Values},
+    parameter::{
+        BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, ParameterSet as _, REFLECTANCE, ROUGHNESS, Value,
+        Values,
+    },
     parameters,
     reflection::{
-        self, EquationPart, Family, Measured, Readout, ReadoutValue, ReflectionModel, Term, preset, usage,
+        self, EquationPart, Family, Measured, OpenPbr, Readout, ReadoutValue, ReflectionModel, Term, preset,
+        usage,
     },
     registry::{Register, Registry},
-    scene::{Display, Light, Object, Scene, load::Stamp},
+    scene::{Display, Light, Object, Scene, examples::looks, load::Stamp},
     shader::Source,
 };
 
@@ -557,6 +561,31 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.says("measured material"));
     assert!(bench.says("equivalent roughness: 0.352"));
+}
+
+#[test]
+fn a_material_of_artists_sets_every_parameter_of_its_model_in_one_edit() {
+    let mut bench = Bench::with_model("openpbr");
+    bench.click("material preset: none");
+    assert!(bench.says("For artists") && bench.says("Metals and semiconductors"));
+    bench.frame(vec![Event::Text("velvet".to_owned())]);
+    bench.settle();
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.says("material preset: Velvet"));
+    let velvet = looks().iter().find(|look| look.name == "Velvet").expect("shipped");
+    let has = |bench: &Bench, want: bool| {
+        let material = &bench.session.document.objects[0].material;
+        let all = OpenPbr::PARAMETERS.iter().all(|p| material.get(p) == velvet.material.get(p));
+        assert_eq!(all, want);
+    };
+    has(&bench, true);
+    bench.type_into("fuzz", "0.5");
+    assert!(bench.says("material preset: none"));
+    has(&bench, false);
+    for _ in 0..2 {
+        bench.apply(Action::Undo);
+    }
+    assert!(bench.session.document.objects[0].material.0.is_empty(), "one step");
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn mistakes_are_explained() {
         ),
         (
             &["ward", "--kind", "d"],
-            "--kind d: Ward has no distribution D of microfacets; models with one: microfacet, torrance_sparrow, cook_torrance, metallic_roughness and disney",
+            "--kind d: Ward has no distribution D of microfacets; models with one: microfacet, torrance_sparrow, cook_torrance, metallic_roughness, disney and openpbr",
         ),
         (&["lambert", "--kind", "g"], "--kind g: Lambert has no masking factor G; models with one:"),
         (

@@ -1,6 +1,6 @@
 //! `lcm study` from end to end, in its quick setting.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use crate::support::lcm;
 
@@ -24,6 +24,37 @@ fn loads(html: &str) -> Vec<&str> {
         .collect()
 }
 
+/// The numbers of the chapter on OpenPBR: shares of layers that make a whole, and the conclusions drawn from them.
+fn layers_add_up(html: &str, folder: &Path) {
+    assert!(html.contains("<section id=\"layers\">") && html.contains("href=\"#layers\""));
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    let energy = rows("layers_energy.csv");
+    for row in &energy {
+        assert!(row[1..5].iter().all(|share| (0.0..1.0).contains(share)), "{row:?}");
+        assert!((row[1..5].iter().sum::<f64>() - row[5]).abs() < 1e-5 && row[5] < 1.0, "{row:?}");
+    }
+    let (first, last) = (&energy[0], &energy[energy.len() - 1]);
+    // Along the normal, the coat of index 1.6 has its (0.6/2.6)² = 0.053, less what the fuzz above it takes.
+    assert!((0.03..0.055).contains(&first[2]) && last[2] > 3.0 * first[2], "{first:?} {last:?}");
+    assert!(last[4] < first[4], "the body loses");
+    // Of copper: a coat without darkening, with it, and with a colour; each row name, angle, red, green, blue.
+    let copper = rows("layers_coated_copper.csv");
+    let normal: Vec<_> = copper.iter().filter(|row| row[1] == 0.0).collect();
+    assert_eq!(normal.len(), 4);
+    assert!(normal[2][3] < normal[1][3] && normal[2][5] > normal[1][5], "darkening: {normal:?}");
+    assert!(normal[3][4] < 0.5 * normal[2][4], "amber takes blue");
+    // The film of nothing reflects as glass, one of a quarter of a wave less.
+    let film = rows("layers_film.csv");
+    assert!((film[0][3] - 0.04).abs() < 1e-3, "{:?}", film[0]);
+    let least = film.iter().take(film.len() / 2).map(|row| row[3]).fold(1.0, f64::min);
+    assert!(least < 0.01, "{least}");
+    assert!(html.contains("Film of index 2 over a body of index 1.1”"), "the one that gains is named");
+}
+
 #[test]
 fn the_study_writes_a_report_that_stands_alone() {
     let (folder, html) = quick();
@@ -31,7 +62,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         assert!(html.contains(&format!("<section id=\"phenomenon-{i}\">")), "section {i}");
     }
     for part in ["Question", "Method", "Results", "Conclusion"] {
-        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 4, "{part}");
+        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 5, "{part}");
     }
     // The content of the numbers, and not only their presence.
     assert!(html.contains("All four phenomena are shown"), "{}", &html[..4000.min(html.len())]);
@@ -54,6 +85,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         let columns: Vec<_> = text.lines().map(|line| line.split(',').count()).collect();
         assert!(columns.len() > 2 && columns.iter().all(|c| *c == columns[0]), "{}", table.display());
     }
+    layers_add_up(&html, &folder.path().join("new/report"));
     // A quick run is marked as such.
     assert!(html.contains("quick run"));
 }

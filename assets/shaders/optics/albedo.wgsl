@@ -5,13 +5,13 @@
 // Nodes at μ = (i/15)³.
 const NODES: u32 = 16u;
 
-// The values at μ = cos θ of the harmonic of that index: red, green, blue, and the lobe's. The cubic of
-// E. Catmull and R. Rom (1974) over the cube root of μ, continued in a straight line at both ends.
-fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
+// The values at μ = cos θ of the curve whose nodes begin there. The cubic of E. Catmull and R. Rom (1974) over the cube
+// root of μ, continued in a straight line at both ends.
+fn curve_from(mu: f32, first: u32) -> vec4<f32> {
     let x = power(clamp(mu, 0.0, 1.0), 1.0 / 3.0) * f32(NODES - 1u);
     let i = min(u32(x), NODES - 2u);
     let f = x - f32(i);
-    let at = harmonic * NODES + i;
+    let at = first + i;
     let b = curve_node(at);
     let c = curve_node(at + 1u);
     var a = 2.0 * b - c;
@@ -23,6 +23,11 @@ fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
         d = curve_node(at + 2u);
     }
     return b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)));
+}
+
+// Those of the harmonic of that index: red, green, blue, and the lobe's.
+fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
+    return curve_from(mu, harmonic * NODES);
 }
 
 // The directional albedo: a0(μ) + a2(μ) cos 2φ + a4(μ) cos 4φ, φ from the tangent.

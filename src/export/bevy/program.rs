@@ -239,8 +239,11 @@ struct {name} {{
         camel(model.id)
     );
     if program.shader.reads_curve {
-        out.push_str("    #[uniform(2)]\n    albedo_curve: AlbedoCurve");
-        let _ = writeln!(out, "{},", program.model.harmonics());
+        let _ = write!(
+            out,
+            "    #[uniform(2)]\n    albedo_curve: {},\n",
+            curve_type(program.model.curve_length())
+        );
     }
     if program.shader.reads_shading {
         let _ = write!(out, "    #[uniform(3)]\n    shading: {}Shading,\n", camel(shading.id));
@@ -352,24 +355,34 @@ struct Light {{
         out.push_str("}\n");
     }
     let mut sizes: Vec<_> =
-        lit.programs.iter().filter(|p| p.shader.reads_curve).map(|p| p.model.harmonics()).collect();
+        lit.programs.iter().filter(|p| p.shader.reads_curve).map(|p| p.model.curve_length()).collect();
     sizes.sort_unstable();
     sizes.dedup();
-    for harmonics in sizes {
+    for length in sizes {
         let _ = write!(
             out,
             "
 /// The directional albedo of a material, calculated beforehand by numerical integration.
 #[derive(ShaderType, Clone, Copy, Debug)]
-struct AlbedoCurve{harmonics} {{
-    /// For cosines (i/15)³ of the angle of view: red, green, blue, and that of the specular lobe alone.
-    nodes: [Vec4; {}],
+struct {} {{
+    /// For cosines (i/15)³ of the angle of view: red, green, blue, and that of the specular lobe alone; then the curves
+    /// that the model has beside it.
+    nodes: [Vec4; {length}],
     /// The mean of the lobe's over the hemisphere.
     mean: f32,
 }}
 ",
-            harmonics * NODES
+            curve_type(length)
         );
+    }
+}
+
+/// The name of the struct for curves of that length: with the number of harmonics where they have nothing else.
+fn curve_type(length: usize) -> String {
+    if length.is_multiple_of(NODES) {
+        format!("AlbedoCurve{}", length / NODES)
+    } else {
+        format!("AlbedoCurveOf{length}")
     }
 }
 
@@ -651,9 +664,9 @@ fn new_material(out: &mut String, lit: &Lit, program: &Program, material: &Mater
         let float = |at: usize| {
             material.curve.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0.0, f32::from_le_bytes)
         };
-        let harmonics = program.model.harmonics();
-        let _ = writeln!(out, "        albedo_curve: AlbedoCurve{harmonics} {{\n            nodes: [");
-        for node in 0..harmonics * NODES {
+        let length = program.model.curve_length();
+        let _ = writeln!(out, "        albedo_curve: {} {{\n            nodes: [", curve_type(length));
+        for node in 0..length {
             let at = 16 * node;
             let _ = writeln!(
                 out,
@@ -664,11 +677,7 @@ fn new_material(out: &mut String, lit: &Lit, program: &Program, material: &Mater
                 float(at + 12)
             );
         }
-        let _ = writeln!(
-            out,
-            "            ],\n            mean: {:?},\n        }},",
-            float(16 * harmonics * NODES)
-        );
+        let _ = writeln!(out, "            ],\n            mean: {:?},\n        }},", float(16 * length));
     }
     if program.shader.reads_shading {
         let _ = writeln!(out, "        shading: {}Shading {{", camel(program.shading.declaration.id));

@@ -14,9 +14,12 @@ use super::{
     lights::{LightField, Lights, call, stride},
 };
 use crate::{
-    optics::{albedo::NODES, colour::Encoding, tone::ToneMapping},
+    optics::{colour::Encoding, tone::ToneMapping},
     reflection::{Ambient, ModelEntry},
-    registry::{Registry, compose::AMBIENT},
+    registry::{
+        Registry,
+        compose::{AMBIENT, named_curves},
+    },
     shader::{
         Source,
         check::reason,
@@ -125,6 +128,7 @@ pub fn compose(
         let all = items(&text(sources, source)?);
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
     }
+    vocabulary.extend(items(&named_curves(model)));
     if let Host::Alone { .. } = host {
         vocabulary.extend(items(include_str!("tone.wgsl")));
     }
@@ -307,7 +311,7 @@ fn lobe_mean() -> f32 {{
     return albedo_curve.mean;
 }}
 ",
-            harmonics * NODES
+            model.curve_length()
         );
     }
     if !shading.parameters.is_empty() {

@@ -23,7 +23,7 @@ fn node(i: usize, azimuth: f64) -> Vec3 {
 }
 
 /// The albedos at the nodes in one azimuth of the view, accurate enough for pictures.
-fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [DVec3; NODES] {
+pub(super) fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [DVec3; NODES] {
     let views: [_; NODES] = std::array::from_fn(|i| (node(i, azimuth), plan.clone()));
     let Ok(albedos) = integrate(&views, |pairs, answers| {
         answers.extend(pairs.iter().map(|(l, v)| response(*l, *v)));
@@ -34,7 +34,7 @@ fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [
 
 /// Weights of the nodes around μ in the cubic of E. Catmull, R. Rom (1974), *A Class of Local Interpolating Splines*,
 /// over the cube root of μ; and the first of the four nodes. At both ends the curve is extrapolated linearly.
-fn spline(mu: f32) -> (usize, [f32; 4]) {
+pub(super) fn spline(mu: f32) -> (usize, [f32; 4]) {
     let x = mu.clamp(0.0, 1.0).cbrt() * (NODES - 1) as f32;
     let i = (x as usize).min(NODES - 2);
     let f = x - i as f32;
@@ -130,7 +130,8 @@ impl LobeAlbedo {
         Self::from_nodes(AlbedoCurve::new(response, true).harmonics[0].map(|e| e.x))
     }
 
-    fn from_nodes(nodes: [f32; NODES]) -> Self {
+    #[must_use]
+    pub fn from_nodes(nodes: [f32; NODES]) -> Self {
         let mut lobe = Self { nodes, average: 0.0 };
         // 2 ∫ E μ dμ = 6 ∫ E x⁵ dx with x³ = μ, by the midpoint rule, whose points cost little.
         let n = 960;

@@ -3,7 +3,7 @@
 //!
 //! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] gives the same as a function of
 //! the view, for pictures; [`LobeAlbedo`] covers a specular lobe alone, with a Fresnel factor of 1, for compensation of
-//! multiple scattering.
+//! multiple scattering. A [`NamedCurve`] holds any others that a model needs.
 //!
 //! Twin: `assets/shaders/optics/albedo.wgsl`, which reads the curves but does not calculate them.
 //!
@@ -28,9 +28,11 @@ use cubature::{Plan, integrate};
 
 mod cubature;
 mod curve;
+mod named;
 
 pub use cubature::ACCURACY;
 pub use curve::{AlbedoCurve, LobeAlbedo, NODES};
+pub use named::{Albedos, Lines, NamedCurve, Spacing, lobe_albedos};
 
 /// The directional albedos for views in the local frame (normal +z, tangent +x), each to [`ACCURACY`], of the model
 /// behind `ask`, which returns the responses to pairs of directions, to the light and to the viewer, in a few large

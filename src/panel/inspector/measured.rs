@@ -1,4 +1,4 @@
-//! The chooser of measured materials.
+//! The chooser of materials: measured ones and, where a model has some, those of artists.
 
 use bevy_egui::egui::{self, Sense, Ui, vec2};
 
@@ -12,30 +12,42 @@ use crate::{
     parameter::Value,
     reflection::{Measured, ModelEntry, preset},
     registry::Registry,
-    scene::Object,
+    scene::{
+        Object,
+        examples::{Look, looks},
+    },
 };
 
-/// The chooser of measured materials, for models that can be one. Returns the parameters of the chosen.
+/// The chooser of materials, for models that can be one. Returns the parameters of the chosen.
 pub(super) fn measured(
     ui: &mut Ui,
     registry: &Registry,
     model: &ModelEntry,
     object: &Object,
 ) -> Option<Vec<(&'static str, Value)>> {
-    let offered: Vec<_> = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).collect();
-    if offered.is_empty() {
-        return None;
-    }
-    let is = |m: &Measured| {
-        (model.preset)(m)
-            .iter()
-            .all(|(name, value)| model.parameter(name).is_some_and(|p| object.material.get(p) == *value))
+    let measured = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).map(Offer::Measured);
+    let looks = looks().iter().filter(|look| look.model == model.declaration.id).map(Offer::Look);
+    let offered: Vec<_> = looks.chain(measured).collect();
+    let has_looks = matches!(offered.first()?, Offer::Look(_));
+    let is = |offer: &Offer| {
+        let set = |(name, value): &(&str, Value)| {
+            model.parameter(name).is_some_and(|p| object.material.get(p) == *value)
+        };
+        offer.values(model).iter().all(set)
     };
-    let present = offered.iter().find(|m| is(m)).copied();
-    let caption = Caption {
-        label: "measured material",
-        help: "Sets the parameters below to those measured on a real material, and those of the other physically based models too. Shows “none” once one of them differs.",
-        ..Caption::default()
+    let present = offered.iter().position(is);
+    let caption = if has_looks {
+        Caption {
+            label: "material preset",
+            help: "Sets the parameters below to those of a material: one that artists reach for, which sets all of them, or one that was measured. Shows “none” once one of them differs.",
+            ..Caption::default()
+        }
+    } else {
+        Caption {
+            label: "measured material",
+            help: "Sets the parameters below to those measured on a real material, and those of the other physically based models too. Shows “none” once one of them differs.",
+            ..Caption::default()
+        }
     };
     let words = chooser::Words {
         label: "Search measured materials",
@@ -43,25 +55,82 @@ pub(super) fn measured(
         none: "No material has that in its name or source.",
         foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
     };
-    let chosen =
-        knob::list_knob(ui, "measured material", &caption, present.map_or("none", |m| m.name), |ui, id| {
-            let height = 0.45 * ui.ctx().content_rect().height();
-            let find = |search: &str| -> Vec<&'static Measured> {
-                let hit =
-                    |m: &&&'static Measured| chooser::matches(&[m.name, m.id, m.source].join(" "), search);
-                offered.iter().filter(hit).copied().collect()
-            };
-            let entry = |m: &&'static Measured| chooser::Entry {
-                heading: if m.metal { "Metals and semiconductors" } else { "Dielectrics" },
-                name: m.name,
-                note: m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
-                number: None,
-                swatch: Some(theme::swatch(m.f0)),
-                current: present == Some(*m),
-            };
-            chooser::list(ui, id, words, height, find, entry, |ui, m| measurement(ui, m))
-        });
-    chosen.map(|material| crate::registry::along(model, material, registry))
+    let shown = present.map_or("none", |i| offered[i].name());
+    let chosen = knob::list_knob(ui, "measured material", &caption, shown, |ui, id| {
+        let height = 0.45 * ui.ctx().content_rect().height();
+        let find = |search: &str| -> Vec<(usize, Offer)> {
+            let hit = |(_, offer): &(usize, Offer)| chooser::matches(&offer.words(), search);
+            offered.iter().copied().enumerate().filter(hit).collect()
+        };
+        let entry = |(i, offer): &(usize, Offer)| chooser::Entry {
+            heading: offer.heading(),
+            name: offer.name(),
+            note: match offer {
+                Offer::Look(_) => String::new(),
+                Offer::Measured(m) => m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
+            },
+            number: None,
+            swatch: match offer {
+                Offer::Look(_) => None,
+                Offer::Measured(m) => Some(theme::swatch(m.f0)),
+            },
+            current: present == Some(*i),
+        };
+        let about = |ui: &mut Ui, (_, offer): &(usize, Offer)| match offer {
+            Offer::Look(look) => {
+                ui.label(theme::strong(ui, &look.name));
+                ui.label(&look.description);
+            }
+            Offer::Measured(m) => measurement(ui, m),
+        };
+        chooser::list(ui, id, words, height, find, entry, about)
+    });
+    chosen.map(|(_, offer)| match offer {
+        Offer::Look(_) => offer.values(model),
+        Offer::Measured(material) => crate::registry::along(model, material, registry),
+    })
+}
+
+/// A material that can be chosen.
+#[derive(Clone, Copy)]
+enum Offer {
+    /// One of artists, for this model alone.
+    Look(&'static Look),
+    /// One with measured optical constants.
+    Measured(&'static Measured),
+}
+
+impl Offer {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Look(look) => &look.name,
+            Self::Measured(m) => m.name,
+        }
+    }
+
+    fn heading(self) -> &'static str {
+        match self {
+            Self::Look(_) => "For artists",
+            Self::Measured(m) if m.metal => "Metals and semiconductors",
+            Self::Measured(_) => "Dielectrics",
+        }
+    }
+
+    /// The words by which it is found.
+    fn words(self) -> String {
+        match self {
+            Self::Look(look) => [&*look.name, &look.description].join(" "),
+            Self::Measured(m) => [m.name, m.id, m.source].join(" "),
+        }
+    }
+
+    /// The values of the model's parameters that it sets.
+    fn values(self, model: &ModelEntry) -> Vec<(&'static str, Value)> {
+        match self {
+            Self::Look(look) => model.parameters.iter().map(|p| (p.name, look.material.get(p))).collect(),
+            Self::Measured(m) => (model.preset)(m),
+        }
+    }
 }
 
 /// The measured values of a material, and their source.

@@ -3,6 +3,7 @@
 
 mod classical;
 mod microfacet;
+mod openpbr;
 mod practical;
 mod rough;
 

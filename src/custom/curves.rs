@@ -1,0 +1,231 @@
+//! Curves of custom models: the albedos of built-in models whose parameters follow those of the custom one.
+//!
+//! `"curves": { "coat": { "model": "microfacet", "alpha_x": "coat_alpha", "fresnel": "dielectric" } }` gives the shader
+//! `curve_coat(mu)`, the directional albedo of that material in rgb and the luminance of its specular term in w, and
+//! `mean_coat()`, their means over the hemisphere.
+
+use std::sync::Arc;
+
+use glam::Vec4;
+use jsonc_parser::{ast::ObjectProp, common::Ranged as _};
+
+use super::{declaration::Reader, intern, text};
+use crate::{
+    optics::{
+        Frame, Terms,
+        albedo::{AlbedoCurve, Albedos, LobeAlbedo, NamedCurve, Spacing},
+        colour::{Encoding, luminance},
+    },
+    parameter::{Parameter, ParameterKind, Value, Values},
+    reflection::ModelEntry,
+    text::{
+        did_you_mean,
+        json::{Ast, Cursor, Fields, Reader as _},
+        listed, quoted,
+    },
+};
+
+/// The most curves of a model: each takes 17 quadruples of the row of an object.
+const MOST: usize = 8;
+const RULE: &str = "it must be an object of curves: { \"coat\": { \"model\": \"microfacet\", \"alpha_x\": \"coat_alpha\" } }";
+
+/// A curve.
+#[derive(Clone)]
+pub(super) struct Curve {
+    name: &'static str,
+    model: ModelEntry,
+    settings: Vec<(&'static Parameter, Setting)>,
+}
+
+/// The value of a parameter of the built-in model.
+#[derive(Clone)]
+enum Setting {
+    Fixed(Value),
+    /// That of the custom model's parameter of the same type.
+    Of(Parameter),
+}
+
+/// The curves that the shader of a custom model reads: those of a built-in model, and its own.
+#[derive(Clone, Default)]
+pub(super) struct Reads {
+    /// The built-in model whose lobe and curves are read, with the parameters of the custom model by name.
+    pub lobe: Option<ModelEntry>,
+    pub own: Arc<[Curve]>,
+}
+
+impl Reads {
+    /// True if there is any.
+    pub fn any(&self) -> bool {
+        self.lobe.is_some() || !self.own.is_empty()
+    }
+
+    /// Their names, in the order of the row.
+    pub fn named(&self) -> &'static [NamedCurve] {
+        let of_model = self.lobe.as_ref().map_or(&[][..], ModelEntry::curves);
+        let own = self.own.iter().map(|curve| NamedCurve { name: curve.name, spacing: Spacing::Cubic });
+        intern::curves(of_model.iter().copied().chain(own).collect())
+    }
+
+    /// The lobe and the values of the curves.
+    pub fn values(
+        &self,
+        parameters: &[Parameter],
+        values: &Values,
+        encoding: Encoding,
+    ) -> (LobeAlbedo, Vec<Vec4>) {
+        // A model of curves alone has no lobe; its row holds that which reflects everything.
+        let (lobe, mut all) = self.lobe.as_ref().map_or_else(Default::default, |model| {
+            // Undeclared parameters must not affect its look.
+            let mut own = Values::default();
+            for p in parameters {
+                own.set(p.name, values.get(p));
+            }
+            let surface = model.instantiate(&own, encoding);
+            (surface.lobe().unwrap_or_default(), model.curves_of(&*surface))
+        });
+        all.extend(self.own.iter().flat_map(|curve| curve.values(values, encoding)));
+        (lobe, all)
+    }
+}
+
+impl Curve {
+    fn values(&self, values: &Values, encoding: Encoding) -> Vec<Vec4> {
+        let mut set = Values::default();
+        for (parameter, setting) in &self.settings {
+            let value = match setting {
+                Setting::Fixed(value) => Some(value.clone()),
+                // Beyond the range of the built-in model, the nearest value that it knows.
+                Setting::Of(own) => {
+                    let value = values.get(own);
+                    if parameter.allows(&value) { Some(value) } else { parameter.nearest(&value) }
+                }
+            };
+            if let Some(value) = value {
+                set.set(parameter.name, value);
+            }
+        }
+        let surface = self.model.instantiate(&set, encoding);
+        let anisotropic = self.model.declaration.anisotropic;
+        let new = |of: fn(Terms) -> Terms| {
+            AlbedoCurve::new(|l, v| of(surface.response(l, v, &Frame::LOCAL)), anisotropic).harmonics[0]
+        };
+        let all = surface.curve().map_or_else(|| new(|terms| terms), |curve| curve.harmonics[0]);
+        let specular = new(|terms| Terms { specular: terms.specular, ..Terms::default() });
+        let channel = |c: usize| LobeAlbedo::from_nodes(all.map(|rgb| rgb[c]));
+        let specular = LobeAlbedo::from_nodes(specular.map(luminance));
+        Albedos::of([channel(0), channel(1), channel(2), specular]).values()
+    }
+}
+
+impl Reader<'_> {
+    /// The curves by their names, each with its model and the settings of its parameters. `taken` are the names of the
+    /// curves of the model whose lobe is read.
+    pub(super) fn curves(
+        &mut self,
+        fields: &Fields,
+        parameters: &[Parameter],
+        taken: &[NamedCurve],
+    ) -> Vec<Curve> {
+        let Some(value) = fields.get("curves") else { return Vec::new() };
+        let Some(properties) = value.properties() else {
+            self.wrong(value, RULE);
+            return Vec::new();
+        };
+        let mut curves: Vec<Curve> = Vec::new();
+        for property in properties {
+            let name = property.name.as_str();
+            let problem = if let Err(rule) = text::identifier(name) {
+                Some(format!("a name in the shader {rule}"))
+            } else if curves.iter().any(|c| c.name == name) {
+                Some("is given twice".to_owned())
+            } else if taken.iter().any(|c| c.name == name) {
+                Some("is a curve of the model of \"lobe\"; it needs another name".to_owned())
+            } else if curves.len() == MOST {
+                Some(format!("is one too many: at most {MOST} fit"))
+            } else {
+                None
+            };
+            if let Some(problem) = problem {
+                self.mistake(property.start(), format!("curves: {}: {problem}", quoted(name)));
+                continue;
+            }
+            curves.extend(self.curve(value.holding(&property.value), property, parameters));
+        }
+        curves
+    }
+
+    fn curve(&mut self, of: Cursor, property: &ObjectProp, parameters: &[Parameter]) -> Option<Curve> {
+        let Some(properties) = of.properties() else {
+            self.wrong(of, RULE);
+            return None;
+        };
+        let name = property.name.as_str();
+        let known: Vec<_> = self.built_in_models().map(|m| (m.declaration.id, m.declaration.id)).collect();
+        let Some(model) = properties.iter().find(|p| p.name.as_str() == "model") else {
+            self.mistake(
+                property.start(),
+                format!("curves: {}: it needs a \"model\", a built-in one whose albedo it is", quoted(name)),
+            );
+            return None;
+        };
+        let id = self.word(of.holding(&model.value), "the model whose albedo the curve is", &known)?;
+        let model = self.registry.model(id)?.clone();
+        let mut settings = Vec::new();
+        for setting in properties.iter().filter(|p| p.name.as_str() != "model") {
+            let written = setting.name.as_str();
+            let Some(parameter) = model.parameter(&written.replace("color", "colour")) else {
+                let hint = did_you_mean(written, model.parameters.iter().map(|p| (p.name, p.name)));
+                let what = format!("curves: {}: {} is no parameter of {id}{hint}", quoted(name), quoted(written));
+                self.mistake(setting.start(), what);
+                continue;
+            };
+            match meaning(parameter, &setting.value, parameters) {
+                Some(value) => settings.push((parameter, value)),
+                None => {
+                    let same: Vec<_> =
+                        parameters.iter().filter(|p| alike(p, parameter)).map(|p| quoted(p.name)).collect();
+                    let or = if same.is_empty() {
+                        String::new()
+                    } else {
+                        format!(", or one of the model's parameters {}", listed(&same, "and"))
+                    };
+                    let rule = format!("{} must be {}{or}", parameter.name, parameter.rule());
+                    self.wrong(of.holding(&setting.value), &rule);
+                }
+            }
+        }
+        Some(Curve { name: intern::text(name), model, settings })
+    }
+}
+
+/// True if the values of one parameter may serve as those of the other.
+fn alike(one: &Parameter, other: &Parameter) -> bool {
+    use ParameterKind::{Choice, Colour, Integer, Number, Triple};
+    match (&one.kind, &other.kind) {
+        (Number { .. }, Number { .. })
+        | (Integer { .. }, Integer { .. })
+        | (Colour { .. }, Colour { .. })
+        | (Triple { .. }, Triple { .. }) => true,
+        (Choice { options: a, .. }, Choice { options: b, .. }) => a == b,
+        _ => false,
+    }
+}
+
+/// A literal value, or the name of a parameter of the custom model.
+fn meaning(parameter: &Parameter, written: &Ast, own: &[Parameter]) -> Option<Setting> {
+    let literal = |value: &Ast| match value {
+        Ast::NumberLit(number) => Some(number.value.to_owned()),
+        Ast::StringLit(text) => Some(text.value.to_string()),
+        _ => None,
+    };
+    let text = match written {
+        Ast::Array(array) => {
+            array.elements.iter().map(literal).collect::<Option<Vec<_>>>()?.join(",")
+        }
+        value => literal(value)?,
+    };
+    if let Ok(value) = parameter.parse(&text) {
+        return Some(Setting::Fixed(value));
+    }
+    own.iter().find(|p| p.name == text && alike(p, parameter)).cloned().map(Setting::Of)
+}
