@@ -175,7 +175,8 @@ impl Reader<'_> {
             let written = setting.name.as_str();
             let Some(parameter) = model.parameter(&written.replace("color", "colour")) else {
                 let hint = did_you_mean(written, model.parameters.iter().map(|p| (p.name, p.name)));
-                let what = format!("curves: {}: {} is no parameter of {id}{hint}", quoted(name), quoted(written));
+                let what =
+                    format!("curves: {}: {} is no parameter of {id}{hint}", quoted(name), quoted(written));
                 self.mistake(setting.start(), what);
                 continue;
             };
@@ -219,9 +220,7 @@ fn meaning(parameter: &Parameter, written: &Ast, own: &[Parameter]) -> Option<Se
         _ => None,
     };
     let text = match written {
-        Ast::Array(array) => {
-            array.elements.iter().map(literal).collect::<Option<Vec<_>>>()?.join(",")
-        }
+        Ast::Array(array) => array.elements.iter().map(literal).collect::<Option<Vec<_>>>()?.join(","),
         value => literal(value)?,
     };
     if let Ok(value) = parameter.parse(&text) {

@@ -184,10 +184,8 @@ pub fn duplicate(
     let _ = writeln!(out, "    \"laws\": {},", spaced(&json!(laws)));
     let _ = writeln!(out, "    \"anisotropic\": {},", d.anisotropic);
     if let Some(lobe) = entry.lobe_of() {
-        let _ = writeln!(
-            out,
-            "    // The shader reads the albedo of the lobe, or the curves, of this model."
-        );
+        let _ =
+            writeln!(out, "    // The shader reads the albedo of the lobe, or the curves, of this model.");
         let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
     }
     // Of models from files: the declaration does not keep the text of their settings.

@@ -214,9 +214,7 @@ impl ModelEntry {
     /// True if the row of an object has a curve beside the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
-        self.lobe != Lobe::None
-            || !self.curves.is_empty()
-            || self.declaration.ambient == Ambient::Albedo
+        self.lobe != Lobe::None || !self.curves.is_empty() || self.declaration.ambient == Ambient::Albedo
     }
 
     /// The number of harmonics of the azimuth in a curve.

@@ -114,8 +114,7 @@ fn a_copy_of_a_model_with_curves_keeps_them() {
     assert!(copy.contains("\"alpha_x\": \"coat_alpha\""), "{copy}");
     let again = read("other", &copy).expect("valid");
     let ask = |registry: &Registry, id: &str| {
-        let surface =
-            registry.model(id).expect("registered").instantiate(&Values::default(), Encoding::Srgb);
+        let surface = registry.model(id).expect("registered").instantiate(&Values::default(), Encoding::Srgb);
         surface.response(Vec3::Z, direction(50.0, 0.0), &Frame::LOCAL)
     };
     assert_eq!(ask(&registry, "layered"), ask(&again, "other"));
@@ -132,7 +131,10 @@ fn mistakes_in_curves_are_told_with_what_would_be_right() {
         (one("\"coat\": 1"), "but it must be an object of curves"),
         (one("\"coat\": {}"), "curves: \"coat\": it needs a \"model\""),
         (one("\"coat\": { \"model\": \"microfaset\" }"), "did you mean \"microfacet\"?"),
-        (one("\"Coat\": { \"model\": \"lambert\" }"), "curves: \"Coat\": a name in the shader must be lower-case"),
+        (
+            one("\"Coat\": { \"model\": \"lambert\" }"),
+            "curves: \"Coat\": a name in the shader must be lower-case",
+        ),
         (
             one("\"a\": { \"model\": \"lambert\" }, \"a\": { \"model\": \"lambert\" }"),
             "curves: \"a\": is given twice",

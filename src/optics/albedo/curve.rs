@@ -130,6 +130,7 @@ impl LobeAlbedo {
         Self::from_nodes(AlbedoCurve::new(response, true).harmonics[0].map(|e| e.x))
     }
 
+    /// The curve through these values at μ = (i/15)³.
     #[must_use]
     pub fn from_nodes(nodes: [f32; NODES]) -> Self {
         let mut lobe = Self { nodes, average: 0.0 };

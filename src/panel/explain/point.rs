@@ -12,8 +12,9 @@ pub(super) fn point(ui: &mut Ui, seen: &Seen) {
     rows::named_triple(ui, "point at the pixel's centre", seen.position, " m");
     // The normal at which the equation was evaluated: per pixel that of the vertices, or that of the polygon.
     let per_pixel = seen.shading.stage == Stage::Pixel;
-    let of_polygon = seen.spots.first().is_some_and(|spot| per_pixel && is_along(spot.normal, seen.face_normal))
-        && !is_along(seen.interpolated_normal, seen.face_normal);
+    let of_polygon =
+        seen.spots.first().is_some_and(|spot| per_pixel && is_along(spot.normal, seen.face_normal))
+            && !is_along(seen.interpolated_normal, seen.face_normal);
     let used = if of_polygon { ", used here" } else { "" };
     rows::named_triple(ui, &format!("normal of polygon {}{used}", seen.polygon), seen.face_normal, "");
     if per_pixel && !of_polygon {

@@ -234,7 +234,7 @@ impl Drawing {
         ];
         let is_shown = |letter: &&str| shown.iter().any(|arrow| arrow.letter == *letter);
         for (letters, [a, b], colour, part) in all {
-            if !letters.iter().all(|letter| is_shown(letter)) {
+            if !letters.iter().all(is_shown) {
                 continue;
             }
             let angle = a.angle_between(b);
