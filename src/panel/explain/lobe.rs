@@ -277,7 +277,7 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
     let white = (scale.to - std::f64::consts::FRAC_1_PI).abs() < 1e-9;
     lines.push(match scale.log {
         false if white => {
-            format!("Length of the vectors: {}, that of a white matte surface", number(scale.to))
+            format!("Length of the vectors: {}:\na white matte surface", number(scale.to))
         }
         false => format!("Length of the vectors: {}", number(scale.to)),
         true => format!("Centre: {}; length of the vectors: {}", number(scale.from), number(scale.to)),
