@@ -240,14 +240,16 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 
-/// The menu of the examples, beside one that ends at `left`: in two columns where one would be too long.
+/// The menu of the examples, beside one that ends at `left`: in up to three columns where one would be too long.
 pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let [most, least] = MENU;
     let room = ui.ctx().content_rect().right() - left - 40.0;
     // The menu moves up where it needs to.
     let height = ui.ctx().content_rect().height() - 40.0;
-    let is_long = EXAMPLES.len() as f32 * (ROW.y + 8.0) > height;
-    let columns = if is_long && room >= 2.0 * 1.4 * least { 2 } else { 1 };
+    let fits = |columns: &usize| EXAMPLES.len().div_ceil(*columns) as f32 * (ROW.y + 8.0) <= height;
+    let has_room = |columns: &usize| *columns == 1 || room >= *columns as f32 * 1.4 * least;
+    let columns = (1..=3).find(fits).unwrap_or(3);
+    let columns = (1..=columns).rev().find(has_room).unwrap_or(1);
     let width = (room / columns as f32).clamp(least, most);
     ui.set_width(columns as f32 * width);
     ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {

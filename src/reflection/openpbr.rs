@@ -110,14 +110,14 @@ parameters! {
     /// below a dielectric boundary, which a thin film may cover.
     ///
     /// ```text
-    /// f = F_z C_f f_fuzz + (1 − F_z R(V)) (C f_coat + S f_base)
+    /// f = F_z C_f f_fuzz + (1 − F_z E_f(V)) (C f_coat + S f_base)
     /// f_base = C_s (1 − m) f_d + m min(1, ξ F_82) D G / (4 (N·L)(N·V)) + f_ms + f_body
     /// S = T_V T_L (1 − C E_c(V)) Δ',   T_X = 1 + C (C_c^(1/(2 μ'_X)) − 1),   μ'² = 1 − (1 − μ²)/n_c²
     /// f_ms = m min(1, ξ F̄_82) F̄_82 (1 − E_1(V))(1 − E_1(L))/(π (1 − Ē_1))
     /// f_body = EON((1 − m) w_b C_b, σ) (1 − E_d(V))(1 − E_d(L))/(1 − Ē_d)
     /// F_82 = F_S(c) − c (1 − c)⁶ (1 − C_s) F_S(1/7) / (1/7 (6/7)⁶),   F_S = w_b C_b + (1 − w_b C_b)(1 − c)⁵
     /// Δ' = 1 + C δ (Δ − 1),   Δ = (1 − K)/(1 − E_b K)
-    /// f_fuzz = R(V) a²/(π |(a x + b z, a y, z)|⁴),   L = (x, y, z) with V in the plane y = 0
+    /// f_fuzz = E_f(V) a²/(π |(a x + b z, a y, z)|⁴),   L = (x, y, z) with V in the plane y = 0
     /// ```
     ///
     /// `f_d` and `f_coat` are D F G/(4 (N·L)(N·V)) with GGX, Smith's separable masking and the exact F of a dielectric; E_1,
@@ -450,11 +450,11 @@ impl ReflectionModel for OpenPbr {
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {
-                term: Term::Total, text: "Z = 1 − F_z R(θ_V), S = T_L T_V (1 − C E_c(θ_V)) Δ"
+                term: Term::Total, text: "Z = 1 − F_z E_f(θ_o), W = T_L T_V (1 − C E_c(θ_o)) Δ"
             },
-            EquationPart { term: Term::Diffuse, text: "I_d = π Z S f_b (N·L)" },
-            EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + S f_r)) (N·L)" },
-            EquationPart { term: Term::Specular, text: "f_r = D G F / (4 (N·L)(N·V)) + f_m" },
+            EquationPart { term: Term::Diffuse, text: "I_d = π Z W f_b (N·L)" },
+            EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + W f_g)) (N·L)" },
+            EquationPart { term: Term::Specular, text: "f_g = D G F / (4 (N·L)(N·V)) + f_m" },
             EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m ξ F_{82}" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },

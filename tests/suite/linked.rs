@@ -40,6 +40,10 @@ fn bench(model: &str, tab: &str) -> Bench {
 /// The same with the middle of the sphere pinned.
 fn explaining(model: &str) -> Bench {
     let mut bench = bench(model, EXPLAIN_TAB);
+    // All of a light is in sight, down to its angles.
+    bench.size = vec2(1600.0, 2000.0);
+    bench.session.view.bottom_height = 1000.0;
+    bench.settle();
     let at = bench.area.rect.center() + vec2(13.0, 7.0);
     bench.frame(vec![Event::PointerMoved(at)]);
     bench.frame(Vec::new());
@@ -90,7 +94,7 @@ fn inspector(bench: &Bench) -> Rect {
 }
 
 fn strip(bench: &Bench) -> Rect {
-    Rect::from_min_max(Pos2::new(0.0, bench.area.rect.bottom()), Pos2::new(1600.0, 1200.0))
+    Rect::from_min_max(Pos2::new(0.0, bench.area.rect.bottom()), bench.size.to_pos2())
 }
 
 /// The slider of a knob, by its name.

@@ -138,34 +138,26 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     }
 }
 
-/// All about one light.
+/// All about one light: the answer of the model first, since it is what was asked for, then the light that arrives, and
+/// the directions on which both depend.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
-    if let Some(geometry) = &lit.geometry {
-        // Half vector and mirror direction where the equation has them.
-        let all = [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)];
-        let belongs = |letter: &str| pairs::belongs(&seen.model, letter);
-        let all: Vec<_> = all.into_iter().filter(|(letter, _)| belongs(letter)).collect();
-        rows::vectors(ui, &seen.model, &all);
-        let all: &[usize] =
-            if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = 14.0;
-            let mine = |name: &str| name.split('·').all(belongs);
-            for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]).filter(|(name, _)| mine(name)) {
-                let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
-                let ends: Vec<_> = name.split('·').collect();
-                let lit = |ctx: &Context| pairs::are_lit(ctx, &seen.model, &ends);
-                let symbols = pairs::symbols(&seen.model, &ends);
-                linked(ui, &symbols, lit, |ui| ui.add(Label::new(text).extend()))
-                    .on_hover_text(rows::all(cosine));
-            }
-        });
-    }
-    linked::within(ui, Domain::Light, |ui| arriving(ui, lit));
     if lit.is_dark() {
         rows::note(ui, "None of its light reaches the point.");
-        return;
+    } else {
+        terms(ui, explanation, seen, lit);
     }
+    ui.add_space(4.0);
+    rows::note(ui, "light that arrives");
+    linked::within(ui, Domain::Light, |ui| arriving(ui, lit));
+    if lit.geometry.is_some() {
+        ui.add_space(4.0);
+        rows::note(ui, "directions and angles");
+        directions(ui, seen, lit);
+    }
+}
+
+/// The terms of the equation as they are written, with numbers, and the light to the observer.
+fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if lit.is_behind() {
         rows::note(ui, "N·L ≤ 0: the surface faces away from the light.");
     }
@@ -207,6 +199,31 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
     if !lit.is_finite() {
         rows::note(ui, "Some of these are not finite numbers.");
+    }
+}
+
+/// The directions to and from the light, as far as the equation has them, and their angles.
+fn directions(ui: &mut Ui, seen: &Seen, lit: &Lit) {
+    if let Some(geometry) = &lit.geometry {
+        // Half vector and mirror direction where the equation has them.
+        let all = [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)];
+        let belongs = |letter: &str| pairs::belongs(&seen.model, letter);
+        let all: Vec<_> = all.into_iter().filter(|(letter, _)| belongs(letter)).collect();
+        rows::vectors(ui, &seen.model, &all);
+        let all: &[usize] =
+            if seen.model.declaration.anisotropic { &[0, 1, 2, 3, 4, 7, 8] } else { &[0, 1, 2, 3, 4] };
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 14.0;
+            let mine = |name: &str| name.split('·').all(belongs);
+            for (name, cosine) in all.iter().map(|i| geometry.cosines[*i]).filter(|(name, _)| mine(name)) {
+                let text = format!("{name} = {} ({}°)", rows::short(cosine), rows::short(angle(cosine)));
+                let ends: Vec<_> = name.split('·').collect();
+                let lit = |ctx: &Context| pairs::are_lit(ctx, &seen.model, &ends);
+                let symbols = pairs::symbols(&seen.model, &ends);
+                linked(ui, &symbols, lit, |ui| ui.add(Label::new(text).extend()))
+                    .on_hover_text(rows::all(cosine));
+            }
+        });
     }
 }
 
