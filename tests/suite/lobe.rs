@@ -176,7 +176,7 @@ fn its_scale_stays_while_a_pixel_is_pinned() {
     let mut lambert = bench(scene("lambert", "phong"));
     for code in [255, 120, 40] {
         paint(&mut lambert, code);
-        assert!(is_written(&mut lambert, "Length of the vectors: 0.318, that of a white"), "{code}");
+        assert!(is_written(&mut lambert, "Length of the vectors: 0.318:\na white matte surface"), "{code}");
     }
     choose(&mut lambert, LobeScale::Logarithmic, false);
     for code in [255, 40] {
