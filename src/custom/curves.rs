@@ -20,7 +20,7 @@ use crate::{
     reflection::ModelEntry,
     text::{
         did_you_mean,
-        json::{Ast, Cursor, Fields, Reader as _},
+        json::{Ast, Cursor, Fields, Reader as _, describe},
         listed, quoted,
     },
 };
@@ -170,7 +170,10 @@ impl Reader<'_> {
         };
         let id = self.word(of.holding(&model.value), "the model whose albedo the curve is", &known)?;
         let model = self.registry.model(id)?.clone();
-        let mut settings = Vec::new();
+        let mut settings: Vec<(&'static Parameter, Setting)> = Vec::new();
+        if let Some(twice) = properties.iter().filter(|p| p.name.as_str() == "model").nth(1) {
+            self.mistake(twice.start(), format!("curves: {}: model is given twice", quoted(name)));
+        }
         for setting in properties.iter().filter(|p| p.name.as_str() != "model") {
             let written = setting.name.as_str();
             let Some(parameter) = model.parameter(&written.replace("color", "colour")) else {
@@ -180,6 +183,11 @@ impl Reader<'_> {
                 self.mistake(setting.start(), what);
                 continue;
             };
+            if settings.iter().any(|(known, _)| known.name == parameter.name) {
+                let what = format!("curves: {}: {} is given twice", quoted(name), parameter.name);
+                self.mistake(setting.start(), what);
+                continue;
+            }
             match meaning(parameter, &setting.value, parameters) {
                 Some(value) => settings.push((parameter, value)),
                 None => {
@@ -190,8 +198,14 @@ impl Reader<'_> {
                     } else {
                         format!(", or one of the model's parameters {}", listed(&same, "and"))
                     };
-                    let rule = format!("{} must be {}{or}", parameter.name, parameter.rule());
-                    self.wrong(of.holding(&setting.value), &rule);
+                    let found = describe(&setting.value, self.text());
+                    let what = format!(
+                        "curves: {}: {} is {found}, but it must be {}{or}",
+                        quoted(name),
+                        parameter.name,
+                        parameter.rule()
+                    );
+                    self.mistake(setting.value.start(), what);
                 }
             }
         }

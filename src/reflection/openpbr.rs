@@ -116,13 +116,18 @@ parameters! {
     /// f_ms = m min(1, ξ F̄_82) F̄_82 (1 − E_1(V))(1 − E_1(L))/(π (1 − Ē_1))
     /// f_body = EON((1 − m) w_b C_b, σ) (1 − E_d(V))(1 − E_d(L))/(1 − Ē_d)
     /// F_82 = F_S(c) − c (1 − c)⁶ (1 − C_s) F_S(1/7) / (1/7 (6/7)⁶),   F_S = w_b C_b + (1 − w_b C_b)(1 − c)⁵
-    /// Δ' = 1 + C δ (Δ − 1),   Δ = (1 − K)/(1 − E_b K)
+    /// Δ' = 1 + C δ (Δ − 1),   Δ = (1 − K)/(1 − E_b K),   K = (1 − ρ) F̄(n_c) + ρ (1 − (1 − F̄(n_c))/n_c²)
+    /// ρ = 1 + ((1 − m) F̄(η) + m) (r' − 1) between 1 and r',   E_b = m ξ F̄_82 + (1 − m)(w_b C_b + (1 − w_b C_b) F̄(η))
+    /// n_a = 1 + C (n_c − 1),   n_b = n_a (1 + ε)/(1 − ε),   ε² = ξ ((n_s − n_a)/(n_s + n_a))²,   η = n_b/n_a
+    /// r_c' = mix(r_c, (r_c⁴ + 0.005 mean(C_f) r_f⁵)^¼, F_z),   r' = mix(r, (r⁴ + (1 − 1/n_c) r_c'⁴)^¼, C)
     /// f_fuzz = E_f(V) a²/(π |(a x + b z, a y, z)|⁴),   L = (x, y, z) with V in the plane y = 0
     /// ```
     ///
     /// `f_d` and `f_coat` are D F G/(4 (N·L)(N·V)) with GGX, Smith's separable masking and the exact F of a dielectric; E_1,
     /// E_d and E_c are the albedos of such lobes with F = 1, with F of the base and of the coat, calculated for each
-    /// material. α = r², along the tangent α √(2/(1 + (1 − a)²)), across it (1 − a) times that.
+    /// material, and F̄ are means over the hemisphere. Under a denser coat, η is inverted: light that the coat refracts meets
+    /// the base at no angle of total reflection. A film replaces F_d and F_82 by its reflectance (`optics::film`) in the
+    /// share w_t, and fades below 30 nm; under it, n and k of metal follow from w_b C_b and the edge tint C_s. α = r'², along the tangent α √(2/(1 + (1 − a)²)), across it (1 − a) times that.
     ///
     /// | parameter | symbol | unit | range | default |
     /// |---|---|---|---|---|
@@ -149,21 +154,25 @@ parameters! {
     /// | `thin_film_ior` | n_t | – | 0.1–6 | 1.4 |
     ///
     /// Sources: Z. Andersson and others (2026), *OpenPBR Surface specification 1.1.1*, Academy Software Foundation; where
-    /// the text leaves a choice, that of Adobe's program *openpbr-bsdf* (2026). P. Kutz, M. Hašan, D. Edmondson (2021),
+    /// the text leaves a choice, and where it differs, Adobe's program *openpbr-bsdf* (2026). P. Kutz, M. Hašan, D. Edmondson (2021),
     /// *Novel Aspects of the Adobe Standard Material* (F_82); J. Portsmouth, P. Kutz, S. Hill (2024), *EON*; T. Zeltner,
     /// B. Burley, M. Chiang (2022), *Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines* (fuzz, with
     /// the authors' table); C. Kulla, A. Conty (2017), *Revisiting Physically Based Shading at Imageworks*; C. Kelemen,
     /// L. Szirmay-Kalos (2001) (body and boundary); O. Gulbrandsen (2014), *Artist Friendly Metallic Fresnel* (film over
     /// metal); E. d'Eon (2021), *A Hitchhiker's Guide to Multiple Scattering* (Δ).
     ///
-    /// **Deviations** from Adobe's program: the strength of metal is bounded, `min(1, ξ F)`, so ξ above 1 does not reflect
-    /// more than everything; albedos and mean reflectances are integrated, where it reads tables and fits (up to 0.6 % of
-    /// coats); α is at least 0.001, where a smooth coat has 10⁻⁶ there. From the specification's text: the body and its
-    /// boundary are coupled in both directions (16 % of the body), masking is separable (3 % at r = 0.3, 68 % for rough
-    /// metal at 85°), the film is evaluated at three wavelengths (0.03 over glass, 0.1 over copper).
+    /// **Deviations** from Adobe's program: the strength of metal is bounded, `min(1, ξ F)` (above ξ = 1, up to the factor
+    /// ξ); albedos and mean reflectances are integrated, where it reads tables and fits (up to 0.6 % of the reference values
+    /// under a coat, up to 0.19 of an albedo near an index of 1 at grazing angles); α is at least 0.001, where it is 10⁻⁶
+    /// there. From the text, as Adobe's program: roughening by the coat (82 % at r_c = 0.6), masking (68 % for rough metal at
+    /// 85°, 3 % at r = 0.3), multiple scattering of metal (25 % at r = 1), films below 30 nm (22 %), absorption by a partial
+    /// coat (18 %), darkening (17 %), coupling of body and boundary (16 %), weights within EON (11 %), the index of the base
+    /// under a partial coat (10 %), three wavelengths in films (0.03 over glass, 0.1 over copper), and fuzz that lifts the
+    /// roughness of the coat.
     ///
     /// **Laws**: non-negative. Not reciprocal under a coat or fuzz, whose albedo is that for the viewer alone. Energy is not
-    /// conserved: the albedo E_d of the boundary ignores a film, which may reflect far more.
+    /// conserved: the albedo E_d of the boundary ignores a film, which may reflect far more (1.3 times what arrives), E_1
+    /// ignores anisotropy (1.05), and the coupling of a rough body gains (1.004).
     pub struct OpenPbr {
         /// `w_b`.
         base_weight: number = BASE_WEIGHT,
@@ -455,7 +464,7 @@ impl ReflectionModel for OpenPbr {
             EquationPart { term: Term::Diffuse, text: "I_d = π Z W f_b (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + W f_g)) (N·L)" },
             EquationPart { term: Term::Specular, text: "f_g = D G F / (4 (N·L)(N·V)) + f_m" },
-            EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m ξ F_{82}" },
+            EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m min(1, ξ F_{82})" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
@@ -566,14 +575,23 @@ impl ReflectionModel for OpenPbr {
 
     /// A metal by its reflectances at normal incidence and at 82°, a dielectric by its refractive index.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
-        if material.metal {
+        let mut values = if material.metal {
             let tint = material.f82 / schlick(material.f0, 1.0 / 7.0);
-            let mut values = preset::base_colour_metallic(material);
-            values.push((BASE_WEIGHT.name, Value::Number(1.0)));
-            values.push((SPECULAR_COLOUR.name, preset::colour(tint)));
-            values
+            let mut metal = preset::base_colour_metallic(material);
+            metal.push((BASE_WEIGHT.name, Value::Number(1.0)));
+            metal.push((SPECULAR_COLOUR.name, preset::colour(tint)));
+            metal
         } else {
-            vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR_IOR.name, Value::Number(material.n[1]))]
-        }
+            vec![
+                (METALLIC.name, Value::Number(0.0)),
+                (SPECULAR_COLOUR.name, Value::Colour([255; 3])),
+                (SPECULAR_IOR.name, Value::Number(material.n[1])),
+            ]
+        };
+        // What was measured is bare; layers of another material would change it.
+        values.push((SPECULAR_STRENGTH.name, Value::Number(1.0)));
+        let layers = [COAT_WEIGHT, FUZZ_WEIGHT, THIN_FILM_WEIGHT];
+        values.extend(layers.map(|layer| (layer.name, Value::Number(0.0))));
+        values
     }
 }

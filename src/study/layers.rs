@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     curves::draw::{Axis, Line, Mark, Plot, Series},
-    optics::{Frame, albedo, geometry::direction},
+    optics::{Frame, albedo, colour::luminance, geometry::direction},
     parameter::Value,
     reference::encode8,
     reflection::{Factor, Surface, preset},
@@ -115,14 +115,15 @@ struct Film {
 fn films() -> [Film; 2] {
     let film = |n: f64| [number("thin_film_weight", 1.0), number("thin_film_ior", n)];
     let black = colour("base_colour", [0; 3]);
-    let titanium = colour("base_colour", [193, 186, 177]);
+    // Its n and k by these two: 2.70 + 3.82i, 2.48 + 3.39i, 2.31 + 3.04i.
+    let titanium = [
+        colour("base_colour", [206, 200, 194]),
+        colour("specular_colour", [217, 216, 215]),
+        number("metallic", 1.0),
+    ];
     [
         Film { name: "soap film on black glass", settings: with(&film(1.33), &[black]), factor: BRIGHTER },
-        Film {
-            name: "oxide on titanium",
-            settings: with(&film(2.3), &[titanium, number("metallic", 1.0)]),
-            factor: 1.0,
-        },
+        Film { name: "oxide on titanium", settings: with(&film(2.3), &titanium), factor: 1.0 },
     ]
 }
 
@@ -224,7 +225,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             }
             p {
                 @if worst.1 > 1.01 {
-                    "The sum is not always at most 1: “" (worst.0) "” sends back up to " (fixed(worst.1, 2)) ". The model subtracts from its body the albedo of the boundary without a film; its declaration therefore does not claim that energy is conserved."
+                    "The sum is not always at most 1: “" (worst.0) "” sends back up to " (fixed(worst.1, 2)) ". The model subtracts from its body the albedo of a boundary without a film, returns to metal what an isotropic lobe would lose, and couples body and boundary in a way that gains a little where the body is rough; its declaration therefore does not claim that energy is conserved."
                 } @else {
                     "No material of the table sends back more than arrives."
                 }
@@ -306,7 +307,7 @@ fn coated_metal(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, (f64, f
         &["Surface", "0°", "saturation", "80°", "saturation"],
         &rows,
     );
-    let loss = f64::from(1.0 - normal[2].y / normal[0].y);
+    let loss = f64::from(1.0 - luminance(normal[2]) / luminance(normal[0]));
     let richer = saturation(normal[2]) - saturation(normal[1]);
     Ok((html! { (figure) (table) }, raw, (loss, richer)))
 }

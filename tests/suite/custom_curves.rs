@@ -146,11 +146,19 @@ fn mistakes_in_curves_are_told_with_what_would_be_right() {
         ),
         (
             one("\"coat\": { \"model\": \"microfacet\", \"alpha_x\": \"base_colour\" }"),
-            "but alpha_x must be between 0.001 and 1, or one of the model's parameters \"mine\"",
+            "curves: \"coat\": alpha_x is \"base_colour\", but it must be between 0.001 and 1, or one of the model's parameters \"mine\"",
         ),
         (
             one("\"coat\": { \"model\": \"microfacet\", \"alpha_x\": 7 }"),
-            "is 7, but alpha_x must be between 0.001 and 1, or one of the model's parameters \"mine\"",
+            "alpha_x is 7, but it must be between 0.001 and 1, or one of the model's parameters \"mine\"",
+        ),
+        (
+            one("\"coat\": { \"model\": \"microfacet\", \"alpha_x\": 0.1, \"alpha_x\": 0.2 }"),
+            "curves: \"coat\": alpha_x is given twice",
+        ),
+        (
+            one("\"coat\": { \"model\": \"microfacet\", \"model\": \"lambert\" }"),
+            "curves: \"coat\": model is given twice",
         ),
         (
             format!("\"lobe\": \"openpbr\", {}", one("\"fuzz\": { \"model\": \"lambert\" }")),

@@ -50,7 +50,7 @@ pub(super) fn measured(
         }
     };
     let words = chooser::Words {
-        label: "Search measured materials",
+        label: "Search materials",
         hint: "Search materials",
         none: "No material has that in its name or source.",
         foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
