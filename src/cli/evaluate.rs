@@ -37,6 +37,14 @@ pub(super) struct Arguments {
     pub on: Machine,
 }
 
+#[cfg(target_os = "linux")]
+impl Arguments {
+    /// True if the command loads a graphics driver.
+    pub(super) fn loads_driver(&self) -> bool {
+        matches!(self.on, Machine::Gpu)
+    }
+}
+
 /// Parameters of a model on the command line.
 #[derive(Args, Debug)]
 pub(super) struct Settings {

@@ -69,10 +69,15 @@ struct Cli {
 
 #[cfg(target_os = "linux")]
 impl Cli {
-    /// True for commands that may ask for a GPU or a window.
-    fn may_draw(&self) -> bool {
-        use Command::{Albedo, Evaluate, Models, Render, View};
-        matches!(self.command, None | Some(View(_) | Render(_) | Evaluate(_) | Albedo(_) | Models(_)))
+    /// True if the command loads a graphics driver.
+    fn loads_driver(&self) -> bool {
+        match &self.command {
+            None | Some(Command::View(_)) => true,
+            Some(Command::Render(arguments)) => arguments.loads_driver(),
+            Some(Command::Evaluate(arguments) | Command::Albedo(arguments)) => arguments.loads_driver(),
+            Some(Command::Models(arguments)) => arguments.loads_driver(),
+            Some(_) => false,
+        }
     }
 }
 
@@ -260,7 +265,7 @@ pub fn run_with(
         Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
     }
     #[cfg(target_os = "linux")]
-    if cli.may_draw() {
+    if cli.loads_driver() {
         runtime_folder::provide();
     }
     if cli.options.allow_outside {

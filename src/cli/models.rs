@@ -47,6 +47,14 @@ enum Command {
     },
 }
 
+#[cfg(target_os = "linux")]
+impl Arguments {
+    /// True if the command loads a graphics driver.
+    pub(super) fn loads_driver(&self) -> bool {
+        matches!(self.command, Some(Command::Check { .. }))
+    }
+}
+
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known: Registry) -> Outcome {
     match arguments.command {
         Some(Command::New { name }) => custom::new(&name, options, places, &known),

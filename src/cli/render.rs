@@ -107,6 +107,18 @@ pub(super) struct Arguments {
     no_scene: bool,
 }
 
+#[cfg(target_os = "linux")]
+impl Arguments {
+    /// True if the command loads a graphics driver: to draw with it, or to learn what it drives.
+    pub(super) fn loads_driver(&self) -> bool {
+        match self.renderer {
+            Renderer::Auto => may_have_hardware(),
+            Renderer::Gpu => true,
+            Renderer::Cpu => false,
+        }
+    }
+}
+
 /// The choice of renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Renderer {
@@ -260,6 +272,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer, options.trial_program())?;
+    // A model that only a GPU can draw needs a driver after all. A scene from standard input cannot be read twice.
+    #[cfg(target_os = "linux")]
+    if !sources.contains(&Source::Stdin) && plans.iter().any(|plan| painter.takes_gpu(plan, registry)) {
+        super::runtime_folder::provide();
+    }
     let by_cpu = plans.iter().filter(|plan| !painter.takes_gpu(plan, registry));
     let passed: BTreeSet<_> = by_cpu
         .flat_map(|plan| &plan.parts)

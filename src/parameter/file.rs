@@ -6,7 +6,7 @@ use std::{
     fmt,
     path::{Path, PathBuf},
     sync::{
-        Arc, LazyLock, Mutex, PoisonError, RwLock, Weak,
+        Arc, LazyLock, Mutex, Once, PoisonError, RwLock, RwLockReadGuard, Weak,
         atomic::{AtomicU64, Ordering},
     },
 };
@@ -69,6 +69,8 @@ struct Content {
     /// The folder of the scenes that name it, which it must not be outside of.
     folder: PathBuf,
     format: &'static FileFormat,
+    /// The first reading. That of a shipped file waits until its numbers are needed, which most commands never do.
+    begun: Once,
     state: RwLock<State>,
 }
 
@@ -193,13 +195,13 @@ impl NamedFile {
     /// The numbers of the last version that was legal, if there was one.
     #[must_use]
     pub fn numbers(&self) -> Option<Arc<[f32]>> {
-        self.content.state.read().unwrap_or_else(PoisonError::into_inner).numbers.clone()
+        self.content.state().numbers.clone()
     }
 
     /// The mistake in the present version: file, line, mistake.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
-        self.content.state.read().unwrap_or_else(PoisonError::into_inner).problem.clone()
+        self.content.state().problem.clone()
     }
 
     /// True if it is outside a folder: a scene there can read it only if that is allowed.
@@ -212,7 +214,7 @@ impl NamedFile {
     /// The version of the numbers: another one for other numbers, also of other files.
     #[must_use]
     pub fn version(&self) -> u64 {
-        self.content.state.read().unwrap_or_else(PoisonError::into_inner).version
+        self.content.state().version
     }
 
     /// Something that all that share the content have in common, and nobody else.
@@ -240,9 +242,19 @@ impl Content {
         folder: PathBuf,
         format: &'static FileFormat,
     ) -> Arc<Self> {
-        let content = Self { source, folder, format, state: RwLock::default() };
-        content.read();
+        let content = Self { source, folder, format, begun: Once::new(), state: RwLock::default() };
+        if content.path().is_some() {
+            drop(content.state());
+        }
         Arc::new(content)
+    }
+
+    /// The state once the file was read.
+    fn state(&self) -> RwLockReadGuard<'_, State> {
+        self.begun.call_once(|| {
+            self.read();
+        });
+        self.state.read().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The bytes of the file, if it may be read.
@@ -265,7 +277,7 @@ impl Content {
 
     /// True if the file is the one that was read last.
     fn is_as_read(&self) -> bool {
-        let known = self.state.read().unwrap_or_else(PoisonError::into_inner).stamp;
+        let known = self.state().stamp;
         known.is_some() && known == self.path().and_then(files::Stamp::settled)
     }
 
@@ -339,5 +351,31 @@ pub struct Table {
 impl PartialEq for Table {
     fn eq(&self, other: &Self) -> bool {
         self.file == other.file && self.numbers == other.numbers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicUsize;
+
+    #[test]
+    fn a_shipped_file_is_read_once_when_its_numbers_are_needed() {
+        static READ: AtomicUsize = AtomicUsize::new(0);
+        static FORMAT: FileFormat = FileFormat {
+            name: "a counted file",
+            extensions: &["counted"],
+            max_bytes: 8,
+            read: |bytes| {
+                READ.fetch_add(1, Ordering::Relaxed);
+                Ok(bytes.iter().map(|&byte| f32::from(byte)).collect())
+            },
+            shipped: &[("one", &[1, 2])],
+        };
+        let file = NamedFile::shipped("one", &FORMAT);
+        assert_eq!(READ.load(Ordering::Relaxed), 0);
+        let version = file.version();
+        assert_eq!(file.numbers().as_deref(), Some(&[1.0, 2.0][..]));
+        assert_eq!((READ.load(Ordering::Relaxed), file.version(), file.problem()), (1, version, None));
     }
 }

@@ -455,6 +455,9 @@ impl Register for Registry {
         let check = || -> Result<(), Mistake> {
             check::light_type(self, &entry)?;
             place(self.light(d.id).is_some(), d.id, admission, PART)?;
+            if admission != Admission::BuiltIn {
+                check::shipped_files(entry.parameters)?;
+            }
             if Self::wants_wgsl(admission) {
                 check::wgsl::light(&Sources::default(), &entry)?;
             }
@@ -475,6 +478,7 @@ impl Register for Registry {
             check::object_type(self, &entry)?;
             place(self.shape(d.id).is_some(), d.id, admission, PART)?;
             if admission != Admission::BuiltIn {
+                check::shipped_files(entry.parameters)?;
                 check::meshes(&entry)?;
             }
             Ok(())
@@ -500,6 +504,16 @@ mod tests {
         let each = start.elapsed() / RUNS;
         // Without optimisation; the finest teapot alone takes longer, and so does naga for any model.
         assert!(each < std::time::Duration::from_millis(10), "{each:?}");
+    }
+
+    #[test]
+    fn the_files_that_ship_can_be_read() {
+        let registry = Registry::builtin();
+        let lights = registry.lights().iter().map(|light| light.parameters);
+        let shapes = registry.shapes().iter().map(|shape| shape.parameters);
+        for parameters in lights.chain(shapes) {
+            assert_eq!(check::shipped_files(parameters), Ok(()));
+        }
     }
 
     #[test]

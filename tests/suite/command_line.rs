@@ -292,3 +292,35 @@ fn nothing_is_printed_about_a_runtime_folder_that_is_not_set() {
         assert!(run.status == Some(0) && !run.err.contains("XDG_RUNTIME_DIR"), "{value:?}: {}", run.err);
     }
 }
+
+/// Counts the starts of the program, and the addresses that the dynamic linker adjusts in one of them, which is what a
+/// start takes before `main`.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn starts(arguments: &[&str]) -> (usize, Vec<usize>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = command_in(folder.path(), arguments.iter().copied());
+    command.env_remove("XDG_RUNTIME_DIR").env("LD_DEBUG", "statistics").env("LD_DEBUG_OUTPUT", "starts");
+    let run = Run::from(command.output().expect("the program starts"));
+    assert_eq!(run.status, Some(0), "{arguments:?}: {}", run.err);
+    let reports: String = std::fs::read_dir(folder.path())
+        .expect("readable")
+        .filter_map(|file| Some(file.ok()?.path()))
+        .filter(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("starts.")))
+        .map(|file| std::fs::read_to_string(file).expect("text"))
+        .collect();
+    let relative = reports.lines().filter_map(|line| line.split_once("number of relative relocations:"));
+    let relative = relative.filter_map(|(_, count)| count.trim().parse().ok()).collect();
+    (reports.matches("total startup time").count(), relative)
+}
+
+/// Only a driver needs the variable, so nothing else pays for a second start.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[test]
+fn the_program_starts_again_only_where_a_driver_is_loaded() {
+    let cpu = ["render", "--renderer", "cpu", "--size", "16x16", "-o", "x.png"];
+    for arguments in [&["--version"][..], &["models"], &["schema"], &["new", "x.json"], &cpu] {
+        assert_eq!(starts(arguments).0, 1, "{arguments:?}");
+    }
+    let gpu = ["render", "--renderer", "gpu", "--size", "16x16", "-o", "x.png"];
+    assert_eq!(starts(&gpu).0, 2);
+}

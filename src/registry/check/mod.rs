@@ -115,8 +115,20 @@ fn kind(p: &Parameter) -> Check {
             })?;
         }
     }
+    // The numbers of a file are checked by `shipped_files`, since reading takes time.
+    let file = matches!(p.kind, ParameterKind::File { .. });
     let default = p.default_value();
-    ensure(p.allows(&default), || format!("its default is {default}, but must be {}", p.rule()))
+    ensure(file || p.allows(&default), || format!("its default is {default}, but must be {}", p.rule()))
+}
+
+/// Checks that the files that are defaults of parameters can be read.
+pub(super) fn shipped_files(all: &[Parameter]) -> Check {
+    all.iter().filter(|p| matches!(p.kind, ParameterKind::File { .. })).try_for_each(|p| {
+        let default = p.default_value();
+        ensure(p.allows(&default), || {
+            format!("parameter `{}`: its default is {default}, but must be {}", p.name, p.rule())
+        })
+    })
 }
 
 /// Checks the path of a shader: it names one text.
