@@ -1,86 +1,155 @@
 //! Meshes for the renderer, shared by all objects of one type with equal parameters and tessellations.
 
-use std::{
-    collections::{HashMap, HashSet},
-    iter,
-};
+use std::collections::{HashMap, HashSet};
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
     ecs::prelude::*,
-    mesh::{Indices, Mesh, PrimitiveTopology},
+    mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology},
 };
 
 use rayon::prelude::*;
 
-use super::{
-    material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
-    overrides::Overrides,
-    shown::ShownObject,
-};
+use super::material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT};
 use crate::{
     registry::Registry,
     scene::Object,
     shape::{MeshKey, PolygonMesh},
+    text::plural,
 };
 
-/// The meshes by object type, parameters and tessellation: with shared vertices for shading models that interpolate, with
-/// the vertices of each polygon apart for shading models that calculate per polygon. Both are made together, so
-/// that changing the shading model finds its mesh ready.
+/// The most that meshes may take on the GPU, bytes. On the way there they are held up to three times.
+pub const MESH_BUDGET: u64 = 1 << 30;
+/// The meshes without objects that stay for a change back: at most so many, and so many bytes.
+const SPARE: usize = 16;
+const SPARE_BYTES: u64 = 64 << 20;
+/// The meshes that are made at once. Together they may go beyond the budget, before they are counted.
+const AT_ONCE: usize = 16;
+
+/// The vertices of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Vertices {
+    /// Shared by polygons, for shading models that interpolate.
+    Shared,
+    /// Apart, for shading models that calculate per polygon.
+    Apart,
+}
+
+/// The meshes by object type, parameters and tessellation. Meshes are large, so each is made only in the form that its
+/// shading model needs, and once the GPU has it, it is nowhere else.
 #[derive(Default, Resource)]
 pub struct ShapeMeshes {
-    known: HashMap<MeshKey, MeshPair>,
+    known: HashMap<(MeshKey, Vertices), Known>,
+    /// The bytes of all.
+    bytes: u64,
+    /// Those for which there was no room, and the objects that are not drawn for want of them.
+    refused: HashSet<(MeshKey, Vertices)>,
+    left_out: Vec<Entity>,
+    /// True if there is more room than when they were refused.
+    room: bool,
     /// True if meshes were added since unused ones were last dropped.
     grown: bool,
 }
 
-#[derive(Clone)]
-pub(super) struct MeshPair {
-    pub(super) shared: Handle<Mesh>,
-    pub(super) faces: Handle<Mesh>,
+struct Known {
+    mesh: Handle<Mesh>,
+    bytes: u64,
 }
 
 impl ShapeMeshes {
-    /// Makes the meshes of objects that are not yet known.
+    /// Makes the meshes of objects that are not yet known, as long as there is room.
     pub(super) fn make<'a>(
         &mut self,
-        objects: impl Iterator<Item = &'a Object>,
+        objects: impl Iterator<Item = (&'a Object, Vertices)>,
         registry: &Registry,
         assets: &mut Assets<Mesh>,
     ) {
-        let mut missing = HashMap::new();
-        for object in objects {
-            if let Some(shape) = registry.shape(&object.object_type) {
-                let key = shape.key(&object.shape, object.tessellation);
-                if !self.known.contains_key(&key) {
-                    missing.entry(key).or_insert((shape, object));
+        let mut seen = HashSet::new();
+        let mut missing = Vec::new();
+        for (object, vertices) in objects {
+            let Some(shape) = registry.shape(&object.object_type) else { continue };
+            let key = (shape.key(&object.shape, object.tessellation), vertices);
+            if !self.known.contains_key(&key) && !self.refused.contains(&key) && seen.insert(key.clone()) {
+                missing.push((key, shape, object));
+            }
+        }
+        self.grown |= !missing.is_empty();
+        let mut missing = missing.into_iter();
+        while !missing.as_slice().is_empty() {
+            if !self.refused.is_empty() {
+                self.refused.extend(missing.by_ref().map(|(key, ..)| key));
+                return;
+            }
+            let made: Vec<_> = missing.by_ref().take(AT_ONCE).collect();
+            let made: Vec<_> = made
+                .into_par_iter()
+                .map(|(key, shape, object)| {
+                    let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+                    let mesh = match key.1 {
+                        Vertices::Shared => shared_mesh(&mesh),
+                        Vertices::Apart => face_mesh(&mesh),
+                    };
+                    (key, mesh)
+                })
+                .collect();
+            for (key, mesh) in made {
+                let bytes = size(&mesh);
+                if self.bytes + bytes > MESH_BUDGET {
+                    self.refused.insert(key);
+                } else {
+                    self.bytes += bytes;
+                    self.known.insert(key, Known { mesh: assets.add(mesh), bytes });
                 }
             }
         }
-        let made: Vec<_> = missing
-            .into_par_iter()
-            .map(|(key, (shape, object))| {
-                let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
-                (key, shared_mesh(&mesh), face_mesh(&mesh))
-            })
-            .collect();
-        self.grown |= !made.is_empty();
-        for (key, shared, faces) in made {
-            self.known.insert(key, MeshPair { shared: assets.add(shared), faces: assets.add(faces) });
-        }
     }
 
-    /// The meshes of an object, if they were made.
-    pub(super) fn get(&self, key: &MeshKey) -> Option<MeshPair> {
-        self.known.get(key).cloned()
+    /// The mesh of an object, if it was made.
+    pub(super) fn get(&self, key: MeshKey, vertices: Vertices) -> Option<Handle<Mesh>> {
+        self.known.get(&(key, vertices)).map(|known| known.mesh.clone())
     }
+
+    /// Leaves an object out, for which there is no mesh.
+    pub(super) fn leave_out(&mut self, object: Entity) {
+        self.left_out.push(object);
+    }
+
+    /// The objects that were left out, to be tried again if the scene is another one or others made room.
+    pub(super) fn try_again(&mut self, scene_changed: bool) -> Vec<Entity> {
+        if !scene_changed && !self.room {
+            return Vec::new();
+        }
+        self.room = false;
+        self.refused.clear();
+        std::mem::take(&mut self.left_out)
+    }
+
+    /// The reason why objects are missing in the picture, if any are.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        let count = self.refused.len();
+        (count > 0).then(|| {
+            format!(
+                "the shapes of this scene need more than the {} MiB of GPU memory that meshes may take: {} {} not drawn; \
+                 give objects a lower tessellation or shapes that they share",
+                MESH_BUDGET >> 20,
+                plural(count, "shape"),
+                if count == 1 { "is" } else { "are" },
+            )
+        })
+    }
+}
+
+/// The bytes of a mesh on the GPU.
+fn size(mesh: &Mesh) -> u64 {
+    (mesh.get_vertex_buffer_size() + mesh.get_index_buffer_bytes().map_or(0, <[u8]>::len)) as u64
 }
 
 /// The mesh for shading models that interpolate over shared vertices.
 #[must_use]
 pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
     let indices = mesh.triangles().flat_map(|(_, corners)| corners).collect();
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
         .with_inserted_attribute(TANGENT, arrays(&mesh.vertex_tangents()))
@@ -111,7 +180,7 @@ pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
         }
         indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
     }
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
         .with_inserted_attribute(TANGENT, arrays(&tangents))
@@ -125,29 +194,79 @@ fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.to_array()).collect()
 }
 
-/// Drops meshes that no object uses: a slider over a parameter makes hundreds.
-pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
-    /// The most that stay for a change back.
-    const SPARE: usize = 16;
+/// Drops meshes that no object uses: a slider over a parameter makes hundreds. Some are kept for a change back, unless
+/// there is no room for others.
+pub(super) fn forget_unused_meshes(world: &mut World) {
     if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
         return;
     }
-    // Views may have another tessellation.
-    let mut views = world.query::<&Overrides>();
-    let counts: Vec<_> = views.iter(world).filter_map(|overrides| overrides.tessellation).collect();
-    let mut query = world.query::<&ShownObject>();
-    let used: HashSet<_> = query
-        .iter(world)
-        .filter_map(|object| {
-            let shape = registry.shape(&object.0.object_type)?;
-            let of_views = counts.iter().map(|count| Some(shape.tessellation(Some(*count))));
-            let counts = iter::once(object.0.tessellation).chain(of_views);
-            Some(counts.map(|count| shape.key(&object.0.shape, count)).collect::<Vec<_>>())
-        })
-        .flatten()
-        .collect();
+    let mut drawn = world.query::<&Mesh3d>();
+    let used: HashSet<_> = drawn.iter(world).map(|mesh| mesh.id()).collect();
     let mut meshes = world.resource_mut::<ShapeMeshes>();
-    if meshes.known.len() > used.len() + SPARE {
-        meshes.known.retain(|key, _| used.contains(key));
+    let spare = meshes.known.values().filter(|known| !used.contains(&known.mesh.id()));
+    let (count, bytes) = spare.fold((0, 0), |(count, bytes), known| (count + 1, bytes + known.bytes));
+    let full = !meshes.refused.is_empty();
+    if full || count > SPARE || bytes > SPARE_BYTES {
+        meshes.known.retain(|_, known| used.contains(&known.mesh.id()));
+        meshes.bytes -= bytes;
+    }
+    meshes.room = full && count > 0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Value;
+
+    /// Different shapes: no two share a mesh.
+    fn shapes(count: usize, tessellation: u32) -> Vec<Object> {
+        let shape = |i: usize| {
+            let mut object = Object { object_type: "superellipsoid".to_owned(), ..Object::default() };
+            object.tessellation = Some(tessellation);
+            object.shape.set("vertical_exponent", Value::Number(0.2 + 0.001 * i as f32));
+            object
+        };
+        (0..count).map(shape).collect()
+    }
+
+    #[test]
+    fn a_mesh_is_made_in_the_form_that_is_drawn() {
+        let registry = Registry::builtin();
+        let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
+        let shapes = shapes(3, 8);
+        for (vertices, expected) in [(Vertices::Shared, 3), (Vertices::Shared, 3), (Vertices::Apart, 6)] {
+            meshes.make(shapes.iter().map(|shape| (shape, vertices)), &registry, &mut assets);
+            assert_eq!((assets.len(), meshes.known.len()), (expected, expected));
+        }
+        let sizes: u64 = assets.iter().map(|(_, mesh)| size(mesh)).sum();
+        assert!(meshes.bytes == sizes && sizes > 0, "{} are not {sizes}", meshes.bytes);
+        assert!(assets.iter().all(|(_, mesh)| mesh.asset_usage == RenderAssetUsages::RENDER_WORLD));
+    }
+
+    #[test]
+    fn meshes_beyond_the_budget_are_refused_with_the_remedy_until_there_is_room() {
+        let registry = Registry::builtin();
+        let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
+        let shapes = shapes(3 * AT_ONCE, 8);
+        let all = || shapes.iter().map(|shape| (shape, Vertices::Shared));
+        meshes.make(all().take(1), &registry, &mut assets);
+        // As much is taken already as leaves room for three more.
+        let one = meshes.bytes;
+        meshes.bytes = MESH_BUDGET - 3 * one;
+        meshes.make(all(), &registry, &mut assets);
+        assert_eq!((meshes.known.len(), meshes.refused.len()), (4, 3 * AT_ONCE - 4));
+        assert!(meshes.bytes <= MESH_BUDGET);
+        let problem = meshes.problem().expect("there is no room");
+        assert!(problem.contains("1024 MiB") && problem.contains("44 shapes are not drawn"), "{problem}");
+        assert!(problem.contains("lower tessellation"), "{problem}");
+
+        let object = Entity::from_raw_u32(7).expect("an entity");
+        meshes.leave_out(object);
+        assert_eq!(meshes.try_again(false), [], "nothing has changed");
+        meshes.room = true;
+        meshes.bytes = 4 * one;
+        assert_eq!(meshes.try_again(false), [object]);
+        meshes.make(all(), &registry, &mut assets);
+        assert_eq!((meshes.problem(), meshes.known.len()), (None, shapes.len()));
     }
 }

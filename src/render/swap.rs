@@ -17,7 +17,7 @@ use super::{
     illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
-    meshes::{ShapeMeshes, forget_unused_meshes},
+    meshes::{ShapeMeshes, Vertices, forget_unused_meshes},
     overrides::Overrides,
     shown::{Shown, ShownObject},
     stage::{Stage, ViewCopy, copies},
@@ -99,6 +99,11 @@ pub fn swap(
         *last = Some(now);
         all |= hold_lights(world, &views);
     }
+    for object in world.resource_mut::<ShapeMeshes>().try_again(scene_changed) {
+        if let Some(mut object) = world.get_mut::<ShownObject>(object) {
+            object.set_changed();
+        }
+    }
     let Some(common) = &*last else { return };
     let changed: Vec<_> = changed.iter(world).collect();
     let mut pending = Vec::new();
@@ -133,7 +138,7 @@ pub fn swap(
         })
         .collect();
     world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {
-        let objects = pending.iter().map(|p| &p.shown);
+        let objects = pending.iter().map(|p| (&p.shown, vertices(&p.now.shading, &registry)));
         meshes.make(objects, &registry, &mut world.resource_mut::<Assets<Mesh>>());
     });
     for (pending, bytes) in pending.into_iter().zip(rows) {
@@ -141,7 +146,11 @@ pub fn swap(
             draw(world, &registry, pending, &bytes);
         }
     }
-    forget_unused_meshes(world, &registry);
+    // An object that waits for its shader will use a mesh that nothing is drawn with yet.
+    let mut waiting = world.query_filtered::<(), With<AwaitsShader>>();
+    if waiting.iter(world).next().is_none() {
+        forget_unused_meshes(world);
+    }
     world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.bypass_change_detection().upload(world.resource::<Assets<ShaderBuffer>>());
     });
@@ -250,6 +259,14 @@ fn find(
     world.resource_mut::<SceneEntities>().bypass_change_detection().visits += visits;
 }
 
+/// The vertices that a shading model needs.
+fn vertices(shading: &str, registry: &Registry) -> Vertices {
+    match registry.shading_model(shading) {
+        Some(model) if model.declaration.stage == shading::Stage::Polygon => Vertices::Apart,
+        _ => Vertices::Shared,
+    }
+}
+
 /// Gives an object its mesh and its material.
 fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) {
     let Pending { view, object, drawable, shown, now } = pending;
@@ -263,7 +280,12 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         return;
     };
     let key = shape.key(&shown.shape, shown.tessellation);
-    let Some(pair) = world.resource::<ShapeMeshes>().get(&key) else { return };
+    let vertices = vertices(&now.shading, registry);
+    let Some(mesh) = world.resource::<ShapeMeshes>().get(key, vertices) else {
+        world.entity_mut(drawable).remove::<Mesh3d>().insert_if_new(now);
+        world.resource_mut::<ShapeMeshes>().leave_out(object);
+        return;
+    };
     let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
         shaders.get(world, (model, shading, now.lights), registry)
     });
@@ -272,7 +294,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         return;
     };
     let Some(row) = row_of(world, object) else { return };
-    let faces = shading.declaration.stage == shading::Stage::Polygon;
+    let faces = vertices == Vertices::Apart;
     let parameters = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });
@@ -293,7 +315,6 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         (old.detach)(&mut entity);
     }
     (new.attach)(&mut entity, inputs);
-    let mesh = if faces { pair.faces } else { pair.shared };
     if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
         entity.insert(Mesh3d(mesh));
     }

@@ -39,10 +39,12 @@ use crate::{
         entities::{CurrentScene, SceneEntities},
         exchange::Changes,
         illumination::ShownTerms,
+        meshes::ShapeMeshes,
         schedule::{LabFrame, LabSystems},
         typed::know_types,
     },
     scene::load::{self, Defaults},
+    text::sentence,
 };
 
 /// The document: [`Session`], its files, and its way into the scene and back. What is registered with the app until it
@@ -105,6 +107,7 @@ impl Plugin for DocumentPlugin {
                     carry_out.in_set(Loading::Effects),
                     publish.in_set(Loading::Publish).run_if(resource_changed::<Session>),
                     take_over.in_set(LabSystems::Edit).after(absorb),
+                    report_missing_shapes.in_set(LabSystems::Upload),
                 ),
             );
     }
@@ -206,6 +209,22 @@ fn publish(
     terms.set_if_neq(ShownTerms(session.view.terms));
     let (by_view, light) = (session.view.channels, session.channel_light());
     channels.set_if_neq(ShownChannels { by_view, light });
+}
+
+/// Reports shapes for which there is no room on the GPU, once.
+fn report_missing_shapes(
+    meshes: Res<ShapeMeshes>,
+    mut session: ResMut<Session>,
+    mut reported: Local<Option<String>>,
+) {
+    let problem = meshes.problem();
+    if *reported == problem {
+        return;
+    }
+    if let Some(problem) = &problem {
+        session.say(Severity::Error, sentence(problem));
+    }
+    *reported = problem;
 }
 
 /// Submits changes of the entities to the document; those that it refuses go back.

@@ -326,3 +326,33 @@ fn sizes_that_no_picture_can_show_are_refused() {
         assert!(window.document == Scene::default(), "the window refuses it too");
     }
 }
+
+/// Shapes that no two objects share take as much memory as the budget allows, and the rest is named.
+#[test]
+fn a_scene_beyond_the_memory_for_meshes_is_refused_by_name_and_a_later_one_is_drawn() {
+    let scene = |count: u32, tessellation: u32| {
+        let mut scene = Scene::default();
+        let object = scene.objects[0].clone();
+        scene.objects = (0..count)
+            .map(|i| {
+                let mut object = object.clone();
+                object.object_type = "superellipsoid".to_owned();
+                object.size = 0.5;
+                object.tessellation = Some(tessellation);
+                object.shape.set("vertical_exponent", Value::Number(0.3 + 0.01 * i as f32));
+                object.shading_model = Some("flat".to_owned());
+                object
+            })
+            .collect();
+        scene
+    };
+    let mut renderer = GpuRenderer::new(64, 64, 1, Output::Display).expect("a driver");
+    // Each takes 40 MB with a colour per polygon.
+    renderer.set_scene(scene(40, 256));
+    let error = renderer.settle().expect_err("there is no room").to_string();
+    assert!(error.contains("not drawn") && error.contains("--renderer cpu"), "{error}");
+    renderer.set_scene(scene(3, 16));
+    renderer.settle().expect("there is room now");
+    let picture = renderer.read().expect("a picture");
+    assert!(middle(&picture) > 0);
+}

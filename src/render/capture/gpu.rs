@@ -46,6 +46,7 @@ use crate::{
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
+        meshes::ShapeMeshes,
         overrides::Overrides,
         plugin::ScenePlugin,
         schedule::run_on_one_thread,
@@ -82,6 +83,9 @@ pub enum GpuError {
     /// The GPU does not come to an end.
     #[error("the GPU did not finish within {0:?}; a loop in a shader may have no end")]
     Stuck(Duration),
+    /// There is no room for the meshes.
+    #[error("{0}, or use `--renderer cpu`, which needs less memory")]
+    Memory(String),
     /// The picture could not be copied from the GPU.
     #[error("the picture could not be copied from the GPU: {0}")]
     Copy(String),
@@ -339,6 +343,9 @@ impl GpuRenderer {
         // The first frame is drawn before the target is, hence two.
         while ready < 2 {
             self.step();
+            if let Some(why) = self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem) {
+                return Err(GpuError::Memory(why));
+            }
             ready = if self.is_waiting()? { 0 } else { ready + 1 };
             if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
                 // Another process has the processors for what it tries.
