@@ -248,7 +248,7 @@ fn readers() -> Vec<Reader> {
         },
         Reader {
             name: "head of a photometric file",
-            around: ["IESNA:LM-63-2002\n".into(), "\nTILT=NONE\n1 1000 1 1 1 1 2 0 0 0 1 1 1\n0\n0\n1\n".into()],
+            around: ["IESNA:LM-63-2002\n".into(), "\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n".into()],
             pairs: &[],
             phrases: &["[A] a\n", "TILT=INCLUDE\n", "1 "],
             read: |bytes| (ies::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
