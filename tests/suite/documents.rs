@@ -448,6 +448,7 @@ fn scene_limits() -> String {
         ),
         ("lists and objects within each other in JSON", load::MAX_DEPTH.to_string()),
         ("rows of a table", format!("{}, not counting remarks", Csv::MAX_ROWS)),
+        ("columns of a table", Csv::MAX_COLUMNS.to_string()),
         ("cells and remarks of a table", Csv::MAX_CELLS.to_string()),
         ("objects, lights", format!("{MAX_OBJECTS}, {MAX_LIGHTS}")),
         ("the file of a mesh", mib(mesh_file::FORMAT.max_bytes)),

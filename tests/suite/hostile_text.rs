@@ -29,7 +29,7 @@ use crate::support::root;
 const STACK: usize = 2 << 20;
 /// The time for one input. What is meant to take two seconds takes ten times as long without optimisation on a busy
 /// machine; a quadratic reader takes minutes, and an endless one for ever.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(60);
 /// The size of the inputs.
 const SIZE: usize = 1 << 20;
 

@@ -91,6 +91,12 @@ impl<'a> Grid<'a> {
         let end = loop {
             self.count(at)?;
             let (cell, after) = self.cell(at)?;
+            if cells.len() == Csv::MAX_COLUMNS {
+                return Err((
+                    at,
+                    format!("the row has more than {} columns, the most allowed", Csv::MAX_COLUMNS),
+                ));
+            }
             cells.push(cell);
             match bytes.get(after) {
                 Some(b) if *b == self.separator => at = after + 1,

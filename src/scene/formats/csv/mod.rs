@@ -40,6 +40,8 @@ impl Csv {
     /// The most rows that are no remarks: the heading, the scene, the observer, and all parts that a scene may have. A
     /// table with more is read no further, so it costs what the largest legal one does.
     pub const MAX_ROWS: usize = 3 + MAX_LIGHTS + MAX_OBJECTS;
+    /// The most cells of a row. There are some hundred columns with a meaning.
+    pub const MAX_COLUMNS: usize = 1 << 15;
     /// The most cells and remarks; a legal table with all columns has a third.
     pub const MAX_CELLS: usize = 4_000_000;
 }
