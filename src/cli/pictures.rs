@@ -1,6 +1,9 @@
 //! Pictures as inputs: PNG files.
 
-use std::{io::Cursor, path::Path};
+use std::{
+    io::{Cursor, ErrorKind},
+    path::Path,
+};
 
 use png::{ColorType, Decoder, Transformations};
 
@@ -25,7 +28,7 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     if !bytes.starts_with(files::PNG.begins) {
         return Err("this is not a PNG picture, though its name ends in .png".to_owned());
     }
-    let broken = |error: png::DecodingError| format!("the picture is damaged: {error}");
+    let broken = |error: png::DecodingError| format!("the picture is damaged: {}", damage(&error));
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
@@ -48,6 +51,21 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
         ColorType::Indexed => return Err("the picture has a palette that could not be applied".to_owned()),
     };
     Shown::of_codes(width, height, rgb8).map_err(|error| error.to_string())
+}
+
+/// The damage of a picture in words. Some of the decoder's are written for its authors.
+fn damage(error: &png::DecodingError) -> String {
+    let said = error.to_string();
+    match error {
+        png::DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            "it ends too early; copy it once more from where it came".to_owned()
+        }
+        _ if said.starts_with("CRC error") => {
+            "a checksum is wrong, so some of its bytes were changed; copy it once more from where it came"
+                .to_owned()
+        }
+        _ => said,
+    }
 }
 
 /// The pixels of a picture whose last channel, opacity, is full.

@@ -2,18 +2,21 @@
 //! raise.
 
 use std::{
-    io,
+    io::{self, IsTerminal as _},
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{Arc, mpsc},
+    thread,
+    time::Duration,
 };
 
 use super::{
-    Options, ask,
+    Options, ask, progress,
     workshop::{Workshop, files_inside},
 };
 use crate::{
     export::payload::{Payload, unpacking},
     failure::Failure,
+    parameter::files_read,
     scene::{
         Scene,
         error::LoadError,
@@ -99,7 +102,8 @@ impl Source {
             }
             Self::File(path) => {
                 let bytes = load::input_bytes(path, &workshop.registry)?;
-                workshop.load(&bytes, &path.display().to_string(), defaults)
+                let options = workshop.options;
+                watched(options, || workshop.load(&bytes, &path.display().to_string(), defaults))
             }
         }
     }
@@ -140,6 +144,36 @@ impl Source {
             None => message,
         }
     }
+}
+
+/// Shows how many files are read, while something reads many of them for long.
+fn watched<T>(options: Options, work: impl FnOnce() -> T) -> T {
+    const PATIENCE: Duration = Duration::from_millis(500);
+    const PAUSE: Duration = Duration::from_millis(50);
+    if options.quiet || !io::stderr().is_terminal() {
+        return work();
+    }
+    let [before, _] = files_read();
+    let (ends, ended) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            let goes_on = |time| ended.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
+            if !goes_on(PATIENCE) {
+                return;
+            }
+            let bar = progress((files_read()[1] - before) as u64, options);
+            bar.set_message("files");
+            while goes_on(PAUSE) {
+                let [done, all] = files_read();
+                bar.set_length((all - before) as u64);
+                bar.set_position((done - before) as u64);
+            }
+            bar.finish_and_clear();
+        });
+        let result = work();
+        drop(ends);
+        result
+    })
 }
 
 /// The answer of the flags, or of the user; `None` if there is nobody to ask, or the flags refuse.

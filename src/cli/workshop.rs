@@ -56,7 +56,7 @@ pub(super) struct Workshop {
     pub registry: Registry,
     /// The scene inside this program.
     pub inside: Option<Arc<Payload>>,
-    options: Options,
+    pub(super) options: Options,
     /// A window draws broken models as stand-ins, and reports them itself.
     for_window: bool,
     /// The ids whose files were read, or do not exist.

@@ -15,7 +15,7 @@ use crate::{
     text::{
         did_you_mean,
         json::{self, Ast, Cursor, Fields, Reader as _, STRICT},
-        listed, one_of,
+        listed, mathematics, one_of,
         path::Path,
         quoted, shortened,
     },
@@ -44,7 +44,7 @@ const OTHER_WORDS: &[(&str, &str)] =
     &[("title", "name"), ("description", "summary"), ("options", "choices"), ("params", "parameters")];
 /// The longest name of a model, symbol or label, characters.
 pub(super) const LONGEST_NAME: usize = 60;
-/// The most brackets of a declaration.
+/// The most brackets of a declaration, and so its deepest nesting.
 const MOST_BRACKETS: usize = 600;
 /// The longest declaration, bytes.
 const MOST_BYTES: usize = 64 << 10;
@@ -243,7 +243,7 @@ impl Reader<'_> {
         let Some(value) = fields.get("equation") else { return intern::equation(Vec::new()) };
         let mut parts = Vec::new();
         if value.text().is_some() {
-            let text = self.words(fields, "equation", LONGEST_TEXT);
+            let text = self.mathematics(fields, "equation");
             parts.extend(text.map(|text| EquationPart { term: Term::Total, text }));
         } else if let Some(list) = value.list() {
             for element in list {
@@ -252,7 +252,7 @@ impl Reader<'_> {
                     None => Some(Term::Total),
                     Some(term) => self.word(term, "a term", TERMS),
                 };
-                let text = self.words(&part, "text", LONGEST_TEXT);
+                let text = self.mathematics(&part, "text");
                 if part.get("text").is_none() {
                     self.lacking(&part, "text", "a part of an equation needs one");
                 }
@@ -264,6 +264,14 @@ impl Reader<'_> {
             self.wrong(value, rule);
         }
         intern::equation(parts)
+    }
+
+    /// A line of an equation.
+    fn mathematics(&mut self, fields: &Fields, key: &str) -> Option<&'static str> {
+        let text = self.words(fields, key, mathematics::LONGEST_LINE)?;
+        let Some((_, what)) = mathematics::beyond_limits(text) else { return Some(text) };
+        self.wrong(fields.get(key)?, &what);
+        None
     }
 
     fn laws(&mut self, fields: &Fields) -> Laws {

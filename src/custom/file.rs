@@ -7,7 +7,8 @@ use crate::{
     shader::check::ShaderProblem,
 };
 
-/// The largest file that is read, bytes.
+/// The largest file that is read, bytes. Its declaration and its WGSL have limits of their own, for length and depth:
+/// [`LIMITS`](crate::shader::limits::LIMITS).
 pub const MAX_BYTES: u64 = 1 << 20;
 
 /// The text of a file called `name` in messages, without a byte order mark.

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use super::{
-    AnswerChoice, Block, Condition, Control, Goal, Run, Step, Task, controls, markdown,
+    AnswerChoice, Block, Condition, Control, Goal, Run, Step, Task, controls,
+    limits::MAX_LINES,
+    markdown,
     problem::Problems,
     state, window,
-    words::{Piece, lines, pair},
+    words::{Line, Piece, lines, pair},
 };
 use crate::{
     registry::Registry,
-    text::{did_you_mean, listed, nearest, quoted},
+    text::{did_you_mean, listed, mathematics::beyond_limits, nearest, quoted},
 };
 
 /// The kinds of blocks.
@@ -72,8 +74,10 @@ pub(super) fn read(
     }
     match kind {
         "equation" => {
-            if let Some((inside, what)) = brackets(body.text) {
+            let lost = || brackets(body.text).map(|(at, what)| (at, what.to_owned()));
+            if let Some((inside, what)) = beyond_limits(body.text).or_else(lost) {
                 problems.at(body.at + inside, what);
+                return;
             }
             let lines: Vec<_> = lines(body.text, body.at).map(|line| line.text.trim_end()).collect();
             draft.step.blocks.push(Block::Equation(lines.join("\n").trim_matches('\n').to_owned()));
@@ -85,12 +89,12 @@ pub(super) fn read(
         }
         "view" => {
             let mut given = Vec::new();
-            for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
+            for line in settings(body, problems) {
                 window::setting(&line, &mut given, draft, problems);
             }
         }
         "point" => {
-            for line in lines(body.text, body.at).filter(|line| !line.text.trim().is_empty()) {
+            for line in settings(body, problems) {
                 let Some((key, value)) = pair(&line) else {
                     problems.at(
                         line.piece().at,
@@ -121,6 +125,17 @@ pub(super) fn read(
             };
         }
     }
+}
+
+/// The lines of a block that has one thing in each, as many as there may be.
+fn settings<'a>(body: Piece<'a>, problems: &mut Problems) -> Vec<Line<'a>> {
+    let all = lines(body.text, body.at).filter(|line| !line.text.trim().is_empty());
+    let mut lines: Vec<_> = all.take(MAX_LINES + 1).collect();
+    if let Some(line) = lines.get(MAX_LINES) {
+        problems.at(line.at, format!("a block has at most {MAX_LINES} lines"));
+        lines.truncate(MAX_LINES);
+    }
+    lines
 }
 
 /// The byte of a bracket of an equation without its other one, and a sentence. Intervals may mix ( and [.
@@ -157,6 +172,11 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
             marks.push((piece.at - body.at, length, right));
         }
     }
+    if marks.len() > MOST_ANSWERS {
+        problems
+            .at(at, format!("a question has at most {MOST_ANSWERS} answers; this one has {}", marks.len()));
+        return None;
+    }
     let end = marks.first().map_or(body.text.len(), |mark| mark.0);
     let asked = body.part(0, end).trimmed();
     if asked.text.is_empty() {
@@ -189,12 +209,6 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
             problems.at(
                 at,
                 "a question has two answers at least; begin each with [ ], and the right one with [x]",
-            );
-        }
-        _ if answers.len() > MOST_ANSWERS => {
-            problems.at(
-                at,
-                format!("a question has at most {MOST_ANSWERS} answers; this one has {}", answers.len()),
             );
         }
         0 => problems.at(at, "the question has no right answer; mark it with [x] instead of [ ]"),

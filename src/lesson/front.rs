@@ -1,6 +1,7 @@
 //! The front matter: the lines between two lines `---` at the top of a lesson.
 
 use super::{
+    limits::LONGEST_TITLE,
     problem::Problems,
     words::{Line, lines, pair},
 };
@@ -50,6 +51,9 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
         if line.text.trim().is_empty() {
             continue;
         }
+        if problems.are_enough() {
+            return front;
+        }
         if line.text.starts_with("##") {
             front.end = line.at;
             break;
@@ -76,6 +80,11 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
         given.push(known);
         if value.text.is_empty() {
             problems.at(value.at, format!("{known} is empty"));
+            continue;
+        }
+        if value.text.chars().nth(LONGEST_TITLE).is_some() {
+            problems
+                .at(value.at, format!("{known} has more than {LONGEST_TITLE} characters, the most allowed"));
             continue;
         }
         match known {

@@ -1,10 +1,17 @@
 //! From Markdown to steps: headings, paragraphs, lists and fenced blocks, all else is refused with its place.
 
-use std::path::Path;
+use std::{ops::Range, path::Path};
 
 use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
-use super::{Block, Run, RunStyle, Step, blocks, blocks::Draft, plain, problem::Problems, words::Piece};
+use super::{
+    Block, Run, RunStyle, Step, Task,
+    blocks::{self, Draft},
+    limits::{LONGEST_STEP, LONGEST_TITLE, MAX_PROBLEMS, MAX_STEPS},
+    plain,
+    problem::Problems,
+    words::Piece,
+};
 use crate::registry::Registry;
 
 /// Lists within lists are no deeper than this.
@@ -20,8 +27,8 @@ fn options() -> Options {
 struct Runs {
     runs: Vec<Run>,
     styles: Vec<RunStyle>,
-    /// The byte of the stray sign that was said last.
-    stray: Option<usize>,
+    /// The row of equal signs that was looked at last, and true if it was said to be stray.
+    row: (Range<usize>, bool),
 }
 
 impl Runs {
@@ -38,19 +45,24 @@ impl Runs {
     }
 
     /// Says a sign of emphasis that stands in a text as it is; once for a row of them.
-    fn check(
-        &mut self,
-        event: &Event,
-        whole: Piece,
-        range: &std::ops::Range<usize>,
-        problems: &mut Problems,
-    ) {
-        let Some((at, what)) = matches!(event, Event::Text(_)).then(|| stray(whole.text, range)).flatten()
-        else {
+    fn check(&mut self, event: &Event, whole: Piece, range: &Range<usize>, problems: &mut Problems) {
+        let Some(text) = whole.text.get(range.clone()).filter(|_| matches!(event, Event::Text(_))) else {
             return;
         };
-        if self.stray.replace(at).is_none_or(|last| last + 1 != at) {
-            problems.at(whole.at + at, what);
+        for (inside, sign) in text.match_indices(['*', '`']) {
+            let at = range.start + inside;
+            // A row may be as long as the text, and each of its signs an event of its own.
+            if self.row.0.contains(&at) {
+                continue;
+            }
+            self.row = row(whole.text, at, sign);
+            if self.row.1 {
+                let names =
+                    if sign == "*" { "emphasis is *word*, bold is **word**" } else { "code is `word`" };
+                let what = format!("this {sign} has no counterpart: {names}, and \\{sign} the sign itself");
+                problems.at(whole.at + at, what);
+                return;
+            }
         }
     }
 
@@ -95,23 +107,15 @@ fn refusal(event: &Event) -> &'static str {
     }
 }
 
-/// The byte of a sign of emphasis that stands in the text as it is, and a sentence. `2 * 3` is meant.
-fn stray(whole: &str, range: &std::ops::Range<usize>) -> Option<(usize, String)> {
-    let text = whole.get(range.clone())?;
+/// The row of equal signs of emphasis around a byte, and true if it has no meaning as it stands. `2 * 3` is meant.
+fn row(whole: &str, at: usize, sign: &str) -> (Range<usize>, bool) {
     let word = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
     let space = |c: Option<char>| c.is_none_or(char::is_whitespace);
-    let (inside, sign) = text.char_indices().find(|(i, sign)| {
-        let at = range.start + i;
-        let before = whole[..at].trim_end_matches(*sign).chars().next_back();
-        let after = whole[at..].trim_start_matches(*sign).chars().next();
-        let is_meant = before == Some('\\') || word(before) && word(after) || space(before) && space(after);
-        matches!(sign, '*' | '`') && !is_meant
-    })?;
-    let names = if sign == '*' { "emphasis is *word*, bold is **word**" } else { "code is `word`" };
-    Some((
-        range.start + inside,
-        format!("this {sign} has no counterpart: {names}, and \\{sign} the sign itself"),
-    ))
+    let (start, end) =
+        (whole[..at].trim_end_matches(sign).len(), whole.len() - whole[at..].trim_start_matches(sign).len());
+    let (before, after) = (whole[..start].chars().next_back(), whole[end..].chars().next());
+    let is_meant = before == Some('\\') || word(before) && word(after) || space(before) && space(after);
+    (start..end, !is_meant)
 }
 
 /// Reads a text that is one paragraph: a question, an answer, a hint.
@@ -183,16 +187,25 @@ pub(super) fn steps(
     };
     let parser = Parser::new_ext(&whole[from..], options());
     // They are shown nowhere, not even as events.
-    let definitions: Vec<_> = parser.reference_definitions().iter().map(|(_, d)| d.span.start).collect();
+    let definitions = parser.reference_definitions().iter().map(|(_, d)| d.span.start);
+    let definitions: Vec<_> = definitions.take(MAX_PROBLEMS).collect();
     for start in definitions {
         reader.problems.at(from + start, refusal(&Event::FootnoteReference("".into())));
     }
     let mut skipped = 0usize;
     for (event, range) in parser.into_offset_iter() {
+        if reader.problems.are_enough() {
+            return reader.steps;
+        }
         match &event {
             Event::Start(_) if skipped > 0 => skipped += 1,
             Event::End(_) if skipped > 0 => skipped -= 1,
             _ if skipped > 0 => {}
+            Event::Start(Tag::Heading { .. }) if reader.steps.len() == MAX_STEPS => {
+                let what = format!("a lesson has at most {MAX_STEPS} steps; make two lessons of this one");
+                reader.problems.at(from + range.start, what);
+                return reader.steps;
+            }
             _ => {
                 let refused = reader.event(&event, from + range.start, from + range.end);
                 if let Some(draft) = reader.steps.last_mut().filter(|_| refused) {
@@ -210,7 +223,41 @@ pub(super) fn steps(
     for draft in steps.iter().filter(|draft| draft.is_empty) {
         problems.at(draft.at, "the step is empty; write what the learner shall see or do");
     }
+    for draft in &steps {
+        if draft.step.title.chars().nth(LONGEST_TITLE).is_some() {
+            problems.at(draft.at, format!("the name of a step has at most {LONGEST_TITLE} characters"));
+        }
+        let length = length(&draft.step);
+        if length > LONGEST_STEP {
+            problems.at(
+                draft.at,
+                format!(
+                    "the step has {length} characters of text; at most {LONGEST_STEP} are allowed: begin another \
+                     step with ##"
+                ),
+            );
+        }
+    }
     steps
+}
+
+/// The characters of everything that a step shows.
+fn length(step: &Step) -> usize {
+    let of = |runs: &[Run]| runs.iter().map(|run| run.text.chars().count()).sum::<usize>();
+    let blocks = step.blocks.iter().map(|block| match block {
+        // An empty line takes room, too.
+        Block::Paragraph(runs) | Block::Item { runs, .. } => 1 + of(runs),
+        Block::Equation(text) => 1 + text.chars().count(),
+        Block::Task => 0,
+    });
+    let task = match &step.task {
+        None => 0,
+        Some(Task::Predict { question, answers }) => {
+            of(question) + answers.iter().map(|a| of(&a.text) + of(&a.feedback)).sum::<usize>()
+        }
+        Some(Task::Do(goal) | Task::Find(goal)) => of(&goal.text) + goal.hint.as_deref().map_or(0, of),
+    };
+    blocks.sum::<usize>() + task
 }
 
 impl Reader<'_, '_, '_> {

@@ -5,6 +5,7 @@ use std::fmt;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;
 
+use super::limits::MAX_PROBLEMS;
 use crate::{
     files::printable,
     text::place::{Lines, Place},
@@ -88,17 +89,20 @@ impl<'a> Problems<'a> {
         self.found.is_empty()
     }
 
+    /// True if more are of no help to anybody.
+    pub(super) fn are_enough(&self) -> bool {
+        self.found.len() >= MAX_PROBLEMS
+    }
+
     pub(super) fn count(&self) -> usize {
         self.found.len()
     }
 
     /// All of them, in the order of the text.
     pub(super) fn finish(mut self) -> Vec<Problem> {
-        // More are of no help to anybody.
-        const MOST: usize = 200;
         self.found.sort_by_key(|(at, _)| *at);
         self.found.dedup();
-        self.found.truncate(MOST);
+        self.found.truncate(MAX_PROBLEMS);
         let lines = Lines::new(self.text);
         let line_of = |at: usize| {
             let at = at.min(self.text.len());

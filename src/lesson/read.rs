@@ -6,15 +6,13 @@ use std::{
     sync::Arc,
 };
 
-use super::{Lesson, Problem, check, front, markdown, problem::Problems, state};
+use super::{Lesson, Problem, check, front, limits::MAX_FILE_BYTES, markdown, problem::Problems, state};
 use crate::{
     files::{self, FileError, Kind},
     registry::Registry,
     scene::{Scene, encoding, error::LoadError},
 };
 
-/// Larger files are refused before they are read. The longest shipped lesson is a hundredth of this.
-pub const MAX_FILE_BYTES: u64 = 1 << 20;
 /// The file of a lesson that is a folder.
 const IN_FOLDER: &str = "lesson.md";
 
@@ -23,7 +21,9 @@ pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Probl
     let is_folder = files::kind(path).is_ok_and(|kind| kind == Kind::Folder);
     let file: Cow<Path> = if is_folder { path.join(IN_FOLDER).into() } else { path.into() };
     let whole = |message: String| vec![Problem::of_file(message)];
-    let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|error| {
+    // A folder may come from anybody: its files are those in it.
+    let place = if is_folder { files::inside(path, &file) } else { Ok(file.to_path_buf()) };
+    let bytes = place.and_then(|place| files::read(&place, MAX_FILE_BYTES)).map_err(|error| {
         whole(match error {
             FileError::TooLarge(_) => {
                 format!("the file is larger than {} MiB, the most allowed for a lesson", MAX_FILE_BYTES >> 20)
@@ -82,7 +82,7 @@ pub(super) fn text(
     let drafts = markdown::steps(whole, front.end, folder, registry, &mut problems);
     let start = Arc::new(start);
     // Without the scene that is meant, everything about it would seem wrong.
-    if is_known {
+    if is_known && !problems.are_enough() {
         check::steps(&start, &drafts, registry, &mut problems);
     }
     if !problems.is_empty() {

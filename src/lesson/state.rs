@@ -1,23 +1,26 @@
 //! The scene on entering a step: values of scene files that are set one after the other, and checked like a file.
 
 use std::{
-    path::{Path as FilePath, PathBuf},
+    io::ErrorKind,
+    path::{Component, Path as FilePath, PathBuf},
     sync::Arc,
 };
 
 use serde_json::Value as Json;
 
 use super::{
+    limits::{MAX_LINES, MAX_PROBLEMS},
     problem::Problems,
     words::{Piece, lines},
 };
 use crate::{
+    files::{self, FileError},
     registry::Registry,
     scene::{
         Scene, SceneIn,
         error::{LoadError, Path, Segment},
         examples::EXAMPLES,
-        load::{self, Defaults, Loaded},
+        load::{self, Defaults, Loaded, MAX_DEPTH},
         syntax::check_syntax,
     },
     text::{did_you_mean, quoted, sentence, shortened},
@@ -102,7 +105,7 @@ impl SceneChange {
                 };
                 sets.iter().rev().max_by_key(|(_, path, _)| alike(path)).map_or(0, |(at, ..)| *at)
             };
-            let problems = error.problems().into_iter();
+            let problems = error.problems().into_iter().take(MAX_PROBLEMS);
             problems
                 .map(|p| (of(&p.path), crate::scene::error::Problem { place: None, ..p }.to_string()))
                 .collect()
@@ -157,14 +160,21 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
 
 /// The scene of a name in a lesson: a file in its folder, else a shipped one.
 pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
-    let is_plain = FilePath::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
-    if !is_plain {
-        return Err(format!(
-            "{} leads out of the folder of the lesson; put the scene beside the lesson",
-            quoted(name)
-        ));
-    }
-    let beside = folder.map(|folder| folder.join(name)).filter(|path| path.exists());
+    let outside = || {
+        let name = quoted(name);
+        Err(format!("{name} leads out of the folder of the lesson; put the scene itself beside the lesson"))
+    };
+    let joined = folder.map(|folder| folder.join(name)).unwrap_or_default();
+    let beside = match folder.map(|folder| files::inside(folder, &joined)) {
+        None if FilePath::new(name).components().any(|c| !matches!(c, Component::Normal(_))) => {
+            return outside();
+        }
+        None => None,
+        Some(Ok(_)) => Some(joined),
+        Some(Err(FileError::Io(error))) if error.kind() == ErrorKind::NotFound => None,
+        Some(Err(FileError::Outside(_))) => return outside(),
+        Some(Err(error)) => return Err(format!("the scene {} could not be read: {error}", quoted(name))),
+    };
     let loaded = match beside {
         Some(path) => load::file(&path, registry, Defaults::Use).map(|loaded| loaded.scene),
         None => match EXAMPLES.iter().find(|example| example.file == name) {
@@ -190,6 +200,9 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
     let mut path = Path::root();
     let mut at = 0;
     while at < text.len() {
+        if path.segments().len() == MAX_DEPTH {
+            return Err((at, format!("a path has at most {MAX_DEPTH} steps; those in a scene have five")));
+        }
         let rest = &text[at..];
         if let Some(inside) = rest.strip_prefix('[') {
             let end = inside.find(']').ok_or((at, "this bracket is never closed".to_owned()))?;
@@ -202,7 +215,7 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
                     ),
                 )
             })?;
-            path = path.index(index);
+            path = path.then(Segment::Index(index));
             at += end + 2;
             continue;
         }
@@ -215,7 +228,7 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
                 "a path is keys with dots between them and [places] in lists: objects[0].size".to_owned(),
             ));
         }
-        path = path.key(word[..length].to_owned());
+        path = path.then(Segment::Key(word[..length].to_owned().into()));
         at += dot + length;
     }
     Ok(path)
@@ -248,10 +261,22 @@ pub(super) fn read(
             _ => statements.push((piece.at, piece.end())),
         }
     }
-    for (start, end) in statements {
+    let mut opened = false;
+    for (i, (start, end)) in statements.into_iter().enumerate() {
+        if i == MAX_LINES {
+            problems.at(
+                start,
+                format!("a scene block sets at most {MAX_LINES} values; open a scene that has them"),
+            );
+            break;
+        }
         let piece = body.part(start - body.at, end - body.at);
         if let Some(name) = piece.text.strip_prefix("open:") {
             let name = piece.part(piece.text.len() - name.len(), piece.text.len()).trimmed();
+            if std::mem::replace(&mut opened, true) {
+                problems.at(piece.at, "the block opens two scenes; keep the last one");
+                continue;
+            }
             match open(name.text, folder, registry) {
                 Ok(scene) => {
                     change.operations.push(Operation { at: name.at, what: What::Open(Arc::new(scene)) });

@@ -485,7 +485,7 @@ fn files_that_are_no_lessons_are_refused_in_words() {
     assert_eq!(said(&at("none.md")), "file not found");
     assert!(said(folder.path()).starts_with("the folder has no lesson.md"));
     let file = fs::File::create(at("large.md")).expect("writable");
-    file.set_len(MAX_FILE_BYTES + 1).expect("writable");
+    file.set_len(limits::MAX_FILE_BYTES + 1).expect("writable");
     assert_eq!(said(&at("large.md")), "the file is larger than 1 MiB, the most allowed for a lesson");
     fs::write(at("latin.md"), b"---\ntitle: L\xFCcke\n").expect("writable");
     assert!(

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The most candela values of a file, given for the whole circle: a value for every degree.
-const MOST: usize = 181 * 361;
+pub const MAX_CANDELAS: usize = 181 * 361;
 
 /// Photometric files. Of one, renderers read: the number of vertical angles and of horizontal angles, the vertical
 /// angles, the horizontal angles, and the candelas, one vertical half plane after the other. Angles are degrees.
@@ -54,9 +54,10 @@ impl<'a> Numbers<'a> {
     /// The next number, which counts something.
     fn count(&mut self, what: &str, least: usize) -> Result<usize, FileProblem> {
         let number = self.next(what)?;
-        if number.fract() != 0.0 || number < least as f64 || number > MOST as f64 {
-            let rule =
-                format!("{what} must be a whole number between {least} and {MOST}, and it is {number}");
+        if number.fract() != 0.0 || number < least as f64 || number > MAX_CANDELAS as f64 {
+            let rule = format!(
+                "{what} must be a whole number between {least} and {MAX_CANDELAS}, and it is {number}"
+            );
             return Err(self.problem(rule));
         }
         Ok(number as usize)
@@ -139,8 +140,10 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let gammas = numbers.angles("vertical", vertical, 180.0)?;
     let planes = numbers.angles("horizontal", horizontal, 360.0)?;
     let circle = circle(&planes).map_err(|message| numbers.problem(message))?;
-    if vertical * circle.len() > MOST {
-        return Err(numbers.problem(format!("the file has more than the {MOST} candela values that fit")));
+    if vertical * circle.len() > MAX_CANDELAS {
+        return Err(
+            numbers.problem(format!("the file has more than the {MAX_CANDELAS} candela values that fit"))
+        );
     }
     let total = vertical * horizontal;
     let mut candelas = Vec::with_capacity(total);

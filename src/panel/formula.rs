@@ -1,6 +1,7 @@
 //! The parts of an equation: brackets, roots, fractions, and the places at which a line may be broken.
 
 use super::maths::{Atom, parse};
+use crate::text::mathematics::MAX_DEPTH;
 
 /// A piece of an equation.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +43,7 @@ pub(super) fn is_space(node: &Node) -> bool {
     matches!(node, Node::Atom(Atom::Space))
 }
 
-/// The tree of an equation.
+/// The tree of an equation, at most [`MAX_DEPTH`] deep: brackets beyond it are signs like others.
 #[must_use]
 pub fn tree(text: &str) -> Vec<Node> {
     let mut stack: Vec<(Atom, Vec<Node>)> = Vec::new();
@@ -55,7 +56,7 @@ pub fn tree(text: &str) -> Vec<Node> {
             unopen(&mut stack, &mut here);
         }
         let closes = bracket(&atom, ")]⟩") || atom.base() == "|" && bar(&stack);
-        if bracket(&atom, "([⟨|") && !closes {
+        if bracket(&atom, "([⟨|") && !closes && stack.len() < MAX_DEPTH {
             stack.push((atom, std::mem::take(&mut here)));
         } else if closes && let Some((open, before)) = stack.pop() {
             let body = fractions(std::mem::replace(&mut here, before));
@@ -212,6 +213,24 @@ pub(super) fn flattened(nodes: &[Node]) -> Vec<Node> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tree_has_a_deepest_branch() {
+        fn depth(nodes: &[Node]) -> usize {
+            let inner = |node: &Node| match node {
+                Node::Atom(_) => 0,
+                Node::Group(_, body, _) | Node::Root(body) => 1 + depth(body),
+                Node::Fraction(over, under) => depth(over).max(depth(under)),
+            };
+            nodes.iter().map(inner).max().unwrap_or_default()
+        }
+        assert_eq!(depth(&tree("((x))")), 2);
+        for open in ["(", "√(", "|(", "["] {
+            let close = if open == "[" { "]" } else { ")" };
+            let text = format!("{}x{}", open.repeat(20_000), close.repeat(20_000));
+            assert!(depth(&tree(&text)) <= MAX_DEPTH, "{open}");
+        }
+    }
 
     #[test]
     fn fractions_take_the_operands_that_are_meant() {

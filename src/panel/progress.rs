@@ -10,7 +10,7 @@ use crate::{
 
 /// The name of the file.
 const FILE: &str = "lessons.json";
-/// It is not larger.
+/// It is not larger. The library that reads it goes 128 levels deep.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Reads what was done. No file means nothing; a file that cannot be read means nothing and a sentence that says so.

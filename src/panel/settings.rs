@@ -14,7 +14,7 @@ use crate::files::{self, FileError, tidy};
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
 /// The name of the file.
 const FILE: &str = "settings.json";
-/// Settings are not larger; long names of recent files included.
+/// Settings are not larger; long names of recent files included. The library that reads them goes 128 levels deep.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// The settings that survive a restart.

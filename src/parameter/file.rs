@@ -1,4 +1,5 @@
-//! Parameters that name a file: its numbers are read once for all that name it, and read again when it changes.
+//! Parameters that name a file: its numbers are read once for all that name it, and read again when it changes. They are
+//! read when somebody first asks for them, so that all files of a scene can be read at once, by [`read_all`].
 
 use std::{
     borrow::Cow,
@@ -6,12 +7,13 @@ use std::{
     fmt,
     path::{Path, PathBuf},
     sync::{
-        Arc, LazyLock, Mutex, Once, PoisonError, RwLock, RwLockReadGuard, Weak,
-        atomic::{AtomicU64, Ordering},
+        Arc, LazyLock, Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard, Weak,
+        atomic::{AtomicU64, AtomicUsize, Ordering},
     },
 };
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::outside;
@@ -69,8 +71,8 @@ struct Content {
     /// The folder of the scenes that name it, which it must not be outside of.
     folder: PathBuf,
     format: &'static FileFormat,
-    /// The first reading. That of a shipped file waits until its numbers are needed, which most commands never do.
-    begun: Once,
+    /// Set once it was read for the first time.
+    first: OnceLock<()>,
     state: RwLock<State>,
 }
 
@@ -94,11 +96,32 @@ type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
 static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
 static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
 static CHANGES: AtomicU64 = AtomicU64::new(0);
+/// The files that [`read_all`] has read and is about to read.
+static READING: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
 
 /// Counts how often the numbers of any file became others.
 #[must_use]
 pub fn file_changes() -> u64 {
     CHANGES.load(Ordering::Relaxed)
+}
+
+/// Reads all of these that were not read yet, as many at once as there are processors.
+pub fn read_all<'f>(files: impl Iterator<Item = &'f NamedFile>) {
+    let mut contents: Vec<_> = files.map(|file| &file.content).filter(|c| c.first.get().is_none()).collect();
+    contents.sort_by_key(|content| Arc::as_ptr(content));
+    contents.dedup_by_key(|content| Arc::as_ptr(content));
+    let [done, all] = &READING;
+    all.fetch_add(contents.len(), Ordering::Relaxed);
+    contents.par_iter().for_each(|content| {
+        drop(content.state());
+        done.fetch_add(1, Ordering::Relaxed);
+    });
+}
+
+/// The number of files that [`read_all`] has read, and of those that it was asked to read, in this process.
+#[must_use]
+pub fn files_read() -> [usize; 2] {
+    READING.each_ref().map(|count| count.load(Ordering::Relaxed))
 }
 
 impl NamedFile {
@@ -122,7 +145,7 @@ impl NamedFile {
         let content = match known.upgrade() {
             Some(content) => {
                 // It may have changed since it was read; many parts may name it.
-                if !content.is_as_read() {
+                if content.first.get().is_some() && !content.is_as_read() {
                     content.read();
                 }
                 content
@@ -226,7 +249,9 @@ impl NamedFile {
     /// Reads the file again, for all that name it. True if its numbers or its mistakes are others than before.
     #[must_use]
     pub fn read_again(&self) -> bool {
-        self.content.read()
+        let mut is_first = false;
+        self.content.first.get_or_init(|| is_first = self.content.read());
+        is_first || self.content.read()
     }
 
     /// True if the file is read in this format.
@@ -242,18 +267,12 @@ impl Content {
         folder: PathBuf,
         format: &'static FileFormat,
     ) -> Arc<Self> {
-        let content = Self { source, folder, format, begun: Once::new(), state: RwLock::default() };
-        if content.path().is_some() {
-            drop(content.state());
-        }
-        Arc::new(content)
+        Arc::new(Self { source, folder, format, first: OnceLock::new(), state: RwLock::default() })
     }
 
-    /// The state once the file was read.
+    /// What the file has, read now if it was not yet.
     fn state(&self) -> RwLockReadGuard<'_, State> {
-        self.begun.call_once(|| {
-            self.read();
-        });
+        self.first.get_or_init(|| _ = self.read());
         self.state.read().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -277,7 +296,7 @@ impl Content {
 
     /// True if the file is the one that was read last.
     fn is_as_read(&self) -> bool {
-        let known = self.state().stamp;
+        let known = self.state.read().unwrap_or_else(PoisonError::into_inner).stamp;
         known.is_some() && known == self.path().and_then(files::Stamp::settled)
     }
 
@@ -357,14 +376,48 @@ impl PartialEq for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::AtomicUsize;
 
+    /// How often the files of the test were read.
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    static FORMAT: FileFormat = FileFormat {
+        name: "a file of bytes",
+        extensions: &["counted"],
+        max_bytes: 16,
+        read: |bytes| {
+            COUNT.fetch_add(1, Ordering::Relaxed);
+            Ok(bytes.iter().map(|byte| f32::from(*byte)).collect())
+        },
+        shipped: &[],
+    };
+
+    #[test]
+    fn every_file_is_read_once_however_often_it_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for name in ["a.counted", "b.counted"] {
+            std::fs::write(folder.path().join(name), name).expect("written");
+        }
+        let named = |name: &str| NamedFile::named(name, folder.path(), &FORMAT);
+        let files: Vec<_> = (0..20).map(|i| named(["a.counted", "b.counted"][i % 2])).collect();
+        assert_eq!(COUNT.load(Ordering::Relaxed), 0, "naming a file does not read it");
+        let before = files_read();
+        read_all(files.iter());
+        assert_eq!(COUNT.load(Ordering::Relaxed), 2);
+        let after = files_read();
+        assert!(after[0] >= before[0] + 2 && after[1] >= before[1] + 2, "{before:?} {after:?}");
+        for (i, file) in files.iter().enumerate() {
+            let first = file.numbers().and_then(|numbers| numbers.first().copied());
+            assert_eq!(first, Some(f32::from([b'a', b'b'][i % 2])), "{i}");
+        }
+        std::fs::write(folder.path().join("a.counted"), "c").expect("written");
+        assert!(files[0].read_again() && !files[2].read_again());
+        assert_eq!(files[2].numbers().as_deref(), Some(&[f32::from(b'c')][..]));
+    }
     #[test]
     fn a_shipped_file_is_read_once_when_its_numbers_are_needed() {
         static READ: AtomicUsize = AtomicUsize::new(0);
         static FORMAT: FileFormat = FileFormat {
             name: "a counted file",
-            extensions: &["counted"],
+            extensions: &["shipped"],
             max_bytes: 8,
             read: |bytes| {
                 READ.fetch_add(1, Ordering::Relaxed);
@@ -374,8 +427,7 @@ mod tests {
         };
         let file = NamedFile::shipped("one", &FORMAT);
         assert_eq!(READ.load(Ordering::Relaxed), 0);
-        let version = file.version();
         assert_eq!(file.numbers().as_deref(), Some(&[1.0, 2.0][..]));
-        assert_eq!((READ.load(Ordering::Relaxed), file.version(), file.problem()), (1, version, None));
+        assert_eq!((READ.load(Ordering::Relaxed), file.problem()), (1, None));
     }
 }

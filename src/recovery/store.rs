@@ -27,7 +27,8 @@ const FOLDER: &str = "recovery";
 const SCENE: &str = "scene.json";
 const ABOUT: &str = "about.json";
 const LOCK: &str = "lock";
-/// The most bytes of the file about a document.
+/// The most bytes of the file about a document; the library that reads it goes 128 levels deep. The copy itself is a scene
+/// file, with the limits of those.
 const MAX_ABOUT_BYTES: u64 = 1 << 16;
 /// The most entries of the folder that are looked at.
 const MAX_ENTRIES: usize = 1000;

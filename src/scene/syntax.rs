@@ -3,7 +3,7 @@
 use serde::{Deserialize as _, de::IgnoredAny};
 
 /// The deepest nesting of JSON. Scenes need four levels.
-const MAX_DEPTH: usize = 64;
+pub const MAX_DEPTH: usize = 64;
 
 /// Strict JSON, or the first wrong byte and the expectation there.
 pub(crate) fn check_syntax(text: &str) -> Result<(), (usize, String)> {

@@ -1,5 +1,40 @@
 //! The pieces of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group.
 
+/// The most characters of a line of an equation. The longest of the shipped models has a tenth of this.
+pub const LONGEST_LINE: usize = 2000;
+/// The deepest nesting of brackets in an equation, which is also the deepest recursion of what sets one.
+pub const MAX_DEPTH: usize = 24;
+
+/// The first place at which an equation is longer or deeper than any may be: its byte, and a sentence.
+#[must_use]
+pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
+    let mut open: Vec<char> = Vec::new();
+    let mut length = 0;
+    for (at, c) in equation.char_indices() {
+        length = if c == '\n' { 0 } else { length + 1 };
+        match c {
+            // Of two bars the second closes.
+            '|' if open.last() == Some(&'|') => _ = open.pop(),
+            '(' | '[' | '{' | '⟨' | '|' => open.push(c),
+            ')' | ']' | '}' | '⟩' => while open.pop() == Some('|') {},
+            _ => {}
+        }
+        if open.len() > MAX_DEPTH {
+            return Some((
+                at,
+                format!("this is nested {} brackets deep; at most {MAX_DEPTH} are allowed", open.len()),
+            ));
+        }
+        if length > LONGEST_LINE {
+            return Some((
+                at,
+                format!("this line of the equation has more than {LONGEST_LINE} characters; break it"),
+            ));
+        }
+    }
+    None
+}
+
 /// A piece of an equation that is not broken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Atom {
@@ -177,6 +212,24 @@ mod tests {
             sup: "p+1".to_owned()
         }));
         assert_eq!(atoms.last(), Some(&symbol("d", "", "2")));
+    }
+
+    #[test]
+    fn equations_have_a_longest_line_and_a_deepest_bracket() {
+        let nested = |n: usize, open: &str, close: &str| format!("{}x{}", open.repeat(n), close.repeat(n));
+        for (open, close) in [("(", ")"), ("[", "]"), ("⟨", "⟩"), ("{", "}"), ("|(", ")|")] {
+            let n = MAX_DEPTH / open.chars().count();
+            assert_eq!(beyond_limits(&nested(n, open, close)), None, "{open}");
+            let (at, what) = beyond_limits(&nested(20_000, open, close)).expect("too deep");
+            assert!(
+                at <= open.len() * (n + 1) && what.contains("25 brackets deep; at most 24"),
+                "{at}: {what}"
+            );
+        }
+        assert_eq!(beyond_limits(&"|x| (y) ".repeat(100)), None);
+        let line = "x".repeat(LONGEST_LINE);
+        assert_eq!(beyond_limits(&format!("{line}\n{line}")), None);
+        assert_eq!(beyond_limits(&format!("{line}\n{line}x")).map(|(at, _)| at), Some(2 * LONGEST_LINE + 1));
     }
 
     #[test]

@@ -20,6 +20,8 @@ use crate::files;
 pub const EDITOR_VARIABLE: &str = "LCM_EDITOR";
 /// A command that fails within this time is told of.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// The largest file about an application that is read, bytes.
+const MAX_ENTRY_BYTES: u64 = 1 << 20;
 
 /// Editors with a window of their own, the best to learn with first, and how they are called.
 const KNOWN: [(&str, &str); 16] = [
@@ -259,7 +261,7 @@ fn default_application() -> Option<Application> {
     // A dash may stand for a folder.
     [id.clone(), id.replacen('-', "/", 1)].iter().find_map(|id| {
         folders.iter().find_map(|folder| {
-            let bytes = files::read(&folder.join("applications").join(id), 1 << 20).ok()?;
+            let bytes = files::read(&folder.join("applications").join(id), MAX_ENTRY_BYTES).ok()?;
             Application::read(&String::from_utf8_lossy(&bytes))
         })
     })

@@ -667,11 +667,20 @@ fn the_command_says_what_is_wrong() {
         assert!(run.err.contains(expected), "{arguments:?}: {}\nnot: {expected}", run.err);
         assert_eq!(run.out, "", "{arguments:?}");
     }
-    // A damaged picture.
-    let mut bytes = fs::read(folder.path().join("grey.png")).expect("there");
-    bytes.truncate(bytes.len() / 2);
-    fs::write(folder.path().join("half.png"), bytes).expect("written");
-    let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
-    assert_eq!(half.status, Some(1));
-    assert!(half.err.starts_with("half.png: the picture is damaged: "), "{}", half.err);
+    // Damaged pictures: cut off, and with a changed byte in the checksum of their pixels.
+    let bytes = fs::read(folder.path().join("grey.png")).expect("there");
+    let pixels = bytes.windows(4).position(|kind| kind == b"IDAT").expect("a picture");
+    let length = u32::from_be_bytes(*bytes[pixels - 4..].first_chunk().expect("four")) as usize;
+    let mut changed = bytes.clone();
+    changed[pixels + 4 + length] ^= 1;
+    for (bytes, expected) in [
+        (&bytes[..pixels + 4 + length / 2], "it ends too early; copy it once more from where it came"),
+        (&changed, "a checksum is wrong, so some of its bytes were changed; copy it once more"),
+    ] {
+        fs::write(folder.path().join("half.png"), bytes).expect("written");
+        let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
+        assert_eq!(half.status, Some(1));
+        assert!(half.err.starts_with("half.png: the picture is damaged: "), "{}", half.err);
+        assert!(half.err.contains(expected) && !half.err.contains("ChunkType"), "{}", half.err);
+    }
 }

@@ -7,6 +7,7 @@ use glam::Vec3;
 use lights_camera_models::{
     channel::DebugChannel,
     explain, lesson,
+    light::{MAX_LIGHTS, ies},
     matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{Parameter, Value, Values},
@@ -15,14 +16,16 @@ use lights_camera_models::{
     registry::Registry,
     render::capture::{evaluate::evaluate, png},
     scene::{
-        Scene,
+        MAX_OBJECTS, Scene,
         comparison::{Channel, Compared, Layout, Sign},
         examples::EXAMPLES,
-        formats::column_table,
+        formats::{Csv, column_table},
         load::{self, Defaults},
         save, schema,
     },
     shader::{compose::Sources, limits::LIMITS},
+    shape::mesh_file,
+    text::mathematics,
 };
 use serde_json::Value as Json;
 
@@ -92,6 +95,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                     format!("```csv\n{text}```\n")
                 }),
                 ("columns", column_table(&registry)),
+                ("limits", scene_limits()),
                 ("tone mapping", tone_mapping(&schema::schema(&registry))),
                 ("scenes", scenes()),
             ],
@@ -128,6 +132,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("view settings", view_settings()),
                 ("controls", lesson_controls()),
                 ("quantities", quantities()),
+                ("limits", lesson_limits()),
             ],
         ),
         ("docs/custom-models.md", vec![("limits", limits())]),
@@ -406,6 +411,55 @@ fn limits() -> String {
         ("a value", kib(l.value_bytes.into())),
         ("all variables of a function and the functions that it calls", kib(l.variable_bytes)),
         ("steps of a function, with all calls inlined", l.steps.to_string()),
+    ];
+    table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
+}
+
+/// The limits of a lesson.
+fn lesson_limits() -> String {
+    use lesson::limits::{
+        DEEPEST_CONDITION, LONGEST_CONDITION, LONGEST_STEP, LONGEST_TITLE, MAX_COMPARISONS, MAX_FILE_BYTES,
+        MAX_LINES, MAX_PROBLEMS, MAX_STEPS,
+    };
+    let rows = [
+        ("the file", format!("{} MiB", MAX_FILE_BYTES >> 20)),
+        ("steps", MAX_STEPS.to_string()),
+        ("a title, the summary", format!("{LONGEST_TITLE} characters")),
+        ("the text of a step, with equations and its task", format!("{LONGEST_STEP} characters")),
+        ("a line of an equation", format!("{} characters", mathematics::LONGEST_LINE)),
+        ("brackets within brackets of an equation", mathematics::MAX_DEPTH.to_string()),
+        ("values that a `scene` block sets, lines of `view` and `point`", MAX_LINES.to_string()),
+        ("steps of a path in a `scene` block, lists within lists of a value", load::MAX_DEPTH.to_string()),
+        ("a condition", format!("{LONGEST_CONDITION} characters, {MAX_COMPARISONS} comparisons")),
+        ("brackets and negations within each other in a condition", DEEPEST_CONDITION.to_string()),
+        ("problems that the check prints", MAX_PROBLEMS.to_string()),
+    ];
+    table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
+}
+
+/// The limits of scenes and of the files that they name.
+fn scene_limits() -> String {
+    let mib = |bytes: u64| format!("{} MiB", bytes >> 20);
+    let rows = [
+        ("a scene file", mib(load::MAX_FILE_BYTES)),
+        (
+            "a picture with a scene in it",
+            format!("{}; the scene in it {}", mib(load::MAX_PICTURE_BYTES), mib(load::MAX_FILE_BYTES)),
+        ),
+        ("lists and objects within each other in JSON", load::MAX_DEPTH.to_string()),
+        ("rows of a table", format!("{}, not counting remarks", Csv::MAX_ROWS)),
+        ("columns of a table", Csv::MAX_COLUMNS.to_string()),
+        ("cells and remarks of a table", Csv::MAX_CELLS.to_string()),
+        ("objects, lights", format!("{MAX_OBJECTS}, {MAX_LIGHTS}")),
+        ("the file of a mesh", mib(mesh_file::FORMAT.max_bytes)),
+        (
+            "vertices, polygons, corners of a polygon of a mesh",
+            format!("{}, {}, {}", mesh_file::MAX_VERTICES, mesh_file::MAX_POLYGONS, mesh_file::MAX_CORNERS),
+        ),
+        (
+            "a photometric file",
+            format!("{}, {} candela values", mib(ies::FORMAT.max_bytes), ies::MAX_CANDELAS),
+        ),
     ];
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
 }

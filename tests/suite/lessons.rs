@@ -74,3 +74,96 @@ fn all_problems_are_printed_with_file_line_and_caret() {
     let none = lcm_in(folder.path(), &["lesson", "check"], b"");
     assert_eq!(none.status, Some(2));
 }
+
+/// A lesson with this in its only step.
+fn lesson_with(front: &str, step: &str) -> String {
+    format!("---\ntitle: T\nsummary: S.\n{front}---\n\n## One\n\nText.\n\n{step}\n")
+}
+
+#[cfg(unix)]
+#[test]
+fn a_lesson_reads_no_file_outside_its_folder() {
+    use std::os::unix::fs::symlink;
+    let root = tempfile::tempdir().expect("writable");
+    let folder = root.path().join("lesson");
+    fs::create_dir_all(folder.join("below")).expect("writable");
+    fs::write(root.path().join("secret.json"), "password = hunter2\n").expect("writable");
+    fs::write(folder.join("own.json"), "password = hunter3\n").expect("writable");
+    symlink("../secret.json", folder.join("link.json")).expect("made");
+    symlink("../..", folder.join("below/up")).expect("made");
+    symlink("own.json", folder.join("here.json")).expect("made");
+    let secret = root.path().join("secret.json").display().to_string();
+    for name in ["link.json", "below/up/secret.json", "../secret.json", &secret] {
+        for text in [
+            lesson_with(&format!("scene: {name}\n"), ""),
+            lesson_with("", &format!("```scene\nopen: {name}\n```")),
+        ] {
+            fs::write(folder.join("lesson.md"), text).expect("writable");
+            for path in [folder.clone(), folder.join("lesson.md")] {
+                let run = lcm(&["lesson", "check", &path.display().to_string()], "");
+                assert_eq!(run.status, Some(1), "{name}: {}", run.out);
+                assert!(run.err.contains("leads out of the folder of the lesson"), "{name}: {}", run.err);
+                assert!(!run.err.contains("hunter"), "{name}: {}", run.err);
+            }
+        }
+    }
+    // What stays inside is read, and its problem reported.
+    fs::write(folder.join("lesson.md"), lesson_with("scene: here.json\n", "")).expect("writable");
+    let run = lcm(&["lesson", "check", &folder.display().to_string()], "");
+    assert!(run.status == Some(1) && run.err.contains("here.json"), "{}", run.err);
+    // The text of a folder is in the folder, too.
+    fs::remove_file(folder.join("lesson.md")).expect("there");
+    symlink("../secret.json", folder.join("lesson.md")).expect("made");
+    let run = lcm(&["lesson", "check", &folder.display().to_string()], "");
+    assert_eq!(run.status, Some(1), "{}", run.out);
+    assert!(run.err.contains("outside the folder") && !run.err.contains("hunter"), "{}", run.err);
+}
+
+#[test]
+fn a_lesson_beyond_its_limits_is_refused_with_the_place_and_the_limit() {
+    let nested = |n: usize| format!("```equation\nI = {}x{}\n```", "(".repeat(n), ")".repeat(n));
+    let steps = |n: usize| "## S\n\nText.\n\n".repeat(n);
+    for (step, expected) in [
+        (nested(24), ""),
+        (nested(25), "11:29: this is nested 25 brackets deep; at most 24 are allowed"),
+        (nested(5000), "11:29: this is nested 25 brackets deep"),
+        (nested(20_000), "11:29: this is nested 25 brackets deep"),
+        (format!("```equation\n{}\n```", "x ".repeat(1001)), "this line of the equation has more than 2000"),
+        (format!("```scene\nobjects{} = 1\n```", "[0]".repeat(100_000)), "a path has at most 64 steps"),
+        (format!("```scene\n{}```", "exposure = 1\n".repeat(101)), "a scene block sets at most 100 values"),
+        ("```scene\nopen: default.json\nopen: portrait.json\n```".to_owned(), "opens two scenes"),
+        ("word ".repeat(4001), "characters of text; at most 20000 are allowed"),
+        (steps(99), ""),
+        (steps(100), "a lesson has at most 100 steps"),
+        (format!("```do\nGo.\nuntil: {}\n```", "(".repeat(1000)), "the condition is nested more than 24"),
+        (
+            format!("```do\nGo.\nuntil: window.selected = \"{}\"\n```", "x".repeat(1001)),
+            "more than 1000 characters",
+        ),
+        (
+            format!("```do\nGo.\nuntil: probe.red > 1{}\n```", " and probe.red > 1".repeat(16)),
+            "a condition has at most 16 comparisons",
+        ),
+    ] {
+        let folder = tempfile::tempdir().expect("writable");
+        fs::write(folder.path().join("l.md"), lesson_with("", &step)).expect("writable");
+        let run = lcm_in(folder.path(), &["lesson", "check", "l.md"], b"");
+        let shown = &step[..step.len().min(80)];
+        if expected.is_empty() {
+            assert_eq!(run.status, Some(0), "{shown}: {}", run.err);
+        } else {
+            assert_eq!(run.status, Some(1), "{shown}: {}", run.out);
+            let json = lcm_in(folder.path(), &["lesson", "check", "--json", "l.md"], b"");
+            let reports: Value = serde_json::from_str(&json.out).expect("JSON");
+            let problem = &reports[0]["problems"][0];
+            let said = format!(
+                "{}:{}: {}",
+                problem["line"],
+                problem["column"],
+                problem["message"].as_str().unwrap_or_default()
+            );
+            assert!(said.contains(expected), "{shown}: {said}");
+            check_wording(problem["message"].as_str().expect("text"));
+        }
+    }
+}

@@ -39,6 +39,7 @@ mod guests;
 mod handles;
 mod history;
 mod hostile;
+mod hostile_text;
 mod hot_swap;
 mod html;
 mod interpret;

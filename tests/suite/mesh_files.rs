@@ -220,19 +220,23 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let model = folder.path().join("model.obj").display().to_string();
     let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file: ";
     for (content, expected) in [
-        ("", "it begins neither as glTF binary nor as PLY, and has no polygons (f) as OBJ"),
-        ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "a face (f) names a vertex that there is none of"),
-        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "it has no polygons with an area"),
-        ("glTF\u{2}", "the file ends before the glTF does"),
-        ("ply\nformat ascii 1.0\nend_header\n", "its header has no element vertex"),
+        ("", ": it begins neither as glTF binary nor as PLY, and has no polygons (f) as OBJ"),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1/1 2/1 3/1\n",
+            ":5: this face (f) names the texture coordinate 1, but the file has no",
+        ),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", ":3: this face (f) names the vertex 3, but there are 2 vertices (v)"),
+        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ": it has no polygons with an area"),
+        ("glTF\u{2}", ": the file ends before the glTF does"),
+        ("ply\nformat ascii 1.0\nend_header\n", ": its header has no element vertex"),
         (
             "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-            "a corner of polygon 1 is at (NaN, 0, 0), which is nowhere",
+            ":4: a corner of polygon 1 is at (NaN, 0, 0), which is nowhere",
         ),
     ] {
         fs::write(folder.path().join("model.obj"), content).expect("written");
         let error = read(folder.path(), "model.obj").expect_err("it cannot be used");
-        let expected = format!("{about}{model}: {expected}");
+        let expected = format!("{about}{model}{expected}");
         assert!(error.contains(&expected), "{error}\n{expected}");
         let place = error.split(": objects").next().expect("the beginning");
         let numbers: Vec<_> = place.rsplit(':').take(2).map(str::parse::<u32>).collect();

@@ -1,10 +1,10 @@
 //! From text to an expression.
 
 use super::{Expression, Operand, Sign, Term, Value, quantity};
-use crate::text::quoted;
-
-/// Brackets and negations are at most this deep.
-const DEEPEST: usize = 24;
+use crate::{
+    lesson::limits::{DEEPEST_CONDITION, LONGEST_CONDITION, MAX_COMPARISONS},
+    text::quoted,
+};
 
 type Failure = (usize, String);
 
@@ -25,15 +25,20 @@ struct Parser<'a> {
     next: usize,
     at: usize,
     token: Token<'a>,
+    /// The comparisons so far.
+    comparisons: usize,
 }
 
 /// Reads an expression; the byte of the first mistake, and a sentence.
 pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
-    let mut parser = Parser { text, next: 0, at: 0, token: Token::End };
+    let mut parser = Parser { text, next: 0, at: 0, token: Token::End, comparisons: 0 };
     parser.advance()?;
     let read = parser.any(0)?;
     match parser.token {
-        Token::End => Ok(read),
+        Token::End => match text.char_indices().nth(LONGEST_CONDITION) {
+            Some((at, _)) => Err((at, format!("the condition has more than {LONGEST_CONDITION} characters"))),
+            None => Ok(read),
+        },
         Token::Close => Err((parser.at, "there is no opening bracket for this one".to_owned())),
         _ => {
             Err((parser.at, format!("expected and, or, or the end of the condition, not {}", parser.shown())))
@@ -197,8 +202,11 @@ impl<'a> Parser<'a> {
     }
 
     fn single(&mut self, depth: usize) -> Result<Expression, Failure> {
-        if depth > DEEPEST {
-            return Err((self.at, format!("the condition is nested more than {DEEPEST} levels deep")));
+        if depth > DEEPEST_CONDITION {
+            return Err((
+                self.at,
+                format!("the condition is nested more than {DEEPEST_CONDITION} levels deep"),
+            ));
         }
         if self.is_word("not") {
             self.advance()?;
@@ -216,6 +224,10 @@ impl<'a> Parser<'a> {
             }
             self.advance()?;
             return Ok(inside);
+        }
+        self.comparisons += 1;
+        if self.comparisons > MAX_COMPARISONS {
+            return Err((self.at, format!("a condition has at most {MAX_COMPARISONS} comparisons")));
         }
         let left = self.operand()?;
         let Token::Sign(sign) = self.token else { return Ok(Expression::Truth(left)) };

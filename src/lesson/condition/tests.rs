@@ -270,9 +270,13 @@ fn broken_conditions_say_where_and_why() {
     for deep in ["(".repeat(5000), "not ".repeat(5000)] {
         assert!(Condition::parse(&deep).is_err_and(|(_, what)| what.contains("24 levels")));
     }
-    // Long is not deep.
-    let long = vec!["knob.alpha < 3"; 2000].join(" and ");
-    assert!(Condition::parse(&long).is_ok());
+    // Long is not deep, but evaluating takes time for each.
+    let long = |n: usize| Condition::parse(&vec!["knob.alpha < 3"; n].join(" and "));
+    assert!(long(16).is_ok());
+    assert!(long(17).is_err_and(|(at, what)| at == 16 * 19 && what.contains("at most 16 comparisons")));
+    let named = |n: usize| Condition::parse(&format!("window.selected = \"{}\"", "x".repeat(n)));
+    assert!(named(900).is_ok());
+    assert!(named(1000).is_err_and(|(at, what)| at == 1000 && what.contains("more than 1000 characters")));
 }
 
 /// Conditions that make no sense in the default scene, with its object selected.

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use crate::{
+    parameter::read_all,
     registry::Registry,
     scene::{
         Scene, beyond_room, check,
@@ -106,6 +107,7 @@ pub(in crate::scene) fn checked(
     let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
     // Each with the place in whose order it is listed.
     let mut all: Vec<_> = Vec::with_capacity(problems.len());
+    read_all(scene.files());
     let mut found = check::scene(&scene, registry);
     if !unread.is_empty() {
         found.retain(|problem| !problem.path.ancestors().any(|path| unread.contains(&path)));

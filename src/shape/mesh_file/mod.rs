@@ -13,6 +13,7 @@ mod ply;
 mod polygon;
 
 use model::{Builder, Model};
+pub use model::{MAX_CORNERS, MAX_POLYGONS, MAX_VERTICES};
 
 /// Models as other programs write them: glTF 2.0 binary, OBJ and PLY, told apart by their first bytes. Of one, renderers
 /// read: the number of vertices, of normals and of polygons; the vertices, around the origin with a largest extent of 1;

@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use bevy::platform::hash::RandomState;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::polygon::{doubled_area, pieces};
@@ -47,7 +48,7 @@ struct Read {
 #[derive(Default)]
 struct Pool {
     all: Vec<Vec3>,
-    known: HashMap<[u32; 3], u32>,
+    known: HashMap<[u32; 3], u32, RandomState>,
 }
 
 impl Pool {
@@ -129,13 +130,13 @@ impl Builder {
             begin = *end;
         }
         // What is left out may have been the outermost; twice is enough but for models that consist of it.
-        let mut unit = Vec::new();
+        let (mut unit, mut corners) = (Vec::new(), Vec::new());
         for _ in 0..3 {
             let (middle, extent) = bounds(&faces, &positions.all);
             let scaled = |p: &Vec3| ((p.as_dvec3() - middle) / extent).as_vec3();
             unit = positions.all.iter().map(scaled).collect();
             let before = faces.len();
-            faces.retain(|(face, _)| doubled_area(&at(face, &unit)) > 0.0);
+            faces.retain(|(face, _)| doubled_area(at(face, &unit, &mut corners)) > 0.0);
             if faces.len() == before {
                 break;
             }
@@ -147,9 +148,11 @@ impl Builder {
     }
 }
 
-/// The positions of corners.
-fn at(face: &[[u32; 2]], positions: &[Vec3]) -> Vec<Vec3> {
-    face.iter().map(|[p, _]| positions[*p as usize]).collect()
+/// The positions of corners, in the room for them.
+fn at<'r>(face: &[[u32; 2]], positions: &[Vec3], room: &'r mut Vec<Vec3>) -> &'r [Vec3] {
+    room.clear();
+    room.extend(face.iter().map(|[p, _]| positions[*p as usize]));
+    room
 }
 
 /// The middle and the largest extent of some polygons.
@@ -184,15 +187,15 @@ fn written(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3], normals: &[Vec3]) 
         }
     }
     let (mut used, mut used_normals) = (Used::of(positions), Used::of(normals));
-    let mut polygons = Vec::new();
+    let (mut polygons, mut corners) = (Vec::with_capacity(STRIDE * faces.len()), Vec::new());
     for (face, brushed) in faces {
-        for piece in pieces(&at(face, positions)) {
+        pieces(at(face, positions, &mut corners), |piece| {
             polygons.push(piece.len() as f32);
             let corner = |k: usize| face[piece[k.min(piece.len() - 1)]];
             polygons.extend((0..4).map(|k| used.place(corner(k)[0])));
             polygons.extend((0..4).map(|k| used_normals.place(corner(k)[1])));
             polygons.extend(brushed.to_array());
-        }
+        });
     }
     let counts = [used.kept.len(), used_normals.kept.len(), polygons.len() / STRIDE].map(|n| n as f32);
     let vectors = used.kept.iter().chain(&used_normals.kept).flat_map(|v| v.to_array());
@@ -248,7 +251,7 @@ impl<'a> Model<'a> {
         if !own_normals {
             mesh.positions = self.positions.iter().map(|p| Vec3::from_array(*p)).collect();
         }
-        let mut places: HashMap<[i32; 2], u32> = HashMap::new();
+        let mut places: HashMap<[i32; 2], u32, RandomState> = HashMap::default();
         for polygon in self.polygons {
             let [count, a, b, c, d, normals @ .., x, y, z] = *polygon;
             let normals = normals.map(|i| i as i32);

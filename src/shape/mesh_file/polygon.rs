@@ -12,23 +12,26 @@ pub fn doubled_area(corners: &[Vec3]) -> f32 {
     corners[1..].windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin).dot(normal)).sum()
 }
 
-/// The pieces of a polygon, each with three or four of its corners. Polygons of up to four corners stay whole; larger
-/// ones are cut into triangles by clipping ears: G. H. Meisters (1975), *Polygons Have Ears*, American Mathematical
-/// Monthly 82(6).
-pub fn pieces(corners: &[Vec3]) -> Vec<Vec<usize>> {
+/// Calls `each` with the pieces of a polygon, each with three or four of its corners. Polygons of up to four corners stay
+/// whole; larger ones are cut into triangles by clipping ears: G. H. Meisters (1975), *Polygons Have Ears*, American
+/// Mathematical Monthly 82(6).
+pub fn pieces(corners: &[Vec3], mut each: impl FnMut(&[usize])) {
     let n = corners.len();
     if n < 4 {
-        return if n < 3 { Vec::new() } else { vec![vec![0, 1, 2]] };
+        if n == 3 {
+            each(&[0, 1, 2]);
+        }
+        return;
     }
     let flat = flat(corners);
     let turn = |a: usize, b: usize, c: usize| (flat[b] - flat[a]).perp_dot(flat[c] - flat[a]);
     let reflex = |i: usize| turn((i + n - 1) % n, i, (i + 1) % n) < 0.0;
     match n {
         // A mesh cuts along the diagonal from the first corner.
-        4 if reflex(1) || reflex(3) => vec![vec![1, 2, 3, 0]],
-        4 => vec![vec![0, 1, 2, 3]],
-        _ if !(0..n).any(reflex) => (2..n).map(|i| vec![0, i - 1, i]).collect(),
-        _ => ears(&flat, turn),
+        4 if reflex(1) || reflex(3) => each(&[1, 2, 3, 0]),
+        4 => each(&[0, 1, 2, 3]),
+        _ if !(0..n).any(reflex) => (2..n).for_each(|i| each(&[0, i - 1, i])),
+        _ => ears(&flat, turn).iter().for_each(|triangle| each(triangle)),
     }
 }
 
@@ -41,10 +44,12 @@ fn flat(corners: &[Vec3]) -> Vec<Vec2> {
     corners.iter().map(|p| Vec2::new(p.dot(x), p.dot(y))).collect()
 }
 
-/// Cuts off one ear after the other: a corner whose triangle has no other corner in it.
-fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<Vec<usize>> {
+/// Cuts off one ear after the other: a corner whose triangle has no other corner in it. The search goes on where the last
+/// ear was.
+fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..flat.len()).collect();
     let mut triangles = Vec::with_capacity(flat.len() - 2);
+    let mut last = 0;
     while left.len() > 3 {
         let n = left.len();
         let corners = |i: usize| [left[(i + n - 1) % n], left[i], left[(i + 1) % n]];
@@ -57,12 +62,15 @@ fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<Vec<usi
             let others = left.iter().filter(|p| ![flat[a], flat[b], flat[c]].contains(&flat[**p]));
             turn(a, b, c) > 0.0 && !others.copied().any(|p| inside(ear, p))
         };
-        // A polygon that crosses itself may have none: then any corner goes.
-        let i = (0..n).find(is_ear).unwrap_or(0);
-        triangles.push(corners(i).to_vec());
+        let Some(i) = (last..n).chain(0..last.min(n)).find(is_ear) else {
+            // A polygon that crosses itself may have none: no cut is better than another.
+            break;
+        };
+        triangles.push(corners(i));
         left.remove(i);
+        last = i.min(n - 2);
     }
-    triangles.push(left);
+    triangles.extend(left[1..].windows(2).map(|pair| [left[0], pair[0], pair[1]]));
     triangles
 }
 
@@ -74,9 +82,15 @@ mod tests {
         points.iter().map(|[x, y]| Vec3::new(*x, *y, 0.5)).collect()
     }
 
+    fn cut(corners: &[Vec3]) -> Vec<Vec<usize>> {
+        let mut all = Vec::new();
+        pieces(corners, |piece| all.push(piece.to_vec()));
+        all
+    }
+
     /// The pieces as triangles, and their doubled areas; negative for those that face the other way.
     fn areas(corners: &[Vec3]) -> Vec<f32> {
-        let triangles = pieces(corners).into_iter().flat_map(|piece| match piece[..] {
+        let triangles = cut(corners).into_iter().flat_map(|piece| match piece[..] {
             [a, b, c, d] => vec![[a, b, c], [a, c, d]],
             [a, b, c] => vec![[a, b, c]],
             _ => panic!("{piece:?}"),
@@ -140,10 +154,10 @@ mod tests {
     #[test]
     fn polygons_that_cross_themselves_or_have_no_area_end_too() {
         let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.5, 3.0]];
-        assert_eq!(pieces(&in_plane(&bow)).len(), 3);
-        assert_eq!(pieces(&[Vec3::ONE; 7]).len(), 5);
+        assert_eq!(cut(&in_plane(&bow)).len(), 3);
+        assert_eq!(cut(&[Vec3::ONE; 7]).len(), 5);
         assert_eq!(doubled_area(&[Vec3::ONE; 7]), 0.0);
-        assert!(pieces(&[]).is_empty() && doubled_area(&[]) == 0.0);
-        assert_eq!(pieces(&[Vec3::NAN; 6]).len(), 4);
+        assert!(cut(&[]).is_empty() && doubled_area(&[]) == 0.0);
+        assert_eq!(cut(&[Vec3::NAN; 6]).len(), 4);
     }
 }

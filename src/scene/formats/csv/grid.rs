@@ -2,6 +2,9 @@
 
 use std::{borrow::Cow, ops::Range};
 
+use super::Csv;
+use crate::{light::MAX_LIGHTS, scene::MAX_OBJECTS};
+
 /// The separators of columns, the usual one first.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
@@ -29,17 +32,42 @@ pub(super) struct Grid<'a> {
     pub(super) separator: u8,
     /// In the order of the text, without those that are empty.
     pub(super) rows: Vec<Row>,
+    /// The rows that are no remarks.
+    filled: usize,
+    /// All cells and remarks.
+    cells: usize,
 }
 
 impl<'a> Grid<'a> {
     /// The table in a text, or the byte at which it is none and the reason.
     pub(super) fn of(text: &'a str) -> Result<Self, (usize, String)> {
-        let mut grid = Self { text, separator: separator(text), rows: Vec::new() };
+        let mut grid = Self { text, separator: separator(text), rows: Vec::new(), filled: 0, cells: 0 };
         let mut at = 0;
         while at < text.len() {
+            let start = at;
             at = grid.row(at)?;
+            if grid.filled > Csv::MAX_ROWS {
+                let what = format!(
+                    "the table has more than {} rows; a scene has at most {MAX_LIGHTS} lights and {MAX_OBJECTS} \
+                     objects",
+                    Csv::MAX_ROWS
+                );
+                return Err((start, what));
+            }
         }
         Ok(grid)
+    }
+
+    /// Counts a cell or a remark at a byte.
+    fn count(&mut self, at: usize) -> Result<(), (usize, String)> {
+        self.cells += 1;
+        match self.cells {
+            ..=Csv::MAX_CELLS => Ok(()),
+            _ => Err((
+                at,
+                format!("the table has more than {} cells and remarks, the most allowed", Csv::MAX_CELLS),
+            )),
+        }
     }
 
     /// The content of a cell.
@@ -54,13 +82,21 @@ impl<'a> Grid<'a> {
             |from: usize| bytes[from..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |n| from + n);
         if bytes[start] == b'#' {
             let end = end_of_line(start);
+            self.count(start)?;
             self.rows.push(Row::Comment(start..trimmed(self.text, start..end).end));
             return Ok(end + 1);
         }
         let mut cells = Vec::new();
         let mut at = start;
         let end = loop {
+            self.count(at)?;
             let (cell, after) = self.cell(at)?;
+            if cells.len() == Csv::MAX_COLUMNS {
+                return Err((
+                    at,
+                    format!("the row has more than {} columns, the most allowed", Csv::MAX_COLUMNS),
+                ));
+            }
             cells.push(cell);
             match bytes.get(after) {
                 Some(b) if *b == self.separator => at = after + 1,
@@ -77,7 +113,10 @@ impl<'a> Grid<'a> {
                 self.rows.push(Row::Comment(trimmed(self.text, start..end)));
             }
             _ if cells.iter().all(is_empty) => {}
-            _ => self.rows.push(Row::Cells(cells)),
+            _ => {
+                self.filled += 1;
+                self.rows.push(Row::Cells(cells));
+            }
         }
         Ok(end + 1)
     }
@@ -114,6 +153,11 @@ impl<'a> Grid<'a> {
         }
         Ok((Cell { range: open + 1..at, quoted: true }, after))
     }
+}
+
+/// A text whose lines end as those of old Macintosh programs, with today's ends at the same bytes.
+pub(super) fn with_line_feeds(text: &str) -> Cow<'_, str> {
+    if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n").into() } else { text.into() }
 }
 
 /// The content of a cell in this text.

@@ -9,12 +9,15 @@
 //! those of JSON.
 //!
 //! As spreadsheets in some countries write tables, columns may be separated by semicolons or tabs; numbers may have a
-//! decimal comma then. A table that is written again keeps its separators, the order of its columns, and its comments.
+//! decimal comma then. Lines may end as on old Macintoshes. A table that is written again keeps its separators, the order of its columns, and its comments.
+
+use std::borrow::Cow;
 
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
+    light::MAX_LIGHTS,
     registry::Registry,
-    scene::{Scene, error::LoadError, read, save::to_json},
+    scene::{MAX_OBJECTS, Scene, error::LoadError, read, save::to_json},
     text::place::Lines,
 };
 
@@ -33,6 +36,16 @@ use grid::Grid;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Csv;
 
+impl Csv {
+    /// The most rows that are no remarks: the heading, the scene, the observer, and all parts that a scene may have. A
+    /// table with more is read no further, so it costs what the largest legal one does.
+    pub const MAX_ROWS: usize = 3 + MAX_LIGHTS + MAX_OBJECTS;
+    /// The most cells of a row. There are some hundred columns with a meaning.
+    pub const MAX_COLUMNS: usize = 1 << 15;
+    /// The most cells and remarks; a legal table with all columns has a third.
+    pub const MAX_CELLS: usize = 4_000_000;
+}
+
 impl SceneFormat for Csv {
     fn name(&self) -> &'static str {
         "CSV"
@@ -45,7 +58,7 @@ impl SceneFormat for Csv {
     /// True if the first line that is no comment begins with the name of the first column.
     fn recognises(&self, content: &[u8]) -> bool {
         let text = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
-        let mut lines = text.split(|b| *b == b'\n').map(<[u8]>::trim_ascii);
+        let mut lines = text.split(|b| b"\r\n".contains(b)).map(<[u8]>::trim_ascii);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
         let first = first.split(|b| b",;\t".contains(b)).next().unwrap_or_default().trim_ascii();
         [columns::PART.as_bytes(), b"\"part\""].contains(&first)
@@ -53,14 +66,16 @@ impl SceneFormat for Csv {
 
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
         let text = source.text_after_mark()?;
-        let syntax =
-            |(at, what): (usize, String)| source.syntax_error(self.name(), Lines::new(text).place(at), what);
-        let grid = Grid::of(text).map_err(syntax)?;
+        let lines = grid::with_line_feeds(text);
+        let syntax = |(at, what): (usize, String)| {
+            source.syntax_error(self.name(), Lines::new(&lines).place(at), what)
+        };
+        let grid = Grid::of(&lines).map_err(syntax)?;
         let columns = Columns::of(&grid, registry).map_err(syntax)?;
         // Decimal commas become points, at the same byte.
         let text = match rows::decimal_commas(&grid, &columns) {
-            commas if commas.is_empty() => text,
-            commas => source.derived(|| rows::with_points(text, &commas)),
+            commas if commas.is_empty() && matches!(lines, Cow::Borrowed(_)) => text,
+            commas => source.derived(|| rows::with_points(&lines, &commas)),
         };
         let (root, problems) = rows::tree(text, &grid, columns);
         Ok(read::parsed(text, root, source.folder, registry, problems.into_parts()))

@@ -4,7 +4,7 @@ use std::{borrow::Cow, collections::HashSet};
 
 use super::{
     columns::{self, Columns, Part},
-    grid::{Grid, Row},
+    grid::{Grid, Row, with_line_feeds},
     rows::decimal_commas,
 };
 use crate::{
@@ -48,6 +48,7 @@ impl Manner {
     /// The manner of a table; that of new ones if it is none.
     fn of(old: &str, registry: &Registry) -> Self {
         let text = old.trim_start_matches('\u{FEFF}');
+        let text = &*with_line_feeds(text);
         let Ok(grid) = Grid::of(text) else { return Self::default() };
         let Ok(columns) = Columns::of(&grid, registry) else { return Self::default() };
         let mut manner = Self {
