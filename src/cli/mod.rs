@@ -10,6 +10,7 @@ use crate::{
     parameter::outside,
     registry::Registry,
     scene::load::Defaults,
+    signals::Interrupt,
 };
 use std::{
     ffi::OsString,
@@ -34,6 +35,7 @@ mod custom;
 mod evaluate;
 mod explain;
 mod export;
+mod finite;
 mod lesson;
 mod matching;
 mod models;
@@ -152,6 +154,7 @@ enum Command {
     /// Write the default scene to a new file
     New {
         /// File to write; it must not exist yet
+        #[arg(value_parser = outputs::place())]
         file: PathBuf,
     },
     /// Write a scene as code: a project, shaders, a page, a program, a scene for another renderer
@@ -265,6 +268,11 @@ pub fn run_with(
     }
     if cli.options.allow_outside {
         outside::allow_all();
+    }
+    // The window has its own way to end.
+    if !matches!(cli.command, None | Some(Command::View(_) | Command::TryShaders)) {
+        // Without it, a signal may leave temporary files to the next tidying.
+        let _ = Interrupt::end_tidily();
     }
     let mut registry = Registry::builtin();
     types(&mut registry);

@@ -2,6 +2,7 @@
 
 use super::{Options, Outcome, custom, print, print_text, workshop::Places};
 use crate::{
+    failure::Failure,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
     reflection::{ModelEntry, Term},
     registry::Registry,
@@ -56,7 +57,13 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known
         Some(Command::Check { id, json }) => {
             custom::check(&id, json, options, &mut places.open(options, known)?)
         }
-        None => list(arguments.json, places.open(options, known)?.list()),
+        None => {
+            let mut workshop = places.open(options, known)?;
+            let sound = workshop.read_all();
+            list(arguments.json, &workshop.registry)?;
+            // Their problems are printed already.
+            if sound { Ok(()) } else { Err(Failure::Invalid(String::new())) }
+        }
     }
 }
 
