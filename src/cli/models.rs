@@ -59,10 +59,11 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known
         }
         None => {
             let mut workshop = places.open(options, known)?;
-            let sound = workshop.read_all();
+            let undeclared = workshop.declare_all();
             list(arguments.json, &workshop.registry)?;
-            // Their problems are printed already.
-            if sound { Ok(()) } else { Err(Failure::Invalid(String::new())) }
+            // A model whose declaration is right is listed, and its other problems come behind the list.
+            let broken = workshop.read_all();
+            if undeclared || broken { Err(Failure::Invalid(String::new())) } else { Ok(()) }
         }
     }
 }
