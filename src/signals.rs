@@ -3,7 +3,8 @@
 //! A thread of its own handles them, so they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`) is a
 //! request: the window closes as with Ctrl+Q, with a question if there are unsaved changes. The second one, `SIGTERM`,
 //! `SIGHUP` and `SIGQUIT` end the program whatever the window does, after a last action given by the caller; then the
-//! process dies of the signal, as whoever waits for it expects.
+//! process dies of the signal, as whoever waits for it expects. Whatever it ends leaves no temporary files, in commands
+//! without a window too.
 
 use std::{
     io,
@@ -37,6 +38,16 @@ impl Interrupt {
         let interrupt = Self::default();
         system::listen(interrupt.clone(), wake, last_act)?;
         Ok(interrupt)
+    }
+
+    /// Lets every signal that ends this process remove its temporary files first. For commands without a window, in which
+    /// nobody waits for a request.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn end_tidily() -> io::Result<()> {
+        // As if the first request had not been answered.
+        system::listen(Self(Arc::new(AtomicU8::new(HEARD))), || (), |_| ())
     }
 
     /// True once for each Ctrl+C that the window should answer.
@@ -92,6 +103,7 @@ mod system {
                     continue;
                 }
                 last_act(signal_name(signal).unwrap_or("a signal"));
+                files::give_up();
                 let _ = emulate_default_handler(signal);
             }
         })?;
@@ -106,6 +118,7 @@ mod system {
     }
 
     pub(super) fn end_by_interrupt() {
+        files::give_up();
         let _ = emulate_default_handler(SIGINT);
     }
 }
@@ -138,6 +151,7 @@ mod system {
     }
 
     pub(super) fn end_by_interrupt() {
+        crate::files::give_up();
         process::exit(INTERRUPTED);
     }
 }

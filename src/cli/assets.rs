@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 
-use super::{Options, Outcome, complain, print_paths};
+use super::{Options, Outcome, complain, outputs, print_paths};
 use crate::{failure::Failure, library::assets, registry::Registry};
 
 #[derive(Subcommand, Debug)]
@@ -13,6 +13,7 @@ pub(super) enum Command {
     /// are kept
     Export {
         /// Destination folder; created if it does not exist
+        #[arg(value_parser = outputs::place())]
         folder: PathBuf,
     },
 }

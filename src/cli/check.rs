@@ -5,11 +5,54 @@ use std::{fmt::Write as _, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Options, Outcome, complain, print, print_text, scenes::Source, workshop::Workshop};
-use crate::{
-    failure::Failure,
-    scene::{error::Problem, load::Defaults},
+use super::{
+    Options, Outcome, complain, print, print_text,
+    scenes::Source,
+    workshop::{Workshop, on_disk, shader_problems},
 };
+use crate::{
+    explain::finite::{Scope, Tried, probe},
+    failure::Failure,
+    registry::Registry,
+    scene::{
+        Scene,
+        error::{Path, Problem},
+        load::Defaults,
+    },
+    shader::{check::ShaderProblem, report::annotated},
+};
+
+/// The problems of a legal scene that show when it is drawn, for people and for programs: shaders that are wrong, and
+/// light that is not finite, in any of its views.
+fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem>) {
+    let (mut said, mut problems) = (Vec::new(), Vec::new());
+    let mut tried = Tried::default();
+    for view in 0..=scene.variants.len() {
+        let Some((seen, _)) = scene.seen(view, registry) else { continue };
+        for (i, problem) in shader_problems(registry, &seen) {
+            let file = on_disk(registry, &problem.file);
+            let ShaderProblem { line, column, message, .. } = &problem;
+            let rule =
+                format!("cannot be drawn: there is an error in a shader, {file}:{line}:{column}: {message}");
+            put(&mut problems, Problem::about(Path::root().key("objects").index(i), rule), || {
+                said.push(annotated(&problem, &file));
+            });
+        }
+        for odd in probe(&seen, registry, Scope::All, &mut tried) {
+            let line = format!("{name}: {odd}");
+            put(&mut problems, Problem::about(odd.path, odd.what), || said.push(line));
+        }
+    }
+    (said.join("\n"), problems)
+}
+
+/// Adds what is not there yet.
+fn put(problems: &mut Vec<Problem>, problem: Problem, say: impl FnOnce()) {
+    if !problems.contains(&problem) {
+        say();
+        problems.push(problem);
+    }
+}
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -41,7 +84,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     for path in &arguments.scenes {
         let source = Source::named(path);
         let mut problems = Vec::new();
-        match source.read(workshop, defaults) {
+        let read = source.read(workshop, defaults).map_err(|error| (error.to_string(), error.problems()));
+        let checked =
+            read.and_then(|loaded| match drawn(&loaded.scene, &source.name(), &workshop.registry) {
+                (_, problems) if problems.is_empty() => Ok(loaded),
+                wrong => Err(wrong),
+            });
+        match checked {
             Ok(loaded) => {
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
@@ -54,11 +103,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                 }
                 let _ = writeln!(listed, "{}: valid: {}", source.name(), counts.join(", "));
             }
-            Err(error) => {
+            Err((said, found)) => {
                 invalid += 1;
-                problems = error.problems();
+                problems = found;
                 if !arguments.json {
-                    complain(&error);
+                    complain(&said);
                 }
             }
         }
@@ -78,5 +127,76 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             arguments.scenes.len(),
             if n == 1 { "is" } else { "are" }
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        optics::{Frame, Terms},
+        parameters,
+        reflection::{Declaration, ReflectionModel},
+        registry::Register as _,
+        scene::Variant,
+        shader::Source,
+    };
+    use glam::Vec3;
+
+    parameters! {
+        struct Misnamed {}
+    }
+    parameters! {
+        struct Fieldless {}
+    }
+
+    macro_rules! guest {
+        ($name:ident, $id:literal, $text:literal) => {
+            impl ReflectionModel for $name {
+                const DECLARATION: Declaration =
+                    Declaration::new($id, "Guest", Source::new(concat!($id, ".wgsl"), $text));
+                fn response(&self, _: Vec3, _: Vec3, _: &Frame) -> Terms {
+                    Terms::default()
+                }
+                fn ambient_response(&self, _: Vec3, _: &Frame) -> Vec3 {
+                    Vec3::ZERO
+                }
+            }
+        };
+    }
+    guest!(Misnamed, "misnamed", "// mine\nfn respond() {}\n");
+    guest!(
+        Fieldless,
+        "fieldless",
+        "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(m.gloss), vec3(0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { return vec3(0.0); }
+"
+    );
+
+    #[test]
+    fn wrong_shaders_of_other_crates_are_problems_of_the_scenes_that_use_them() {
+        let mut registry = Registry::builtin();
+        registry.add_reflection_model::<Misnamed>().add_reflection_model::<Fieldless>();
+        let mut scene = Scene::default();
+        assert_eq!(drawn(&scene, "s.json", &registry), (String::new(), Vec::new()), "they are not used");
+        for (id, place, message) in [
+            ("misnamed", "misnamed.wgsl:2:4", "the function response is missing"),
+            ("fieldless", "fieldless.wgsl:2:", "gloss"),
+        ] {
+            scene.reflection_model = id.to_owned();
+            let (said, problems) = drawn(&scene, "s.json", &registry);
+            assert!(said.contains(place) && said.contains(message), "{said}");
+            assert_eq!(problems.len(), 1, "{problems:?}");
+            let problem = problems[0].to_string();
+            let begins = "objects[0] cannot be drawn: there is an error in a shader";
+            assert!(problem.starts_with(begins), "{problem}");
+            assert!(problem.contains(place) && problem.contains(message), "{problem}");
+        }
+        // A variant is drawn, too.
+        scene.reflection_model = "phong".to_owned();
+        scene.variants.push(Variant { reflection_model: Some("misnamed".to_owned()), ..Variant::default() });
+        assert_eq!(drawn(&scene, "s.json", &registry).1.len(), 1);
     }
 }

@@ -9,9 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Options, Outcome,
-    outputs::{self, inputs},
-    pictures, print,
+    Options, Outcome, outputs, pictures, print,
     render::{self, Size, cpu_can_draw, samples},
     scenes::Source,
     views::{Choice, find},
@@ -19,6 +17,7 @@ use super::{
 };
 use crate::{
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
+    export::write::inputs,
     failure::Failure,
     reference::Settings,
     registry::Registry,
@@ -40,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "B")]
     b: Option<PathBuf>,
     /// PNG file for the picture of the comparison
-    #[arg(long, short, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels; by default that of a PNG picture, or 1280x720
     #[arg(long, value_name = "WxH")]
@@ -296,7 +295,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     let registry = &workshop.registry;
     if let Some(output) = &arguments.output {
-        outputs::picture(output, &inputs(paths.iter().map(|path| path.as_path()), registry))?;
+        let named = paths.iter().map(|path| Source::named(path)).collect::<Vec<_>>();
+        let scenes = read.iter().filter_map(Input::scene);
+        outputs::picture(output, &inputs(named.iter().filter_map(Source::path), scenes, registry))?;
     }
 
     let (comparison, views) = views(arguments, &read)?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, builder::PossibleValuesParser};
 
 use super::{
-    Options, Outcome, progress,
+    Options, Outcome, outputs, progress,
     render::Size,
     scenes::Source,
     workshop::{Workshop, drawable},
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
         value_parser = PossibleValuesParser::new(FORMS.iter().map(|form| form.id)), hide_possible_values = true)]
     form: String,
     /// File or folder to write; by default in the folder exports
-    #[arg(long, short, value_name = "FILE|FOLDER")]
+    #[arg(long, short, value_name = "FILE|FOLDER", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Replace an existing file or folder
     #[arg(long)]
@@ -54,8 +54,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;
     let place = arguments.output.clone().unwrap_or_else(|| form.default_path(&source.stem()));
-    let read = inputs(source.file(), &scene, &workshop.registry);
-    may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
+    let read = inputs(source.path(), [&scene], &workshop.registry);
+    let before = may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
     drawable(&workshop.registry, &scene)?;
     let object = match &arguments.object {
         Some(name) if form.of_object => {
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let made = (form.make)(&request, &Progress { tell: &tell, cancelled: &|| false });
     bar.finish_and_clear();
     let export = made.map_err(|error| refused(&error, form, &source))?;
-    write(&export, &place).map_err(unwritten)?;
+    write(&export, &place, &before).map_err(unwritten)?;
     export.notes.iter().for_each(|note| options.tell(note));
     options.tell(format_args!("wrote {}", place.display()));
     Ok(())
@@ -89,6 +89,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 fn unwritten(error: WriteError) -> Failure {
     let advice = match error {
         WriteError::Exists(_) => "; --overwrite replaces it, -o writes elsewhere",
+        WriteError::Taken(_) => "; -o writes elsewhere",
         _ => "",
     };
     Failure::Write(format!("{error}{advice}"))

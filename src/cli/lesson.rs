@@ -8,7 +8,7 @@ use std::{
 use clap::Subcommand;
 use serde::Serialize;
 
-use super::{Options, Outcome, complain, print, print_text};
+use super::{Options, Outcome, Reach, complain, print, print_text};
 use crate::{
     failure::Failure,
     lesson::{Lesson, Problem, shipped::LESSONS},
@@ -28,12 +28,26 @@ pub(super) enum Command {
         /// Print the result as JSON
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        reach: Reach,
     },
     /// Print a lesson as text, with its answers and conditions
     Show {
         /// A Markdown file, a folder with lesson.md, or the name of a shipped lesson
         file: PathBuf,
+        #[command(flatten)]
+        reach: Reach,
     },
+}
+
+impl Command {
+    /// The files that scenes of lessons may name; none if no lesson is read.
+    pub(super) fn reach(&self) -> Option<Reach> {
+        match self {
+            Self::List => None,
+            Self::Check { reach, .. } | Self::Show { reach, .. } => Some(*reach),
+        }
+    }
 }
 
 /// The result for one lesson, for programs.
@@ -52,8 +66,8 @@ fn file_of(path: &Path) -> String {
 pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> Outcome {
     match command {
         Command::List => list(),
-        Command::Check { files, json } => check(files, *json, options, registry),
-        Command::Show { file } => show(file, registry),
+        Command::Check { files, json, .. } => check(files, *json, options, registry),
+        Command::Show { file, .. } => show(file, registry),
     }
 }
 

@@ -6,12 +6,13 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::{
-    Options, Outcome, print, print_text, progress,
+    Options, Outcome, outputs, print, print_text, progress,
     scenes::Source,
     views::find,
     workshop::{Workshop, drawable},
 };
 use crate::{
+    export::write::inputs,
     failure::Failure,
     matching::{self, Match, MatchError, Request, What, digits, match_view},
     parameter::Value,
@@ -39,8 +40,8 @@ pub(super) struct Arguments {
     /// The parameters that are free, such as alpha,k_s; by default every number
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
-    /// Write the scene with these parameters to this file
-    #[arg(long, short, value_name = "FILE")]
+    /// Write the scene with these parameters to this file, another one than the scene's
+    #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Replace an existing file
     #[arg(long, requires = "output")]
@@ -76,6 +77,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let mut scene = source.open(workshop, options)?;
     let expected = if arguments.overwrite { Expected::Anything } else { Expected::Nothing };
     // Known now rather than after the search.
+    if let Some(file) = &arguments.output {
+        outputs::spare(file, &inputs(source.path(), [&scene], &workshop.registry))?;
+    }
     if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
         return Err(unwritten(&save::SaveError::Exists { path: file.to_owned() }));
     }

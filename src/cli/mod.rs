@@ -10,6 +10,7 @@ use crate::{
     parameter::outside,
     registry::Registry,
     scene::load::Defaults,
+    signals::Interrupt,
 };
 use std::{
     ffi::OsString,
@@ -34,6 +35,7 @@ mod custom;
 mod evaluate;
 mod explain;
 mod export;
+mod finite;
 mod lesson;
 mod matching;
 mod models;
@@ -61,6 +63,8 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     view: view::Arguments,
+    #[command(flatten)]
+    scenes: SceneOptions,
     #[command(flatten)]
     options: Options,
     #[command(flatten)]
@@ -91,24 +95,97 @@ const EXIT_STATUS: &str = "Exit status: 0 success; 1 a scene or an input is inva
 /// Options of every command.
 #[derive(Args, Clone, Copy, Debug)]
 struct Options {
-    /// Use defaults for a missing scene size, reflection model or shading model, without asking
-    #[arg(long, global = true, conflicts_with = "no_defaults")]
-    use_defaults: bool,
-    /// Reject scenes without scene size, reflection model or shading model, without asking
-    #[arg(long, global = true)]
-    no_defaults: bool,
-    /// Let scenes read files outside their folders
-    #[arg(long, global = true)]
-    allow_outside: bool,
     /// Print only results and errors
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
     /// Print details of what is done
     #[arg(long, short, global = true)]
     verbose: bool,
+    /// Those of the command, if it reads scenes.
+    #[arg(skip)]
+    scenes: SceneOptions,
     /// True if this program reads such arguments when it is started again.
     #[arg(skip)]
     restarts: bool,
+}
+
+/// Options of commands that read files which scenes name.
+#[derive(Args, Clone, Copy, Debug, Default)]
+struct Reach {
+    /// Let scenes read files outside their folders
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+/// Options of commands that read scenes. They may stand before the command, too.
+#[derive(Args, Clone, Copy, Debug, Default)]
+struct SceneOptions {
+    /// Use defaults for a missing scene size, reflection model or shading model, without asking
+    #[arg(long, conflicts_with = "no_defaults")]
+    use_defaults: bool,
+    /// Reject scenes without scene size, reflection model or shading model, without asking
+    #[arg(long)]
+    no_defaults: bool,
+    #[command(flatten)]
+    reach: Reach,
+}
+
+/// The arguments of a command that reads scenes.
+#[derive(Args, Debug)]
+struct OfScenes<T: Args> {
+    #[command(flatten)]
+    own: T,
+    #[command(flatten)]
+    scenes: SceneOptions,
+}
+
+impl SceneOptions {
+    /// The first that is given, for messages.
+    fn given(self) -> Option<&'static str> {
+        let all = [
+            (self.use_defaults, "--use-defaults"),
+            (self.no_defaults, "--no-defaults"),
+            (self.reach.allow_outside, "--allow-outside"),
+        ];
+        all.into_iter().find_map(|(given, name)| given.then_some(name))
+    }
+}
+
+impl Cli {
+    /// The options of scenes that stand before the command or behind it.
+    fn scene_options(&self) -> Result<SceneOptions, Failure> {
+        use Command::{Check, Compare, Explain, Export, Lesson, Match, Render, View};
+        let before = self.scenes;
+        let own = match &self.command {
+            None => Some(SceneOptions::default()),
+            Some(View(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Render(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Compare(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Check(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Export(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Explain(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Match(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Lesson(command)) if !before.use_defaults && !before.no_defaults => {
+                command.reach().map(|reach| SceneOptions { reach, ..SceneOptions::default() })
+            }
+            Some(_) => None,
+        };
+        let Some(own) = own else {
+            return match before.given() {
+                None => Ok(before),
+                Some(flag) => Err(Failure::Usage(format!("{flag} is not an option of this command"))),
+            };
+        };
+        let merged = SceneOptions {
+            use_defaults: before.use_defaults || own.use_defaults,
+            no_defaults: before.no_defaults || own.no_defaults,
+            reach: Reach { allow_outside: before.reach.allow_outside || own.reach.allow_outside },
+        };
+        if merged.use_defaults && merged.no_defaults {
+            return Err(Failure::Usage("--use-defaults cannot be used with --no-defaults".to_owned()));
+        }
+        Ok(merged)
+    }
 }
 
 impl Options {
@@ -120,7 +197,7 @@ impl Options {
 
     /// The answer of the flags to missing parts, if they give one.
     fn defaults(self) -> Defaults {
-        match (self.use_defaults, self.no_defaults) {
+        match (self.scenes.use_defaults, self.scenes.no_defaults) {
             (true, _) => Defaults::Use,
             (_, true) => Defaults::Refuse,
             _ => Defaults::Ask,
@@ -145,33 +222,34 @@ impl Options {
 #[derive(Subcommand, Debug)]
 enum Command {
     /// Open the window (same as `lcm` alone)
-    View(view::Arguments),
+    View(OfScenes<view::Arguments>),
     /// Render scenes to PNG files
-    Render(render::Arguments),
+    Render(OfScenes<render::Arguments>),
     /// Compare two views of a scene, two scenes or two pictures: numbers as JSON, and a picture
     ///
     /// Without B, the scene is compared with its own variant. Prints RMSE, PSNR, SSIM, FLIP and the largest difference.
-    Compare(compare::Arguments),
+    Compare(OfScenes<compare::Arguments>),
     /// Check scenes and print every problem
-    Check(check::Arguments),
+    Check(OfScenes<check::Arguments>),
     /// Write the default scene to a new file
     New {
         /// File to write; it must not exist yet
+        #[arg(value_parser = outputs::place())]
         file: PathBuf,
     },
     /// Write a scene as code: a project, shaders, a page, a program, a scene for another renderer
-    Export(export::Arguments),
+    Export(OfScenes<export::Arguments>),
     /// Explain the colour of a pixel: the equation with its numbers, light by light, and the way to the display
     ///
     /// Prints a worked example: where the equation was evaluated, directions and cosines, the intensity of each light, each
     /// term, their sum, exposure, tone mapping, encoding and code. One sample, at the pixel's centre, by the CPU renderer.
-    Explain(explain::Arguments),
+    Explain(OfScenes<explain::Arguments>),
     /// List, check and print lessons
     #[command(subcommand)]
     Lesson(lesson::Command),
     /// Find the parameters of a view that come nearest to view A
-    Match(matching::Arguments),
-    /// List the reflection models with their laws and parameters; write and check custom models
+    Match(OfScenes<matching::Arguments>),
+    /// List reflection models, shading models, light types and object types; write and check custom models
     Models(models::Arguments),
     /// Copy the built-in shaders and example models to a folder for editing
     #[command(subcommand)]
@@ -268,8 +346,17 @@ pub fn run_with(
     if cli.loads_driver() {
         runtime_folder::provide();
     }
-    if cli.options.allow_outside {
+    match cli.scene_options() {
+        Ok(scenes) => cli.options.scenes = scenes,
+        Err(failure) => return ended(Err(failure)),
+    }
+    if cli.options.scenes.reach.allow_outside {
         outside::allow_all();
+    }
+    // The window has its own way to end.
+    if !matches!(cli.command, None | Some(Command::View(_) | Command::TryShaders)) {
+        // Without it, a signal may leave temporary files to the next tidying.
+        let _ = Interrupt::end_tidily();
     }
     let mut registry = Registry::builtin();
     types(&mut registry);
@@ -309,24 +396,26 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     let places = &cli.places;
     match cli.command {
         None => view::run(cli.view, options, places, known, window),
-        Some(Command::View(arguments)) => view::run(arguments, options, places, known, window),
+        Some(Command::View(arguments)) => view::run(arguments.own, options, places, known, window),
         Some(Command::Render(arguments)) => {
-            render::run(&arguments, options, &mut places.open(options, known)?)
+            render::run(&arguments.own, options, &mut places.open(options, known)?)
         }
         Some(Command::Compare(arguments)) => {
-            compare::run(&arguments, options, &mut places.open(options, known)?)
+            compare::run(&arguments.own, options, &mut places.open(options, known)?)
         }
-        Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options, known)?),
+        Some(Command::Check(arguments)) => {
+            check::run(&arguments.own, options, &mut places.open(options, known)?)
+        }
         Some(Command::New { file }) => new::run(&file, options, &known),
         Some(Command::Export(arguments)) => {
-            export::run(&arguments, options, &mut places.open(options, known)?)
+            export::run(&arguments.own, options, &mut places.open(options, known)?)
         }
         Some(Command::Explain(arguments)) => {
-            explain::run(&arguments, options, &mut places.open(options, known)?)
+            explain::run(&arguments.own, options, &mut places.open(options, known)?)
         }
         Some(Command::Lesson(command)) => lesson::run(&command, options, places.open(options, known)?.list()),
         Some(Command::Match(arguments)) => {
-            matching::run(&arguments, options, &mut places.open(options, known)?)
+            matching::run(&arguments.own, options, &mut places.open(options, known)?)
         }
         Some(Command::Models(arguments)) => models::run(arguments, options, places, known),
         Some(Command::Assets(command)) => assets::run(&command, options, &known),
@@ -406,8 +495,43 @@ mod tests {
             ["lcm", "--use-defaults", "render", "room.json"],
         ] {
             let cli = Cli::try_parse_from(arguments).expect("valid");
-            assert!(cli.options.use_defaults && matches!(cli.command, Some(Command::Render(_))));
+            assert!(cli.scene_options().expect("valid").use_defaults);
+            assert!(matches!(cli.command, Some(Command::Render(_))));
             assert_eq!(cli.view.given(), None);
         }
+    }
+
+    #[test]
+    fn options_of_scenes_are_those_of_commands_that_read_scenes_alone() {
+        let all = ["--use-defaults", "--no-defaults", "--allow-outside"];
+        let mut shown = Vec::new();
+        for mut command in Cli::command().get_subcommands().cloned() {
+            let help = command.render_long_help().to_string();
+            match all.iter().filter(|flag| help.contains(**flag)).count() {
+                0 => {}
+                3 => shown.push(command.get_name().to_owned()),
+                _ => panic!("{help}"),
+            }
+        }
+        assert_eq!(shown, ["view", "render", "compare", "check", "export", "explain", "match"]);
+        let said = |arguments: &[&str]| {
+            let cli = Cli::try_parse_from([&["lcm"], arguments].concat());
+            cli.map_err(|e| e.to_string()).and_then(|cli| cli.scene_options().map_err(|e| e.to_string()))
+        };
+        for command in
+            ["schema", "models", "study", "new x.json", "evaluate phong", "plot phong", "lesson list"]
+        {
+            let words: Vec<_> = command.split(' ').collect();
+            for flag in all {
+                let behind = said(&[&words[..], &[flag]].concat()).expect_err(command);
+                assert!(behind.contains(&format!("unexpected argument '{flag}'")), "{behind}");
+                let before = said(&[&[flag], &words[..]].concat()).expect_err(command);
+                assert_eq!(before, format!("{flag} is not an option of this command"));
+            }
+        }
+        let outside = said(&["lesson", "check", "l.md", "--allow-outside"]).expect("lessons have scenes");
+        assert!(outside.reach.allow_outside);
+        let both = said(&["--use-defaults", "check", "x", "--no-defaults"]).expect_err("both");
+        assert_eq!(both, "--use-defaults cannot be used with --no-defaults");
     }
 }

@@ -1,7 +1,8 @@
-//! `lcm models`: the reflection models.
+//! `lcm models`: the reflection models, shading models, light types and object types.
 
 use super::{Options, Outcome, custom, print, print_text, workshop::Places};
 use crate::{
+    failure::Failure,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
     reflection::{ModelEntry, Term},
     registry::Registry,
@@ -64,16 +65,110 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known
         Some(Command::Check { id, json }) => {
             custom::check(&id, json, options, &mut places.open(options, known)?)
         }
-        None => list(arguments.json, places.open(options, known)?.list()),
+        None => {
+            let mut workshop = places.open(options, known)?;
+            let undeclared = workshop.declare_all();
+            list(arguments.json, &workshop.registry)?;
+            // A model whose declaration is right is listed, and its other problems come behind the list.
+            let broken = workshop.read_all();
+            if undeclared || broken { Err(Failure::Invalid(String::new())) } else { Ok(()) }
+        }
     }
 }
 
 fn list(as_json: bool, registry: &Registry) -> Outcome {
     if as_json {
-        let models: Vec<_> = registry.models().iter().map(|m| model(m, registry)).collect();
-        return print(&format!("{:#}\n", Json::from(models)));
+        let models = registry.models().iter().map(|m| model(m, registry));
+        let others = others(registry).map(|other| other.to_json());
+        return print(&format!("{:#}\n", models.chain(others).collect::<Json>()));
     }
     print_text(&table(registry))
+}
+
+/// What is no reflection model.
+struct Other {
+    kind: &'static str,
+    /// The heading in lists.
+    heading: &'static str,
+    id: &'static str,
+    name: &'static str,
+    summary: &'static str,
+    parameters: &'static [Parameter],
+    /// What only this kind has, for people and for programs.
+    note: String,
+    more: Vec<(&'static str, Json)>,
+}
+
+impl Other {
+    fn to_json(&self) -> Json {
+        let mut json = json!({
+            "kind": self.kind,
+            "id": self.id,
+            "name": self.name,
+            "summary": self.summary,
+            "parameters": self.parameters.iter().map(parameter).collect::<Vec<_>>(),
+        });
+        for (key, value) in &self.more {
+            json[*key] = value.clone();
+        }
+        json
+    }
+}
+
+/// Shading models, light types and object types.
+fn others(registry: &Registry) -> impl Iterator<Item = Other> {
+    let shading = registry.shading_models().iter().map(|entry| {
+        let d = entry.declaration;
+        Other {
+            kind: "shading model",
+            heading: "Shading models",
+            id: d.id,
+            name: d.name,
+            summary: d.summary,
+            parameters: entry.parameters,
+            note: d.author.to_owned(),
+            more: vec![("author", d.author.into()), ("source", d.source.into())],
+        }
+    });
+    let lights = registry.lights().iter().map(|entry| {
+        let d = entry.declaration;
+        Other {
+            kind: "light type",
+            heading: "Light types",
+            id: d.id,
+            name: d.name,
+            summary: d.summary,
+            parameters: entry.parameters,
+            note: format!("intensity in {}", d.unit),
+            more: vec![
+                ("unit", d.unit.into()),
+                ("equation", d.equation.into()),
+                ("has_position", d.has_position.into()),
+                ("has_direction", d.has_direction.into()),
+            ],
+        }
+    });
+    let shapes = registry.shapes().iter().map(|entry| {
+        let d = entry.declaration;
+        let (least, most) = (*d.tessellation.start(), *d.tessellation.end());
+        Other {
+            kind: "object type",
+            heading: "Object types",
+            id: d.id,
+            name: d.name,
+            summary: d.summary,
+            parameters: entry.parameters,
+            note: match most {
+                _ if least == most => String::new(),
+                _ => format!("tessellation {least} to {most}"),
+            },
+            more: vec![(
+                "tessellation",
+                json!({ "min": least, "max": most, "default": d.default_tessellation }),
+            )],
+        }
+    });
+    shading.chain(lights).chain(shapes)
 }
 
 /// A model as shown to programs.
@@ -91,6 +186,7 @@ fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     let equation: Vec<_> =
         d.equation.iter().map(|part| json!({ "term": term(part.term), "text": part.text })).collect();
     let mut json = json!({
+        "kind": "reflection model",
         "id": d.id,
         "name": d.name,
         "family": d.family.name(),
@@ -151,7 +247,7 @@ fn parameter(p: &Parameter) -> Json {
     json
 }
 
-/// The models as shown to people.
+/// All of them as shown to people.
 fn table(registry: &Registry) -> String {
     let mut text = String::new();
     let longest = |of: fn(&ModelEntry) -> &str| {
@@ -174,21 +270,35 @@ fn table(registry: &Registry) -> String {
         if let Some(file) = registry.custom_file(d.id) {
             let _ = writeln!(text, "  {:ids$}  {}", "", file.display());
         }
-        for p in m.parameters {
-            let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
-            let used = p.used_when.map_or_else(String::new, |u| {
-                format!("; used with {} {}", u.parameter, u.choices.join(", "))
-            });
-            let _ = writeln!(
-                text,
-                "  {:ids$}    {} ({}){unit}: {}, default {}{used}",
-                "",
-                p.name,
-                p.label,
-                p.rule(),
-                p.default_value()
-            );
+        parameters(&mut text, ids, m.parameters);
+    }
+    let mut heading = "";
+    for other in others(registry) {
+        if std::mem::replace(&mut heading, other.heading) != other.heading {
+            let _ = writeln!(text, "\n{heading}");
         }
+        let line = format!("  {:ids$}  {:names$}  {}", other.id, other.name, other.note);
+        let _ = writeln!(text, "{}\n  {:ids$}  {}", line.trim_end(), "", other.summary);
+        parameters(&mut text, ids, other.parameters);
     }
     text
+}
+
+/// Parameters below the line of what has them, whose id takes so many columns.
+fn parameters(text: &mut String, ids: usize, all: &[Parameter]) {
+    for p in all {
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+        let used = p
+            .used_when
+            .map_or_else(String::new, |u| format!("; used with {} {}", u.parameter, u.choices.join(", ")));
+        let _ = writeln!(
+            text,
+            "  {:ids$}    {} ({}){unit}: {}, default {}{used}",
+            "",
+            p.name,
+            p.label,
+            p.rule(),
+            p.default_value()
+        );
+    }
 }

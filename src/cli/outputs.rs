@@ -1,19 +1,45 @@
 //! Results must not replace inputs, nor files of another kind.
 
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{Outcome, complain};
-use crate::{failure::Failure, files, registry::Registry};
+use crate::{failure::Failure, files};
 
-/// The inputs of a command: scenes, and the files from which its registry was read.
-pub(super) fn inputs<'a>(scenes: impl IntoIterator<Item = &'a Path>, registry: &Registry) -> Vec<PathBuf> {
-    scenes.into_iter().map(Path::to_owned).chain(registry.files_on_disk()).collect()
+/// The parser of all files and folders that commands write. `-` is none: where standard output is meant, it has a name.
+pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|text: OsString| {
+        if text == "-" {
+            return Err(
+                "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard \
+                        output",
+            );
+        }
+        Ok(PathBuf::from(text))
+    })
+}
+
+/// Refuses a result that would replace an input. Called before anything is calculated.
+pub(super) fn spare(output: &Path, inputs: &[PathBuf]) -> Outcome {
+    files::spare(output, inputs.iter().map(PathBuf::as_path)).map_err(refused)
 }
 
 /// Refuses a picture that would replace an input, or a file that is no picture. Called before anything is drawn.
 pub(super) fn picture(output: &Path, inputs: &[PathBuf]) -> Outcome {
-    files::may_overwrite(output, files::PNG, inputs.iter().map(PathBuf::as_path))
-        .map_err(|refused| Failure::Write(refused.to_string()))
+    of_format(output, files::PNG, inputs)
+}
+
+/// The same for a file of some format.
+pub(super) fn of_format(output: &Path, format: files::Signature, inputs: &[PathBuf]) -> Outcome {
+    files::may_overwrite(output, format, inputs.iter().map(PathBuf::as_path)).map_err(refused)
+}
+
+fn refused(refused: files::Refused) -> Failure {
+    Failure::Write(refused.to_string())
 }
 
 /// Tidies the folder of a file to be written, and reports problems that need a person.

@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     curves::{Channel, CurveError, Detail, Format, Kind, Setup, Sheet, Subject, curve, slice, subjects_with},
+    export::write::inputs,
     failure::Failure,
     files::{self, Output},
     optics::colour::Encoding,
@@ -63,7 +64,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     data: Vec<String>,
     /// File to write: .svg, .png or .csv; without it CSV goes to standard output
-    #[arg(long, short, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
 }
 
@@ -113,9 +114,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         );
     }
     if let (Some(file), Some(format)) = (&arguments.output, format) {
-        let inputs = outputs::inputs([], registry);
-        files::may_overwrite(file, format.signature(), inputs.iter().map(PathBuf::as_path))
-            .map_err(|refused| Failure::Write(refused.to_string()))?;
+        outputs::of_format(file, format.signature(), &inputs([], [], registry))?;
     }
     let sheet = sheet(&subjects, setup, arguments, options, registry)?;
     let (Some(file), Some(format)) = (&arguments.output, format) else {

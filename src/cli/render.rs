@@ -5,15 +5,14 @@ use std::{
     fs, io,
     path::{Path, PathBuf},
     str::FromStr,
+    sync::atomic::AtomicBool,
 };
 
 use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Options, Outcome,
-    outputs::{self, inputs},
-    progress,
+    Options, Outcome, finite, outputs, progress,
     scenes::Source,
     views::{self, Part, Plan},
     workshop::{Workshop, drawable, invalid, not_on_cpu},
@@ -22,6 +21,7 @@ use crate::{
     caption,
     channel::{DebugChannel, Setting},
     compare::{Cell, Shown, compose, with_legend},
+    export::write::inputs,
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
@@ -55,7 +55,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// PNG file, or folder for the pictures of several scenes; by default the folder renders
-    #[arg(long, short, value_name = "FILE|FOLDER")]
+    #[arg(long, short, value_name = "FILE|FOLDER", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
@@ -263,7 +263,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         return Err(Failure::Invalid(problems.join("\n")));
     }
     // By now the registry knows the files of models and shaders.
-    let read = inputs(sources.iter().filter_map(Source::file), registry);
+    let read = inputs(sources.iter().filter_map(Source::path), &scenes, registry);
     files.iter().try_for_each(|file| outputs::picture(file, &read))?;
     for part in plans.iter().flat_map(|plan| &plan.parts) {
         drawable(registry, &part.scene)?;
@@ -322,7 +322,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             channel,
             with_legend: !arguments.no_legend,
         };
-        painter.draw(&job, registry)?;
+        let remarks = painter.draw(&job, registry)?;
+        remarks.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", source.name())));
         bar.inc(1);
         if bar.is_hidden() {
             options.tell(format_args!("wrote {}", file.display()));
@@ -370,8 +371,8 @@ impl Painter {
         }
     }
 
-    /// Renders one picture.
-    fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
+    /// Renders one picture. Returns remarks on light that is not finite.
+    fn draw(&mut self, job: &Job, registry: &Registry) -> Result<Vec<String>, Failure> {
         let gpu = self.takes_gpu(job.plan, registry);
         if gpu && job.plan.needs_light() {
             return Err(Failure::NoRenderer(format!(
@@ -380,8 +381,12 @@ impl Painter {
             )));
         }
         let mut shown = Vec::with_capacity(job.plan.parts.len());
+        let mut remarks = Vec::new();
         for part in &job.plan.parts {
-            shown.push(if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? });
+            let (drawn, remark) =
+                if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? };
+            shown.push(drawn);
+            remarks.extend(remark);
         }
         let rgb8 = match shown.pop() {
             Some(only) if shown.is_empty() => only.into_rgb8(),
@@ -408,10 +413,16 @@ impl Painter {
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
             _ => Failure::Write(format!("{} could not be written: {e}", job.file.display())),
-        })
+        })?;
+        Ok(remarks)
     }
 
-    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure> {
+    fn on_gpu(
+        &mut self,
+        job: &Job,
+        part: &Part,
+        registry: &Registry,
+    ) -> Result<(Shown, Option<String>), Failure> {
         let Cell { width, height, .. } = part.cell;
         let key = (width, height, job.samples);
         let failed = |e: GpuError| match e {
@@ -444,7 +455,16 @@ impl Painter {
             return Err(invalid(registry, &problem));
         }
         let rgb8 = renderer.read_rgb8().map_err(failed)?;
-        Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))
+        let shown =
+            Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))?;
+        // What ships with the program is always finite.
+        if registry.sources().edited().next().is_none() && !registry.has_foreign() {
+            return Ok((shown, None));
+        }
+        renderer.set_channel(Some(finite::channel(&part.scene, registry)));
+        renderer.settle().map_err(failed)?;
+        let channel = renderer.read_rgb8().map_err(failed)?;
+        Ok((shown, finite::remark(part, registry, &channel)))
     }
 }
 
@@ -468,21 +488,24 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
     }
 }
 
-fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure> {
+fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<(Shown, Option<String>), Failure> {
     cpu_can_draw(&part.scene, registry)?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
+    let odd = AtomicBool::default();
     let shown = if let Some(channel) = &job.channel {
         let rgb8 = reference::render_channel(&part.scene, registry, &settings, channel);
         Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
     } else if job.plan.needs_light() {
-        Shown::of_light(reference::render(&part.scene, registry, &settings), &part.scene.display)
+        Shown::of_light(reference::render_noting(&part.scene, registry, &settings, &odd), &part.scene.display)
     } else {
-        let rgb8 = reference::render_rgb8(&part.scene, registry, &settings);
+        let rgb8 = reference::render_rgb8_noting(&part.scene, registry, &settings, &odd);
         Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
     };
     // An endless function shows only when it runs.
-    cpu_can_draw(&part.scene, registry).map(|()| shown)
+    cpu_can_draw(&part.scene, registry)?;
+    let remark = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
+    Ok((shown, remark))
 }
 
 /// The views that the picture of a scene shows.
@@ -665,9 +688,6 @@ enum Output {
 /// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other picture
 /// formats are refused; anything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
-    if path == Path::new("-") {
-        return Err(Failure::Usage("-o -: name a PNG file, or /dev/stdout for standard output".to_owned()));
-    }
     match kind_on_disk(path) {
         Ok(Kind::Folder) => return Ok(Output::Folder),
         Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),

@@ -56,10 +56,12 @@ impl Source {
         if path == Path::new("-") { Self::Stdin } else { Self::File(path.to_owned()) }
     }
 
-    /// The file, if it is one.
-    pub(super) fn file(&self) -> Option<&Path> {
+    /// The path that is read, which no result may replace.
+    pub(super) fn path(&self) -> Option<&Path> {
         match self {
-            Self::Default | Self::Inside(_) | Self::Stdin => None,
+            Self::Default | Self::Inside(_) => None,
+            // A shell may have connected it with a file.
+            Self::Stdin => Some(Path::new("/dev/stdin")),
             Self::File(path) => Some(path),
         }
     }

@@ -1,17 +1,18 @@
 //! `lcm study`: the four phenomena as a report.
 
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     time::Instant,
 };
 
 use clap::Args;
 
-use super::{Options, Outcome, progress};
+use super::{Options, Outcome, outputs, progress};
 use crate::{
+    export::write::inputs,
     failure::Failure,
-    files::{Draft, FileError},
+    files::{self, Draft, FileError},
     registry::Registry,
     study,
 };
@@ -22,7 +23,7 @@ const FOLDER: &str = "study";
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Folder for the report and its numbers
-    #[arg(long, short, value_name = "FOLDER", default_value = FOLDER)]
+    #[arg(long, short, value_name = "FOLDER", default_value = FOLDER, value_parser = outputs::place())]
     output: PathBuf,
     /// Use small pictures and a tenth of the materials, for a quick trial
     #[arg(long)]
@@ -32,11 +33,37 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
+/// The reason why there is no report.
+enum Stopped {
+    /// The folder cannot be made.
+    Folder(io::Error),
+    Failed(Failure),
+}
+
+impl From<io::Error> for Stopped {
+    fn from(error: io::Error) -> Self {
+        Self::Folder(error)
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
     let folder = &arguments.output;
     // A write error is better known now than in half a minute.
+    outputs::spare(folder, &inputs([], [], registry))?;
     free(folder, arguments.overwrite)?;
-    writable(folder)?;
+    // Around all of it, so that no empty folder stays if it is ended.
+    files::in_folder(folder, || report(arguments, options, registry).map_err(Stopped::Failed)).map_err(
+        |stopped| match stopped {
+            Stopped::Folder(error) => unwritten(folder, &FileError::from(error)),
+            Stopped::Failed(failure) => failure,
+        },
+    )
+}
+
+fn report(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+    let folder = &arguments.output;
+    Draft::new(&folder.join(study::PAGE)).map_err(|error| unwritten(folder, &error))?;
+    let had_report = study::is_report(folder);
     let start = Instant::now();
     let bar = progress(study::STEPS, options);
     let tell = |what: &str| {
@@ -50,15 +77,23 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     let study = study::run(registry, study::Settings { quick: arguments.quick }, &tell)
         .map_err(|e| Failure::Invalid(e.to_string()))?;
     bar.finish_and_clear();
-    study
-        .write(folder)
-        .map_err(|e| Failure::Write(format!("{} could not be written: {e}", folder.display())))?;
+    if !had_report && free(folder, false).is_err() {
+        return Err(Failure::Write(format!(
+            "somebody else wrote to {} meanwhile; theirs was kept, and this report was not written",
+            folder.display()
+        )));
+    }
+    study.write(folder).map_err(|error| unwritten(folder, &error.into()))?;
     options.tell(format_args!(
         "wrote {} ({:.0} s)",
         folder.join("index.html").display(),
         start.elapsed().as_secs_f64()
     ));
     Ok(())
+}
+
+fn unwritten(folder: &Path, error: &FileError) -> Failure {
+    Failure::Write(format!("{} could not be written: {error}", folder.display()))
 }
 
 /// Refuses a folder with files in it: a report is replaced only at the user's request, anything else never.
@@ -76,12 +111,4 @@ fn free(folder: &Path, overwrite: bool) -> Outcome {
             "{name} has files that are not a report; use -o FOLDER to write to another folder"
         ))),
     }
-}
-
-/// Creates the folder, and fails if it cannot be written to.
-fn writable(folder: &Path) -> Outcome {
-    fs::create_dir_all(folder)
-        .map_err(FileError::from)
-        .and_then(|()| Draft::new(&folder.join(study::PAGE)).map(drop))
-        .map_err(|e| Failure::Write(format!("{} could not be written: {e}", folder.display())))
 }

@@ -7,6 +7,7 @@ use clap::{Args, CommandFactory as _};
 
 use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::{
+    export::write::inputs,
     failure::Failure,
     files,
     lesson::{Lesson, shipped::LESSONS},
@@ -30,7 +31,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
     exit_after: Option<u32>,
     /// Write the whole window, panels included, to a PNG file before it closes
-    #[arg(long, value_name = "FILE", requires = "exit_after")]
+    #[arg(long, value_name = "FILE", requires = "exit_after", value_parser = outputs::place())]
     capture: Option<PathBuf>,
     /// Leave the scene out of that file: lcm cannot open it then
     #[arg(long, requires = "capture")]
@@ -61,7 +62,7 @@ pub(super) fn run(
     let source = Source::of(arguments.scene.as_deref(), &workshop);
     let Arguments { exit_after, capture, no_scene, size, lesson, step, .. } = arguments;
     if let Some(capture) = &capture {
-        outputs::picture(capture, &outputs::inputs(source.file(), &workshop.registry))?;
+        outputs::picture(capture, &inputs(source.path(), [], &workshop.registry))?;
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {

@@ -1,7 +1,7 @@
 //! Shaders and custom models on disk: where commands find them, and messages about errors in them.
 
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -122,6 +122,34 @@ impl Workshop {
             complain(all_annotated(&problems));
         }
         &self.registry
+    }
+
+    /// Reads the declarations of all custom models, and reports their problems. True if there are any.
+    pub(super) fn declare_all(&mut self) -> bool {
+        let problems = folder::declare_rest(&mut self.registry).problems;
+        if !problems.is_empty() {
+            complain(all_annotated(&problems));
+        }
+        !problems.is_empty()
+    }
+
+    /// Reads all custom models completely, and reports their problems; of very many, it leaves it at their declarations.
+    /// True if there are any.
+    pub(super) fn read_all(&mut self) -> bool {
+        /// Each takes some 15 ms.
+        const MOST: usize = 64;
+        let ids: Vec<_> = self.registry.custom_models().map(|(model, _)| model.declaration.id).collect();
+        if ids.len() > MOST {
+            self.options.tell(format_args!(
+                "of {} custom models the declarations alone were read; `lcm models check ID` checks all of one",
+                ids.len()
+            ));
+            return false;
+        }
+        for id in &ids {
+            self.read(id);
+        }
+        self.registry.custom_models().count() < ids.len()
     }
 
     /// Reads a scene from the content of a file, with the custom models that it names. The declarations of others are
@@ -292,7 +320,7 @@ pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failur
 }
 
 /// The file on disk from which a source was read, for messages.
-fn on_disk(registry: &Registry, file: &str) -> String {
+pub(super) fn on_disk(registry: &Registry, file: &str) -> String {
     registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.display().to_string())
 }
 
@@ -312,23 +340,38 @@ pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
 
 /// Fails if a shader for a scene is invalid, as the files on disk have it, or other crates compiled it in.
 pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
+    match shader_problems(registry, scene).into_iter().next() {
+        Some((_, problem)) => Err(invalid(registry, &problem)),
+        None => Ok(()),
+    }
+}
+
+/// The problems of the shaders for a scene, each with the first object that is drawn with it.
+pub(super) fn shader_problems(registry: &Registry, scene: &Scene) -> Vec<(usize, ShaderProblem)> {
     if registry.sources().edited().next().is_none() && !registry.has_foreign() {
-        return Ok(());
+        return Vec::new();
     }
     let lights = registry.lights_in(scene.light_types(registry));
-    let pairs: BTreeSet<_> =
-        scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
-    for (model, shading) in pairs {
+    let mut pairs = BTreeMap::new();
+    for (i, object) in scene.objects.iter().enumerate() {
+        pairs.entry((scene.model_of(object), scene.shading_model_of(object))).or_insert(i);
+    }
+    let mut problems: Vec<(usize, ShaderProblem)> = Vec::new();
+    for ((model, shading), i) in pairs {
         let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
             continue;
         };
         let composed = compose(registry.sources(), model, shading, &lights);
         let faces = shading.declaration.stage == Stage::Polygon;
-        validate_drawing(&composed, faces).map_err(|problem| {
-            invalid(registry, &wgsl::blamed(problem, registry, model, shading, &lights))
-        })?;
+        if let Err(problem) = validate_drawing(&composed, faces) {
+            let problem = wgsl::blamed(problem, registry, model, shading, &lights);
+            // One model has it under several shading models.
+            if !problems.iter().any(|(_, known)| *known == *problem) {
+                problems.push((i, *problem));
+            }
+        }
     }
-    Ok(())
+    problems
 }
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ use crate::{
 
 mod collect;
 mod equation;
+pub mod finite;
 mod json;
 mod numbers;
 mod text;

@@ -8,7 +8,7 @@ use std::{
 
 use super::{Export, File, Form, Makes};
 use crate::{
-    files::{self, Draft, FileError, FolderDraft},
+    files::{self, Before, Draft, FileError, FolderDraft, Refused},
     registry::Registry,
     scene::Scene,
 };
@@ -34,32 +34,46 @@ pub enum WriteError {
     /// It is a file of another kind.
     #[error("{} is a file of another kind than the export; it was not overwritten", .0.display())]
     OtherFile(PathBuf),
-    /// It holds a file that this command reads.
-    #[error("{} is read by this command; it was not overwritten", .0.display())]
-    Input(PathBuf),
+    /// It is read by this command, or holds what is.
+    #[error(transparent)]
+    Input(#[from] Refused),
+    /// Somebody else wrote there since it was examined.
+    #[error("somebody else wrote {} while this export was made; theirs was kept, and this one was not written", .0.display())]
+    Taken(PathBuf),
     /// The system refuses.
     #[error("{} could not be written: {}", .0.display(), .1)]
     System(PathBuf, FileError),
 }
 
-/// What exporting a scene reads: its file, the files that it names, those of models and shaders, and this program.
+/// Everything that a command or the window reads: the files of scenes and what they name, those of models and shaders,
+/// and this program. No result may replace one: see [`files::spare`].
 #[must_use]
-pub fn inputs(file: Option<&Path>, scene: &Scene, registry: &Registry) -> Vec<PathBuf> {
-    let named = scene.files().filter_map(|file| file.path().map(Path::to_owned));
+pub fn inputs<'a>(
+    files: impl IntoIterator<Item = &'a Path>,
+    scenes: impl IntoIterator<Item = &'a Scene>,
+    registry: &Registry,
+) -> Vec<PathBuf> {
+    let named = scenes.into_iter().flat_map(Scene::files).filter_map(|file| file.path().map(Path::to_owned));
     // By the name that people know it by.
     let program = files::program().and_then(|program| fs::canonicalize(program).ok());
-    let scene = file.map(Path::to_owned).into_iter().chain(named);
-    scene.chain(registry.files_on_disk()).chain(program).collect()
+    let files = files.into_iter().map(Path::to_owned).chain(named);
+    files.chain(registry.files_on_disk()).chain(program).collect()
 }
 
 /// Refuses a place that holds something, unless the user wants it replaced; inputs, and things of another kind, are
-/// never replaced. Called before anything is calculated.
+/// never replaced. Called before anything is calculated. Returns what is there now, which [`write()`] expects.
 ///
 /// # Errors
 /// If an export must not be written there.
-pub fn may_write(form: &Form, place: &Path, overwrite: bool, inputs: &[PathBuf]) -> Result<(), WriteError> {
+pub fn may_write(
+    form: &Form,
+    place: &Path,
+    overwrite: bool,
+    inputs: &[PathBuf],
+) -> Result<Before, WriteError> {
+    let before = Before::of(place);
     if fs::symlink_metadata(place).is_err() {
-        return Ok(());
+        return Ok(before);
     }
     let folder = fs::metadata(place).is_ok_and(|target| target.is_dir());
     match form.makes {
@@ -80,19 +94,20 @@ pub fn may_write(form: &Form, place: &Path, overwrite: bool, inputs: &[PathBuf])
     if folder && env::current_dir().is_ok_and(|here| here.starts_with(&whole)) {
         return Err(WriteError::Here(place.to_owned()));
     }
-    if empty {
-        return Ok(());
-    }
-    let read = inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|i| i.starts_with(&whole)));
-    read.map_or(Ok(()), |input| Err(WriteError::Input(input.to_owned())))
+    files::spare(place, inputs.iter().map(PathBuf::as_path))?;
+    Ok(before)
 }
 
-/// Writes an export, after [`may_write`]. What was there is replaced only when everything is on disk.
+/// Writes an export, after [`may_write`], which said what was there. That is replaced only when everything is on disk;
+/// what somebody else wrote since stays.
 ///
 /// # Errors
-/// If a folder of something else is there, or the system refuses; then nothing is left, and what was there is
-/// unchanged.
-pub fn write(export: &Export, place: &Path) -> Result<(), WriteError> {
+/// If a folder of something else is there, somebody else wrote there, or the system refuses; then nothing is left, and
+/// what was there is unchanged.
+pub fn write(export: &Export, place: &Path, before: &Before) -> Result<(), WriteError> {
+    if Before::of(place) != *before {
+        return Err(WriteError::Taken(place.to_owned()));
+    }
     // Whoever names a folder to put the export into must not lose what is in it.
     if let [first, _, ..] = export.files.as_slice()
         && !is_empty(place)
@@ -109,10 +124,13 @@ pub fn write(export: &Export, place: &Path) -> Result<(), WriteError> {
     };
     stranger.map_or(Ok(()), Err)?;
     let written = files::in_folder(files::folder_of(place), || match export.files.as_slice() {
-        [only] if only.path.is_empty() => single(only, place),
-        all => folder(all, place),
+        [only] if only.path.is_empty() => single(only, place, before),
+        all => folder(all, place, before),
     });
-    written.map_err(|error| WriteError::System(place.to_owned(), error))
+    written.map_err(|error| match error {
+        FileError::Taken => WriteError::Taken(place.to_owned()),
+        error => WriteError::System(place.to_owned(), error),
+    })
 }
 
 /// The first bytes by which the kind of a file is known.
@@ -160,17 +178,17 @@ fn is_empty(place: &Path) -> bool {
     }
 }
 
-fn single(file: &File, place: &Path) -> Result<(), FileError> {
+fn single(file: &File, place: &Path, before: &Before) -> Result<(), FileError> {
     let draft = Draft::new(place)?;
     let mut draft = if file.executable { draft.executable() } else { draft };
     draft.write_all(&file.bytes)?;
-    draft.replace()
+    draft.replace_if(before)
 }
 
-fn folder(all: &[File], place: &Path) -> Result<(), FileError> {
+fn folder(all: &[File], place: &Path, before: &Before) -> Result<(), FileError> {
     let draft = FolderDraft::new(place)?;
     for file in all {
         draft.add(&file.path, &file.bytes, file.executable)?;
     }
-    Ok(draft.replace()?)
+    draft.replace_if(before)
 }

@@ -8,7 +8,13 @@ use std::{
 
 use tempfile::NamedTempFile;
 
-use super::{FileError, folder_of, follow, is_same, litter, options, regular, tidy};
+use super::{
+    FileError,
+    before::{Before, Turn},
+    folder_of, follow, is_same, litter,
+    living::{self, Living, Temporary},
+    options, regular, tidy,
+};
 
 /// Writes a document, replacing any that exists: all or nothing, and on disk when this returns. Links are followed;
 /// mode, owner, group and hard links are kept where the system allows it.
@@ -37,6 +43,7 @@ pub struct Draft {
     /// The destination, links followed.
     target: PathBuf,
     file: NamedTempFile,
+    living: Living,
     /// True if it must be on disk before it takes its place.
     synced: bool,
     /// True if it becomes a program.
@@ -75,11 +82,14 @@ impl Draft {
         }
         #[cfg(not(unix))]
         let _ = is_new;
-        let file = litter::locked(
-            || builder.tempfile_in(folder_of(&target)),
-            |file| (file.as_file(), file.path().to_owned()),
-        )?;
-        Ok(Self { target, file, synced, executable: false })
+        let make = || {
+            litter::locked(
+                || builder.tempfile_in(folder_of(&target)),
+                |file| (file.as_file(), file.path().to_owned()),
+            )
+        };
+        let (file, living) = Living::making(make, |file| Temporary::File(file.path().to_owned()))?;
+        Ok(Self { target, file, living, synced, executable: false })
     }
 
     /// The same draft, of a program.
@@ -94,12 +104,37 @@ impl Draft {
     /// # Errors
     /// [`io::ErrorKind::AlreadyExists`] if there is something, and any error of the system.
     pub fn create(mut self) -> Result<(), FileError> {
+        if self.executable {
+            make_executable(self.file.as_file())?;
+        }
         self.sync()?;
-        let Self { target, file, synced, .. } = self;
+        let Self { target, file, living: _living, synced, .. } = self;
+        let step = living::step();
         // The file stays open, and so locked, until its folder is on disk.
-        let _file = file.persist_noclobber(&target).map_err(|e| e.error)?;
+        let persisted = file.persist_noclobber(&target);
+        drop(step);
+        let _file = persisted.map_err(|e| e.error)?;
         sync_folder(&target, synced);
         Ok(())
+    }
+
+    /// Puts it in its place, if what is there is still what was there before: with nothing there as
+    /// [`create`](Self::create), otherwise as [`replace`](Self::replace).
+    ///
+    /// # Errors
+    /// [`FileError::Taken`] if something else is there by now, and as those.
+    pub fn replace_if(self, before: &Before) -> Result<(), FileError> {
+        let _turn = Turn::in_folder(folder_of(&self.target));
+        if *before != Before::of(&self.target) {
+            return Err(FileError::Taken);
+        }
+        if !before.is_nothing() {
+            return self.replace();
+        }
+        self.create().map_err(|error| match error {
+            FileError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists => FileError::Taken,
+            error => error,
+        })
     }
 
     /// Puts it in its place, replacing any file there.
@@ -122,8 +157,11 @@ impl Draft {
             make_executable(self.file.as_file())?;
         }
         self.sync()?;
-        let Self { target, file, synced, .. } = self;
-        let _file = file.persist(&target).map_err(|e| e.error)?;
+        let Self { target, file, living: _living, synced, .. } = self;
+        let step = living::step();
+        let persisted = file.persist(&target);
+        drop(step);
+        let _file = persisted.map_err(|e| e.error)?;
         sync_folder(&target, synced);
         Ok(())
     }
@@ -133,9 +171,12 @@ impl Draft {
     fn overwrite(mut self, mut place: File, old: &Metadata) -> Result<(), FileError> {
         self.synced = true;
         self.sync()?;
-        let Self { target, file, executable, .. } = self;
+        let Self { target, file, living: _living, executable, .. } = self;
         let copy = litter::whole(file.path(), old);
-        let mut whole = file.persist(&copy).map_err(|e| e.error)?;
+        let step = living::step();
+        let persisted = file.persist(&copy);
+        drop(step);
+        let mut whole = persisted.map_err(|e| e.error)?;
         sync_folder(&target, true);
         whole
             .rewind()

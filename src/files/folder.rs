@@ -9,7 +9,14 @@ use std::{
 
 use tempfile::TempDir;
 
-use super::{FileError, draft::make_executable, folder_of, follow, litter, tidy};
+use super::{
+    FileError,
+    before::{Before, Turn},
+    draft::make_executable,
+    folder_of, follow, litter,
+    living::{self, Living, Temporary},
+    tidy,
+};
 
 /// The new content of a folder, not yet in its place. Dropping it deletes it.
 ///
@@ -23,6 +30,7 @@ pub struct FolderDraft {
     /// The destination, links followed.
     target: PathBuf,
     folder: TempDir,
+    _living: Living,
 }
 
 impl FolderDraft {
@@ -36,20 +44,24 @@ impl FolderDraft {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is not a folder").into());
         }
         let around = folder_of(&target);
-        let draft = litter::locked(
-            || {
-                let mut builder = tempfile::Builder::new();
-                let folder = builder.prefix(litter::PREFIX).suffix(litter::DRAFT).tempdir_in(around)?;
-                let path = folder.path().join(litter::LOCK);
-                let lock = File::create_new(&path)?;
-                Ok((lock, folder))
-            },
-            |(lock, folder)| (lock, folder.path().join(litter::LOCK)),
-        )?;
-        let (lock, folder) = draft;
-        fs::create_dir(folder.path().join(litter::NEW))?;
+        let make = || {
+            let draft = litter::locked(
+                || {
+                    let mut builder = tempfile::Builder::new();
+                    let folder = builder.prefix(litter::PREFIX).suffix(litter::DRAFT).tempdir_in(around)?;
+                    let path = folder.path().join(litter::LOCK);
+                    let lock = File::create_new(&path)?;
+                    Ok((lock, folder))
+                },
+                |(lock, folder)| (lock, folder.path().join(litter::LOCK)),
+            )?;
+            fs::create_dir(draft.1.path().join(litter::NEW))?;
+            Ok(draft)
+        };
+        let ((lock, folder), living) =
+            Living::making(make, |(_, folder)| Temporary::Draft(folder.path().to_owned()))?;
         let _ = tidy(around);
-        Ok(Self { _lock: lock, target, folder })
+        Ok(Self { _lock: lock, target, folder, _living: living })
     }
 
     /// Adds a file; `path` is its path within the folder, with `/`.
@@ -63,6 +75,7 @@ impl FolderDraft {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
         let path = self.folder.path().join(litter::NEW).join(within);
+        let _step = living::step();
         fs::create_dir_all(folder_of(&path))?;
         fs::write(&path, bytes)?;
         if executable { make_executable(&File::open(&path)?) } else { Ok(()) }
@@ -72,7 +85,26 @@ impl FolderDraft {
     ///
     /// # Errors
     /// If there is anything but a folder, and any error of the system; then what was there is unchanged.
-    pub fn replace(self) -> io::Result<()> {
+    pub fn replace(mut self) -> io::Result<()> {
+        let step = living::step();
+        let exchanged = self.exchange();
+        // Dropping the draft is a step of its own.
+        drop(step);
+        exchanged
+    }
+
+    /// Puts it in its place, if what is there is still what was there before.
+    ///
+    /// # Errors
+    /// [`FileError::Taken`] if something else is there by now, and as [`replace`](Self::replace).
+    pub fn replace_if(self, before: &Before) -> Result<(), FileError> {
+        let _turn = Turn::in_folder(folder_of(&self.target));
+        let same = *before == Before::of(&self.target);
+        if same { Ok(self.replace()?) } else { Err(FileError::Taken) }
+    }
+
+    /// Two renames, or one.
+    fn exchange(&mut self) -> io::Result<()> {
         let new = self.folder.path().join(litter::NEW);
         match fs::symlink_metadata(&self.target) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return fs::rename(&new, &self.target),
@@ -89,7 +121,7 @@ impl FolderDraft {
         let exchanged = fs::rename(&new, &self.target);
         if exchanged.is_err() && fs::rename(&old, &self.target).is_err() {
             // What was there must not be deleted with the draft; tidying puts it back when it can.
-            let _ = self.folder.keep();
+            self.folder.disable_cleanup(true);
         }
         exchanged
     }
@@ -105,6 +137,9 @@ pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> R
         let message = format!("{} is not a folder", file.display());
         return Err(io::Error::new(io::ErrorKind::NotADirectory, message).into());
     }
+    // Known until the end, in case this process is ended meanwhile.
+    let known = |folder: &&Path| Living::making(|| Ok(()), |()| Temporary::Folder((*folder).to_owned()));
+    let _living = new.iter().map(known).collect::<Result<Vec<_>, _>>()?;
     fs::create_dir_all(folder).map_err(E::from).and_then(|()| write()).inspect_err(|_| {
         // Only empty ones go.
         new.iter().for_each(|folder| drop(fs::remove_dir(folder)));

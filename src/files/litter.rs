@@ -160,6 +160,13 @@ fn remove_if_left(path: &Path) {
 fn remove_folder_if_left(path: &Path) {
     // One without a lock is that of a process killed at once, or of somebody else, who may have put something in it.
     let Some(lock) = left(&path.join(LOCK)) else { return };
+    // Not every system deletes open files.
+    drop(lock);
+    remove_draft(path);
+}
+
+/// Removes the draft of a folder that nobody works on, as [`remove_folder_if_left`] does.
+pub(super) fn remove_draft(path: &Path) {
     let old = fs::read_dir(path.join(OLD)).ok().and_then(|mut entries| entries.next());
     if let Some(old) = old {
         let Ok(old) = old else { return };
@@ -168,8 +175,6 @@ fn remove_folder_if_left(path: &Path) {
             return;
         }
     }
-    // Not every system deletes open files.
-    drop(lock);
     let _ = fs::remove_dir_all(path);
 }
 

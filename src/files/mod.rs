@@ -15,7 +15,10 @@
 //! - [`FolderDraft`]: a folder of files, all or nothing.
 //! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called before it is
 //!   calculated.
+//! - [`spare`]: refuses a result that would replace an input: the one rule for all that writes results.
+//! - [`Before`]: what a place held when it was examined, so that what somebody else writes there meanwhile is kept.
 //! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted writes.
+//! - [`give_up`]: removes the temporary files of this process, which a signal ends.
 //!
 //! To report:
 //! - [`words()`]: a failure of the system without its number.
@@ -43,22 +46,26 @@ use std::{
     path::{Path, PathBuf},
 };
 
+mod before;
 mod draft;
 mod folder;
 mod input;
 mod inside;
 mod litter;
+mod living;
 mod output;
 mod shown;
 mod stamp;
 mod words;
 
+pub use before::Before;
 pub use draft::{Draft, create, write};
 pub use folder::{FolderDraft, in_folder};
 pub use input::{is_descriptor, is_stream, read_input};
 pub use inside::inside;
 pub use litter::{Unfinished, tidy};
-pub use output::{Output, PNG, Refused, Signature, may_overwrite};
+pub use living::give_up;
+pub use output::{Output, PNG, Refused, Signature, may_overwrite, spare};
 pub use shown::printable;
 pub use stamp::Stamp;
 pub use words::words;
@@ -137,6 +144,9 @@ pub enum FileError {
         /// The failure of the operating system.
         error: io::Error,
     },
+    /// Something else is there than when its place was examined.
+    #[error("somebody else wrote there meanwhile")]
+    Taken,
     /// It is not in the folder in which it must be.
     #[error("it is outside the folder {}", .0.display())]
     Outside(PathBuf),
@@ -151,6 +161,7 @@ impl From<FileError> for io::Error {
             FileError::Kind(Kind::Folder) => io::ErrorKind::IsADirectory,
             FileError::Kind(_) => io::ErrorKind::InvalidInput,
             FileError::TooLarge(_) => io::ErrorKind::FileTooLarge,
+            FileError::Taken => io::ErrorKind::AlreadyExists,
             FileError::Outside(_) => io::ErrorKind::PermissionDenied,
             FileError::Unfinished { error, .. } => error.kind(),
             FileError::Io(_) => io::ErrorKind::Other,

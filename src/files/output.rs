@@ -1,9 +1,9 @@
 //! The results of commands: destinations, and how to write them.
 
 use std::{
-    fs::File,
+    fs::{self, File},
     io::{self, Write},
-    path::{Path, PathBuf},
+    path::{self, Path, PathBuf},
     thread,
     time::{Duration, Instant},
 };
@@ -38,12 +38,12 @@ pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n
 /// The reason why an output must not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum Refused {
-    /// It is one of the inputs.
+    /// It is one of the inputs, or a folder that holds one.
     #[error("{} {}; it was not overwritten", .output.display(), overlap(.output, .input))]
     Input {
         /// The output.
         output: PathBuf,
-        /// The input that is the same file.
+        /// The input that is the same file, or in the folder.
         input: PathBuf,
     },
     /// There is a file of another format.
@@ -65,10 +65,34 @@ pub enum Refused {
 }
 
 fn overlap(output: &Path, input: &Path) -> String {
-    if output == input {
+    // The program is known by its whole path.
+    if matches!((path::absolute(output), path::absolute(input)), (Ok(output), Ok(input)) if output == input) {
         "is read by this command".to_owned()
+    } else if output.is_dir() {
+        format!("holds {}, which is read by this command", input.display())
     } else {
         format!("is the same file as {}, which is read by this command", input.display())
+    }
+}
+
+/// Refuses a result that would replace an input of its command, by whatever path, link or hard link, or a folder around
+/// one. Everything that writes results asks this before it begins.
+///
+/// # Errors
+/// If it would.
+pub fn spare<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Refused> {
+    // What a shell opened for this process is the shell's concern.
+    if descriptor(output).is_some() {
+        return Ok(());
+    }
+    let folder = fs::canonicalize(output).ok().filter(|whole| whole.is_dir());
+    let holds = |input: &Path| match &folder {
+        Some(folder) => fs::canonicalize(input).is_ok_and(|input| input.starts_with(folder)),
+        None => kind(output).is_ok_and(|kind| kind == Kind::File) && same(input, output),
+    };
+    match inputs.into_iter().find(|input| holds(input)) {
+        Some(input) => Err(Refused::Input { output: output.to_owned(), input: input.to_owned() }),
+        None => Ok(()),
     }
 }
 
@@ -86,10 +110,8 @@ pub fn may_overwrite<'a>(
     if !kind(output).is_ok_and(|kind| kind == Kind::File) || descriptor(output).is_some() {
         return Ok(());
     }
+    spare(output, inputs)?;
     let owned = || output.to_owned();
-    if let Some(input) = inputs.into_iter().find(|input| same(input, output)) {
-        return Err(Refused::Input { output: owned(), input: input.to_owned() });
-    }
     match read_start(output, sort.begins.len() as u64) {
         Ok(start) if start.is_empty() || start == sort.begins => Ok(()),
         Ok(_) => Err(Refused::Foreign { output: owned(), what: sort.what }),

@@ -115,10 +115,10 @@ fn doubt(
     }
     session.disk_settled();
     session.disk.told = Some(version);
+    session.disk.lost = true;
     if version.is_none() {
         // Saving writes the file anew, if there is still none.
         files.expect(&path, None);
-        session.disk.gone = true;
         let text =
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
         session.set_disk_badge(
@@ -135,6 +135,13 @@ fn doubt(
         &path,
         "has errors: showing the last good version",
         &problems.join("\n"),
+    );
+    session.say_of_disk(
+        Severity::Warning,
+        format!(
+            "{} no longer holds the scene that is shown, which is kept: it is unsaved now.",
+            path.display()
+        ),
     );
     // The latest stands on top: the first problem.
     for problem in problems.iter().rev() {

@@ -1,5 +1,7 @@
 //! The light loop: the sum over all lights, common to all models.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::Vec3;
 
 use crate::{
@@ -23,6 +25,8 @@ pub(super) struct Lights {
     terms: TermSelection,
     /// True if values that are no numbers, or too bright, stay as they are.
     raw: bool,
+    /// True once a sum was not finite.
+    odd: AtomicBool,
 }
 
 impl Lights {
@@ -39,12 +43,17 @@ impl Lights {
                 group(&lights, encoding)
             })
             .collect();
-        Self { groups, observer: scene.observer.position, terms, raw: false }
+        Self { groups, observer: scene.observer.position, terms, raw: false, odd: AtomicBool::new(false) }
     }
 
     /// The same, with values that are no numbers, or too bright, as they are.
     pub(super) fn raw(self) -> Self {
         Self { raw: true, ..self }
+    }
+
+    /// True if a sum was not finite so far.
+    pub(super) fn was_odd(&self) -> bool {
+        self.odd.load(Ordering::Relaxed)
     }
 
     /// The lights as they shine on one surface.
@@ -95,6 +104,9 @@ impl Lighting for LightsOn<'_> {
         let sum = self.sum(position, v, &Frame::new(normal, tangent));
         if self.lights.raw {
             return sum;
+        }
+        if !sum.is_finite() {
+            self.lights.odd.store(true, Ordering::Relaxed);
         }
         sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
     }
@@ -159,6 +171,7 @@ pub(super) fn light_by_light(
             observer: all.observer,
             terms,
             raw: false,
+            odd: AtomicBool::new(false),
         };
         let response = match incident {
             Incident::From { l, .. } => surface.response(l, v, &frame),

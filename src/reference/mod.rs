@@ -24,7 +24,10 @@
 //! [`Stage::Pixel`]: crate::shading::Stage::Pixel
 //! [`Stage::Polygon`]: crate::shading::Stage::Polygon
 
-use std::time::Instant;
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -122,7 +125,13 @@ impl Picture {
 /// Renders a scene to light.
 #[must_use]
 pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Picture {
-    let pixels = draw(scene, registry, settings, None, None, Vec4::ZERO, |pixel| pixel);
+    render_noting(scene, registry, settings, &AtomicBool::default())
+}
+
+/// The same; sets `odd` if light that is not finite was replaced, as the channel [`DebugChannel::NotANumber`] shows.
+#[must_use]
+pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, odd: &AtomicBool) -> Picture {
+    let pixels = draw(scene, registry, settings, None, (None, odd), Vec4::ZERO, |pixel| pixel);
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
@@ -130,9 +139,21 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 /// holding the whole picture in floating point.
 #[must_use]
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
+    render_rgb8_noting(scene, registry, settings, &AtomicBool::default())
+}
+
+/// The same; sets `odd` as [`render_noting`] does.
+#[must_use]
+pub fn render_rgb8_noting(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    odd: &AtomicBool,
+) -> Vec<u8> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    draw(scene, registry, settings, None, None, background, |pixel| display.apply(pixel)).into_flattened()
+    draw(scene, registry, settings, None, (None, odd), background, |pixel| display.apply(pixel))
+        .into_flattened()
 }
 
 /// The same, unless it is not finished by then.
@@ -145,7 +166,8 @@ pub fn render_rgb8_until(
 ) -> Option<Vec<u8>> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    let pixels = draw(scene, registry, settings, None, Some(end), background, |pixel| display.apply(pixel));
+    let until = (Some(end), &AtomicBool::default());
+    let pixels = draw(scene, registry, settings, None, until, background, |pixel| display.apply(pixel));
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
@@ -161,7 +183,8 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
     let ground = if wires { DebugChannel::NotANumber } else { setting.channel };
     let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
     let finish = |pixel| display.apply(pixel);
-    let mut rgb8 = draw(scene, registry, settings, Some(&sight), None, background, finish).into_flattened();
+    let ever = (None, &AtomicBool::default());
+    let mut rgb8 = draw(scene, registry, settings, Some(&sight), ever, background, finish).into_flattened();
     if wires {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
     }
@@ -171,20 +194,20 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
 /// Polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
 /// Draws a scene: `background` where there is no object, and elsewhere the result of `finish` on the light. Anything
-/// not done by `end` is skipped.
+/// not done by `end` is skipped; `odd` is set if light was not finite.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
     sight: Option<&Sight>,
-    end: Option<Instant>,
+    (end, odd): (Option<Instant>, &AtomicBool),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
     if settings.samples > 1 {
-        draw_sampled::<4, T>(scene, registry, settings, sight, end, background, finish)
+        draw_sampled::<4, T>(scene, registry, settings, sight, (end, odd), background, finish)
     } else {
-        draw_sampled::<1, T>(scene, registry, settings, sight, end, background, finish)
+        draw_sampled::<1, T>(scene, registry, settings, sight, (end, odd), background, finish)
     }
 }
 
@@ -193,7 +216,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     registry: &Registry,
     settings: &Settings,
     sight: Option<&Sight>,
-    end: Option<Instant>,
+    (end, odd): (Option<Instant>, &AtomicBool),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
@@ -276,6 +299,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             }
         }
     }
+    odd.fetch_or(lights.was_odd(), Ordering::Relaxed);
     out
 }
 

@@ -109,6 +109,14 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
         let vector = |words: [u32; 3]| Vec3::from_array(words.map(f32::from_bits));
         let wgsl = (vector([x, y, z]), vector([red, green, blue]));
         let (l, rust, uniform) = flat((light.instantiate)(&values, Encoding::Srgb).incident(&record, p));
+        for (language, value, direction) in [("Rust", rust, l), ("WGSL", wgsl.1, wgsl.0)] {
+            if !(value.is_finite() && direction.is_finite()) {
+                return Err(format!(
+                    "{values:?} at {p}, {record:?}: its light is not finite: {language} gives the intensity {value} and \
+                     the direction {direction}"
+                ));
+            }
+        }
         // At the edge of a beam a rounded angle is much of little light: 1 % of the mean in all directions is dark.
         let mean = light.solid_angle(&values).map_or(0.0, |sr| sr as f32 / (2.0 * TAU));
         let dark = 0.01 * mean * record.intensity / (record.position - p).length_squared().max(1e-6);
@@ -143,8 +151,13 @@ pub fn laws(light: &LightEntry) -> Outcome {
         let case = |what: String| Err(format!("{values:?} at {p}, {record:?}: {what}"));
         let emitter = (light.instantiate)(&values, Encoding::Srgb);
         let (l, intensity, uniform) = flat(emitter.incident(&record, p));
-        if !(intensity.is_finite() && intensity.min_element() >= 0.0) {
-            return case(format!("the intensity is {intensity}, but must be finite and not negative"));
+        if !(intensity.is_finite() && l.is_finite()) {
+            return case(format!(
+                "its light is not finite: the intensity is {intensity}, and the direction to the light {l}"
+            ));
+        }
+        if intensity.min_element() < 0.0 {
+            return case(format!("the intensity is {intensity}, but must not be negative"));
         }
         // At the light itself there is none.
         let directed = uniform == 0 && intensity != Vec3::ZERO && p != record.position;

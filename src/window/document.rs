@@ -14,6 +14,7 @@ use super::{
     effects::{Unattended, carry_out},
     exports::Exports,
     files::DiskFiles,
+    finite::report_light_that_is_not_finite,
     laws::LawChecks,
     lessons::follow_lesson,
     matching::Matches,
@@ -106,6 +107,10 @@ impl Plugin for DocumentPlugin {
                         .run_if(resource_exists::<FileWatch>),
                     carry_out.in_set(Loading::Effects),
                     publish.in_set(Loading::Publish).run_if(resource_changed::<Session>),
+                    report_light_that_is_not_finite
+                        .after(Loading::Publish)
+                        .in_set(LabSystems::Load)
+                        .run_if(resource_changed::<Session>.or_else(resource_changed::<Registry>)),
                     take_over.in_set(LabSystems::Edit).after(absorb),
                     report_missing_shapes.in_set(LabSystems::Upload),
                 ),

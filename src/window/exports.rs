@@ -10,7 +10,7 @@ use crate::{
         ExportError, Form, Progress, Request, form,
         write::{WriteError, inputs, may_write, write},
     },
-    files,
+    files::{self, Before},
     panel::{
         export::{SIZE, object},
         state::{Exporting, Session, Severity},
@@ -37,6 +37,8 @@ struct Job {
     stem: String,
     object: usize,
     path: PathBuf,
+    /// What was there when the user chose the place.
+    before: Before,
 }
 
 impl Exports {
@@ -56,12 +58,12 @@ impl Exports {
             return;
         }
         let path = with_extension(form, path);
-        let inputs = inputs(session.path.as_deref(), &session.document, registry);
-        match may_write(form, &path, overwrite, &inputs) {
-            Ok(()) => {}
+        let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
+        let before = match may_write(form, &path, overwrite, &inputs) {
+            Ok(before) => before,
             Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
             Err(error) => return session.say(Severity::Error, format!("{error}.")),
-        }
+        };
         let job = Job {
             form,
             scene: (*session.document).clone(),
@@ -69,6 +71,7 @@ impl Exports {
             stem: session.stem(),
             object: object(session).unwrap_or_default(),
             path,
+            before,
         };
         let broken = vec!["The export broke off: an error of this program.".to_owned()];
         let place = job.path.clone();
@@ -114,7 +117,7 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 }
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
-    let Job { form, scene, registry, stem, object, path } = job;
+    let Job { form, scene, registry, stem, object, path, before } = job;
     let request = Request { scene, registry, stem, size: SIZE, object: *object };
     let made = (form.make)(&request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
@@ -124,7 +127,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Refused(reasons) => reasons.into_iter().map(|reason| format!("{reason}.")).collect(),
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
-    write(&export, path).map_err(|error| vec![format!("{error}.")])?;
+    write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
     Ok(export.notes)
 }
 

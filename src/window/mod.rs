@@ -17,6 +17,7 @@ mod effects;
 mod ending;
 mod exports;
 pub mod files;
+mod finite;
 mod frames;
 mod gizmos;
 mod input;

@@ -174,7 +174,7 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
             png.file_name().unwrap_or_default().to_string_lossy()
         ));
     }
-    let inputs = inputs(session.path.as_deref(), &session.document, registry);
+    let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
     files::may_overwrite(file, files::PNG, inputs.iter().map(PathBuf::as_path))
         .map_err(|refused| format!("The picture was not saved: {refused}."))?;
     Ok(overwrite || !file.exists())

@@ -32,7 +32,7 @@ impl PlotFiles {
         }
         let file = file_of(&path);
         let request = Request::of(session, registry);
-        let inputs = inputs(session.path.as_deref(), &session.document, registry);
+        let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
         let place = file.clone();
         let broken = move || (place, Err("an error of this program".to_owned()));
         // The dialog asked about the file that was typed, and about no other.

@@ -174,6 +174,33 @@ fn models_are_listed_for_people_and_programs() {
         (Some(0.5), Some(1.0), Some(0.8))
     );
     assert_eq!(k_d["type"], "number");
+    // The rest comes behind them.
+    let headings = ["Basic", "\nShading models\n", "\nLight types\n", "\nObject types\n"];
+    let places: Vec<_> = headings.iter().map(|heading| table.find(heading).expect(heading)).collect();
+    assert!(places.is_sorted());
+    for (heading, expected) in [
+        (1, "  gouraud "),
+        (2, "cone_angle (cone angle) °"),
+        (2, "intensity in cd"),
+        (3, "tessellation 2 to 256"),
+        (3, "tube_radius"),
+    ] {
+        let section = &table[places[heading]..places.get(heading + 1).copied().unwrap_or(table.len())];
+        assert!(section.contains(expected), "{expected}: {section}");
+    }
+    let registry = lights_camera_models::registry::Registry::builtin();
+    let kinds = [
+        ("reflection model", registry.models().len()),
+        ("shading model", registry.shading_models().len()),
+        ("light type", registry.lights().len()),
+        ("object type", registry.shapes().len()),
+    ];
+    let listed: Vec<_> =
+        models.as_array().expect("a list").iter().map(|m| m["kind"].as_str().expect("a kind")).collect();
+    let expected: Vec<_> = kinds.iter().flat_map(|(kind, count)| vec![*kind; *count]).collect();
+    assert_eq!(listed, expected);
+    let spot = models.as_array().expect("a list").iter().find(|m| m["id"] == "spot").expect("there");
+    assert_eq!((&spot["unit"], &spot["parameters"][0]["name"]), (&"cd".into(), &"cone_angle".into()));
 }
 
 #[test]

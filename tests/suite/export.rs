@@ -12,6 +12,7 @@ use lights_camera_models::{
         Export, FORMS, File, Form, Makes, form,
         write::{may_write, write},
     },
+    files::Before,
     registry::Registry,
     scene::{Object, Scene, save},
 };
@@ -212,7 +213,7 @@ fn a_folder_with_an_input_is_never_replaced() {
     }
     write_scene(&at("out").join("room.json"), &Scene::default());
     let run = export(folder.path(), &["out/room.json", "--as", "mitsuba", "-o", "out", "--overwrite"]);
-    refused(&run, 4, "out/room.json is read by this command; it was not overwritten");
+    refused(&run, 4, "out holds out/room.json, which is read by this command; it was not overwritten");
 
     // A lamp that the scene names, and a model that it uses.
     let lamp = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/wall_washer.ies"));
@@ -224,13 +225,13 @@ fn a_folder_with_an_input_is_never_replaced() {
     );
     fs::write(at("lit.json"), lit.replace("\"intensity\": 20", "\"intensity\": 1")).expect("written");
     let run = export(folder.path(), &["lit.json", "--as", "mitsuba", "-o", "lamps", "--overwrite"]);
-    refused(&run, 4, "mine.ies is read by this command; it was not overwritten");
+    refused(&run, 4, "mine.ies, which is read by this command; it was not overwritten");
 
     let model = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"));
     fs::write(at("models").join("gooch.wgsl"), model).expect("written");
     fs::write(at("gooch.json"), text.replace("lambert", "gooch")).expect("written");
     let arguments = ["gooch.json", "--models", "models", "--as", "mitsuba", "-o", "models", "--overwrite"];
-    refused(&export(folder.path(), &arguments), 4, "gooch.wgsl is read by this command");
+    refused(&export(folder.path(), &arguments), 4, "gooch.wgsl, which is read by this command");
 
     // The program is one too.
     let copy = at("copy");
@@ -308,7 +309,7 @@ fn where_nothing_can_be_written_nothing_is_left() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("deep/er/out");
     let bad = Export { files: vec![File::new("a", "a"), File::new("../b", "b")], notes: Vec::new() };
-    let said = write(&bad, &place).expect_err("it leads out").to_string();
+    let said = write(&bad, &place, &Before::of(&place)).expect_err("it leads out").to_string();
     assert!(said.contains("../b leads out of the folder"), "{said}");
     assert_eq!(below(folder.path()), Vec::<String>::new());
 }
@@ -327,7 +328,7 @@ fn a_form_that_makes_one_file_replaces_one_file() {
     let place = folder.path().join("file.txt");
     for (text, overwrite) in [("text one", false), ("text two", true)] {
         may_write(&ONE, &place, overwrite, &[]).expect("free, or asked for");
-        write(&Export::file(text), &place).expect("written");
+        write(&Export::file(text), &place, &Before::of(&place)).expect("written");
         assert_eq!(fs::read_to_string(&place).expect("there"), text);
     }
     assert!(may_write(&ONE, &place, false, &[]).is_err());

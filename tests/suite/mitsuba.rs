@@ -9,6 +9,7 @@ use glam::Vec3;
 use lights_camera_models::{
     export::write::write,
     export::{Export, Progress, Request, form},
+    files::Before,
     optics::TermSelection,
     parameter::Value,
     reference::{self, Picture, Settings},
@@ -60,7 +61,8 @@ fn theirs(scenes: &[&Scene]) -> Vec<Vec<Vec3>> {
     let files: Vec<_> =
         (0..scenes.len()).map(|i| folder.path().join(i.to_string()).join("scene.xml")).collect();
     for (scene, file) in scenes.iter().zip(&files) {
-        write(&exported(scene), file.parent().expect("a folder")).expect("written");
+        let place = file.parent().expect("a folder");
+        write(&exported(scene), place, &Before::of(place)).expect("written");
     }
     let python = PYTHON.as_ref().expect("asked for");
     let output = Command::new(python).arg("-c").arg(RENDER).args(&files).output().expect("it runs");

@@ -312,7 +312,7 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
     };
     desk.edited(&broken("7"));
     assert_eq!(desk.session.document, three());
-    assert!(!desk.session.is_dirty(), "nothing was changed here");
+    assert!(desk.session.is_dirty(), "no file has the scene that is shown");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     let name = desk.path().display().to_string();
     // Each of the three objects has the problem, with its line and column.
@@ -338,7 +338,7 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
     desk.edited(&broken("8"));
     desk.edited(&broken("9"));
     assert_eq!((desk.said("k_d is 8"), desk.said("k_d is 9")), (0, 3));
-    assert_eq!(desk.session.messages.len(), 3);
+    assert_eq!((desk.session.messages.len(), desk.said("no longer holds the scene")), (4, 1));
     assert_eq!(desk.complaints().len(), 3);
     // A good one takes it all away, also when it is the one that is shown.
     desk.edited(&text(&three()));
@@ -400,6 +400,54 @@ fn missing_parts_are_not_taken_unasked() {
     desk.session.disk.use_defaults = true;
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
     assert_eq!(desk.session.document, grown(0, 2.0));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_file_that_no_longer_holds_the_scene_leaves_it_unsaved_and_nothing_waits_for_it() {
+    /// Something takes the place of the file.
+    type Happens = fn(&std::path::Path);
+    let fill: [(Happens, &str); 5] = [
+        (|path| fs::write(path, "").unwrap(), "is empty"),
+        (|path| fs::write(path, &text(&three())[..90]).unwrap(), "room.json"),
+        (
+            |path| {
+                fs::remove_file(path).unwrap();
+                assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+            },
+            "a named pipe",
+        ),
+        (|path| fs::File::options().write(true).open(path).unwrap().set_len(1 << 30).unwrap(), "larger than"),
+        (
+            |path| {
+                fs::remove_file(path).unwrap();
+                fs::create_dir(path).unwrap();
+            },
+            "is a folder",
+        ),
+    ];
+    for (happens, expected) in fill {
+        let mut desk = Desk::new();
+        happens(&desk.path());
+        let begin = std::time::Instant::now();
+        assert!(desk.report() && !desk.report(), "{expected}");
+        assert!(begin.elapsed() < std::time::Duration::from_secs(2), "{expected}");
+        assert_eq!(desk.session.document, three());
+        assert!(desk.session.shows_unsaved(), "{expected}: only the window has the scene");
+        assert_eq!(desk.said("no longer holds the scene"), 1, "{expected}");
+        assert!(desk.said(expected) > 0, "{:?}", desk.session.messages);
+        assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
+        assert_eq!(desk.session.disk_badge().map(|b| b.text).as_deref(), Some(desk.badge()), "nobody edited");
+        desk.act(Action::Quit);
+        assert!(matches!(desk.session.questions.open, Some(Question::Unsaved { .. })), "{expected}");
+        desk.act(Action::Answer(Answer::Cancel));
+        // It comes back as it was, and nothing is left of the news.
+        let _ = fs::remove_dir(desk.path());
+        let _ = fs::remove_file(desk.path());
+        desk.edited(&text(&three()));
+        assert_eq!((desk.badge(), desk.session.is_dirty()), ("", false), "{expected}");
+        assert!(desk.session.messages.is_empty(), "{:?}", desk.session.messages);
+    }
 }
 
 #[test]

@@ -171,6 +171,23 @@ fn a_light_that_is_darker_by_a_twentieth_of_a_percent_in_one_language_fails() {
     testing::assert_light::<Dimmer>();
 }
 
+downlight!(Nothing, |i| i / (0.0 * i), std::f64::consts::PI);
+
+#[test]
+#[should_panic(expected = "its light is not finite: Rust gives the intensity [")]
+fn a_light_that_is_not_finite_fails_and_that_is_said() {
+    testing::assert_light::<Nothing>();
+}
+
+#[test]
+#[should_panic(expected = "its light is not finite: the intensity is [")]
+fn the_laws_say_so_too() {
+    let light = lights_camera_models::light::LightEntry::of::<Nothing>();
+    if let Err(what) = testing::lights::laws(&light) {
+        panic!("{what}");
+    }
+}
+
 #[test]
 #[should_panic(expected = "solid_angle is 3.4558 sr, but its light in all directions is 3.14")]
 fn a_light_whose_flux_is_not_what_it_sends_out_fails() {

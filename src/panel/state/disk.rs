@@ -19,8 +19,8 @@ pub struct OnDisk {
     pub(in crate::panel) recovered: bool,
     /// The names of the parts that the file lacks and that the document got as defaults.
     pub(in crate::panel) defaulted: Vec<String>,
-    /// True if the file was deleted, so that only the window has the document.
-    pub(in crate::panel) gone: bool,
+    /// True if the file was deleted or holds no scene any more, so that only the window has the document.
+    pub(in crate::panel) lost: bool,
     /// News came while a question was open.
     pub(in crate::panel) deferred: bool,
     /// A version that cannot be used, but that may be in the middle of being written.
@@ -36,7 +36,7 @@ pub struct OnDisk {
 impl OnDisk {
     /// True if no file has what the document began with.
     pub(super) fn lacks_document(&self) -> bool {
-        self.recovered || !self.defaulted.is_empty() || self.gone
+        self.recovered || !self.defaulted.is_empty() || self.lost
     }
 }
 
@@ -60,7 +60,7 @@ impl Session {
     pub fn disk_badge(&self) -> Option<Badge> {
         let mut badge = self.disk.badge.clone()?;
         // The file cannot be read, so what is shown is the scene before it, or what became of that here.
-        if badge.severity == Severity::Error && self.shows_unsaved() {
+        if badge.severity == Severity::Error && self.lesson.is_none() && self.document.differs() {
             badge.text += " with your unsaved changes";
         }
         Some(badge)

@@ -1,0 +1,46 @@
+//! Remarks on pixels whose light is not finite.
+
+use super::views::Part;
+use crate::{
+    channel::{DebugChannel, Setting},
+    explain::finite::{marked, traced},
+    reference::{self, Settings},
+    registry::Registry,
+    scene::Scene,
+};
+
+/// The setting of the channel that shows them.
+pub(super) fn channel(scene: &Scene, registry: &Registry) -> Setting {
+    Setting::new(DebugChannel::NotANumber, scene, registry, scene.observer.position, None)
+}
+
+/// The remark on a view, from its picture in that channel; none if all its light is finite.
+pub(super) fn remark(part: &Part, registry: &Registry, rgb8: &[u8]) -> Option<String> {
+    let settings = settings(part);
+    let pixels = marked(rgb8, settings.width);
+    if pixels.is_empty() {
+        return None;
+    }
+    let whose: Vec<_> =
+        traced(&part.scene, registry, &settings, &pixels).iter().map(|odd| format!("\n  {odd}")).collect();
+    let (count, are) = match pixels.len() {
+        1 => ("1 pixel".to_owned(), "is"),
+        n => (format!("{n} pixels"), "are"),
+    };
+    Some(format!(
+        "{count} of {}×{} {are} not finite light, which is drawn black or white; --channel not_a_number shows where:{}",
+        settings.width,
+        settings.height,
+        whose.concat()
+    ))
+}
+
+/// The same of a picture of the CPU renderer.
+pub(super) fn remark_on_cpu(part: &Part, registry: &Registry) -> Option<String> {
+    let setting = channel(&part.scene, registry);
+    remark(part, registry, &reference::render_channel(&part.scene, registry, &settings(part), &setting))
+}
+
+fn settings(part: &Part) -> Settings {
+    Settings { width: part.cell.width, height: part.cell.height, samples: 1, terms: part.terms }
+}

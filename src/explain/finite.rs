@@ -1,0 +1,276 @@
+//! Light that is not finite: which light or reflection model of a scene gives it, and where.
+//!
+//! Renderers draw such light as something: NaN as black, infinity as white. This module finds out whose it is, by trying
+//! places and directions, or from pixels that are known to be wrong.
+
+use std::{
+    collections::{HashMap, HashSet},
+    fmt,
+};
+
+use glam::Vec3;
+
+use super::{Seen, numbers::triple, pixel};
+use crate::{
+    channel::colours::{INFINITE, NAN},
+    light::Incident,
+    optics::{Frame, Terms},
+    parameter::words,
+    reference::Settings,
+    reflection::{ModelEntry, Surface},
+    registry::Registry,
+    scene::{Object, Scene, error::Path, record},
+    text::quoted,
+};
+
+/// Angles of lights to the normal that are tried, degrees; behind the surface a model must be finite too.
+const LIGHTS: [f32; 10] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.9, 100.0, 180.0];
+/// Angles of the viewer to the normal that are tried, degrees.
+const VIEWS: [f32; 6] = [0.0, 30.0, 45.0, 60.0, 85.0, 89.9];
+/// Angles between their planes that are tried, degrees.
+const PLANES: [f32; 5] = [0.0, 60.0, 120.0, 180.0, 270.0];
+/// Objects at which lights are tried.
+const MOST_OBJECTS: usize = 64;
+/// Different surfaces that are tried.
+const MOST_SURFACES: usize = 512;
+/// Pixels that are traced to what is wrong.
+const MOST_PIXELS: usize = 16;
+
+/// A light, or an object by its reflection model, whose light is not finite.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotFinite {
+    /// Its path in the scene.
+    pub path: Path,
+    /// The rest of the sentence: its type or model, the value, and where.
+    pub what: String,
+}
+
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.path, self.what)
+    }
+}
+
+/// The lights and models of a scene that are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// All.
+    All,
+    /// Those that no test of this crate has tried: custom models, and the types of other crates.
+    Untested,
+}
+
+impl Scope {
+    fn has(self, source: &str, registry: &Registry) -> bool {
+        let edited = || registry.sources().edited().any(|path| path == source);
+        self == Self::All || registry.is_foreign(source) || edited()
+    }
+}
+
+/// What surfaces gave, by model, version and parameters: each is tried once.
+#[derive(Debug, Default)]
+pub struct Tried(HashMap<(&'static str, u64, Vec<u32>), Option<String>>);
+
+/// Tries the lights of a scene at its objects and in its room, and its models for directions of light and viewer.
+/// Models that the CPU cannot run are left out.
+#[must_use]
+pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried) -> Vec<NotFinite> {
+    let mut found = lights(scene, registry, scope);
+    if tried.0.len() > 8 * MOST_SURFACES {
+        tried.0.clear();
+    }
+    let mut met = HashSet::new();
+    for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
+        let Some(model) = registry.model(scene.model_of(object)) else { continue };
+        if !scope.has(model.declaration.wgsl.path, registry) || model.not_on_cpu().is_some() {
+            continue;
+        }
+        let words = words(model.parameters, &object.material, scene.display.encoding);
+        let key = (model.declaration.id, model.version(), words);
+        if met.len() >= MOST_SURFACES || !met.insert(key.clone()) {
+            continue;
+        }
+        let what = tried.0.entry(key).or_insert_with(|| surface(scene, object, model));
+        found.extend(what.clone().map(|what| NotFinite { path: part("objects", i), what }));
+    }
+    found
+}
+
+fn part(list: &str, index: usize) -> Path {
+    Path::root().key(list.to_owned()).index(index)
+}
+
+fn named(name: Option<&str>) -> String {
+    name.map_or_else(String::new, |name| format!("({}) ", quoted(name)))
+}
+
+/// The lights that shine, each with the first place at which it is not finite.
+fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
+    let places = places(scene);
+    let mut found = Vec::new();
+    for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
+        let Some(entry) = registry.light(&light.light_type) else { continue };
+        if !scope.has(entry.declaration.wgsl.path, registry) {
+            continue;
+        }
+        let encoding = scene.display.encoding;
+        let emitter = (entry.instantiate)(&light.parameters, encoding);
+        let record = record(light, registry, encoding);
+        let odd = places.iter().find_map(|p| {
+            let (value, l) = match emitter.incident(&record, *p) {
+                Incident::From { l, intensity } => (intensity, l),
+                Incident::Uniform { intensity } => (intensity, Vec3::Z),
+            };
+            (!value.is_finite() || value != Vec3::ZERO && !l.is_finite()).then(|| {
+                let of = if value.is_finite() { ("direction", l) } else { ("intensity", value) };
+                (*p, of)
+            })
+        });
+        found.extend(odd.map(|(p, (of, value))| NotFinite {
+            path: part("lights", i),
+            what: format!(
+                "{}is of the type {}, whose {of} at {} m is {}; it must be finite",
+                named(light.name.as_deref()),
+                entry.declaration.id,
+                triple(p),
+                triple(value)
+            ),
+        }));
+    }
+    found
+}
+
+/// Points at objects, and a grid in the room.
+fn places(scene: &Scene) -> Vec<Vec3> {
+    let room = scene.scene_size.corner();
+    let grid = (0..27).map(|i| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32));
+    let around = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let at = |object: &Object| around.map(|side| object.position + 0.5 * object.size * side);
+    let objects = scene.shown().take(MOST_OBJECTS).flat_map(at);
+    objects.chain(grid.map(|cell| (0.1 + 0.4 * cell) * room)).collect()
+}
+
+/// A direction by its angles, degrees.
+fn direction(theta: f32, phi: f32) -> Vec3 {
+    let (sin, cos) = theta.to_radians().sin_cos();
+    let (y, x) = phi.to_radians().sin_cos();
+    Vec3::new(sin * x, sin * y, cos)
+}
+
+/// The first of these directions for which the surface of an object is not finite, in words.
+fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String> {
+    let surface = model.instantiate(&object.material, scene.display.encoding);
+    let (value, where_) = directed(&*surface, model).or_else(|| everywhere(&*surface, scene))?;
+    Some(of_model(object.name.as_deref(), model.declaration.id, value, &where_))
+}
+
+fn of_model(object: Option<&str>, model: &str, value: Vec3, where_: &str) -> String {
+    let value = triple(value);
+    format!(
+        "{}has the reflection model {model}, which gives {value} for {where_}; it must be finite",
+        named(object)
+    )
+}
+
+/// The sum of the terms, which is not finite where one is not.
+fn odd(terms: &Terms) -> Option<Vec3> {
+    let sum = terms.ambient + terms.diffuse + terms.specular;
+    (!sum.is_finite()).then_some(sum)
+}
+
+fn directed(surface: &dyn Surface, model: &ModelEntry) -> Option<(Vec3, String)> {
+    for light in LIGHTS {
+        for view in VIEWS {
+            for plane in PLANES {
+                let (l, v) = (direction(light, plane), direction(view, 0.0));
+                if let Some(value) = odd(&surface.response(l, v, &Frame::LOCAL)) {
+                    let where_ = format!(
+                        "light at {light}° and a viewer at {view}° to the normal, {plane}° between their planes"
+                    );
+                    return Some((value, where_));
+                }
+            }
+        }
+        if model.runs_too_long() {
+            return None;
+        }
+    }
+    None
+}
+
+fn everywhere(surface: &dyn Surface, scene: &Scene) -> Option<(Vec3, String)> {
+    // Calculating it takes long for some models, so only where it is needed.
+    if !scene.shining().any(|light| light.position.is_none() && light.direction.is_none()) {
+        return None;
+    }
+    VIEWS.into_iter().find_map(|view| {
+        let value = surface.ambient_response(direction(view, 0.0), &Frame::LOCAL);
+        let where_ = format!("light from everywhere and a viewer at {view}° to the normal");
+        (!value.is_finite()).then_some((value, where_))
+    })
+}
+
+/// The pixels that are marked as not finite in a picture of the channel for that, row by row.
+#[must_use]
+pub fn marked(rgb8: &[u8], width: u32) -> Vec<[u32; 2]> {
+    let pixels = rgb8.as_chunks::<3>().0.iter().zip(0u32..);
+    let odd = pixels.filter(|(code, _)| **code == NAN || **code == INFINITE);
+    odd.map(|(_, i)| [i % width, i / width]).collect()
+}
+
+/// The lights and objects that make some of these pixels of a picture what they are.
+#[must_use]
+pub fn traced(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    pixels: &[[u32; 2]],
+) -> Vec<NotFinite> {
+    let mut found: Vec<NotFinite> = Vec::new();
+    for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_PIXELS).max(1)) {
+        let Some(seen) = pixel(scene, registry, settings, *at).ok().and_then(|explained| explained.seen)
+        else {
+            continue;
+        };
+        for odd in of_pixel(&seen, *at) {
+            if !found.iter().any(|known| known.path == odd.path) {
+                found.push(odd);
+            }
+        }
+    }
+    found
+}
+
+fn of_pixel(seen: &Seen, [x, y]: [u32; 2]) -> Vec<NotFinite> {
+    let mut found = Vec::new();
+    let object = seen.object.name.as_deref();
+    for spot in &seen.spots {
+        for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
+            if lit.arriving.is_finite() {
+                let value = odd(&lit.response).unwrap_or(lit.contribution);
+                let where_ = format!("{} at pixel {x},{y}", light_path(lit.light.index));
+                let what = of_model(object, seen.model.id, value, &where_);
+                found.push(NotFinite { path: part("objects", seen.object.index), what });
+            } else {
+                let what = format!(
+                    "{}is of the type {}, whose light at {} m is {}; it must be finite",
+                    named(lit.light.name.as_deref()),
+                    lit.light.id,
+                    triple(spot.position),
+                    triple(lit.arriving)
+                );
+                found.push(NotFinite { path: part("lights", lit.light.index), what });
+            }
+        }
+    }
+    if found.is_empty() {
+        // The GPU alone gives it, or the CPU cannot run the model.
+        let what = format!("{}has the reflection model {}: pixel {x},{y}", named(object), seen.model.id);
+        found.push(NotFinite { path: part("objects", seen.object.index), what });
+    }
+    found
+}
+
+fn light_path(index: usize) -> Path {
+    part("lights", index)
+}
