@@ -22,7 +22,7 @@ use crate::{
         save::{self, Expected},
         variant::LETTERS,
     },
-    text::number,
+    text::{listed, number},
 };
 
 #[derive(Args, Debug)]
@@ -174,6 +174,9 @@ fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String 
     for ((name, value), before) in found.values.iter().zip(before) {
         text += &format!("{name}: {before} → {value}\n");
     }
+    if !found.kept.is_empty() {
+        text += &format!("unchanged: {}\n", listed(&found.kept, "and"));
+    }
     text + &format!("{}: {} → {}\n", what.unit(), digits(found.before), digits(found.after))
 }
 
@@ -192,6 +195,7 @@ fn as_json(found: &Match, view: usize, what: What) -> String {
         "before": found.before,
         "after": found.after,
         "values": values,
+        "unchanged": found.kept,
     });
     format!("{all:#}\n")
 }
