@@ -479,6 +479,6 @@ mod tests {
         let microfacet = registry.model("microfacet").expect("built in");
         assert_eq!(reason(microfacet, "microfacet ggx"), Some("GGX"));
         assert_eq!(reason(microfacet, "masking"), None, "the summary has it");
-        assert_eq!(reason(registry.model("disney").expect("built in"), "sheen_t"), Some("sheen tint"));
+        assert_eq!(reason(registry.model("disney").expect("built in"), "sheen_tint"), Some("sheen tint"));
     }
 }

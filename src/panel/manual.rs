@@ -92,9 +92,9 @@ fn section(id: &str, text: &str) -> (String, String) {
                 }
             }
             Event::Start(Tag::Image { .. }) => {
-                events.extend([Event::Start(Tag::Emphasis), Event::Text("Picture: ".into())]);
+                events.push(Event::InlineHtml("<span class=\"picture\">Picture: ".into()));
             }
-            Event::End(TagEnd::Image) => events.push(Event::End(TagEnd::Emphasis)),
+            Event::End(TagEnd::Image) => events.push(Event::InlineHtml("</span>".into())),
             other => events.push(other),
         }
     }

@@ -79,7 +79,11 @@ impl<'a> Stand<'a> {
         let free = |p: Vec3| self.free(p, radius);
         let step = 0.55 * of.size;
         let fits = |p: Vec3| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius);
-        self.beside(of.position, 2.2 * radius.max(0.05), fits)
+        // Rather cut by the edge of the picture than behind the original.
+        let cut = |p: Vec3| free(p) && self.sees(p, 0.0) && self.is_beside_all(p, radius);
+        let apart = 2.2 * radius.max(0.05);
+        self.beside(of.position, apart, fits)
+            .or_else(|| self.beside(of.position, apart, cut))
             .or_else(|| self.search(of.position, step, fits))
             .or_else(|| self.search(of.position, step, |p| free(p) && self.sees(p, radius)))
             .or_else(|| self.search(of.position, step, free))

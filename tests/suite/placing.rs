@@ -100,6 +100,16 @@ fn copies_stand_free_too() {
 }
 
 #[test]
+fn the_copy_of_the_default_sphere_stands_beside_it() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let [a, b, c] = [0, 1, 2].map(|i| session.document.objects[i].position);
+    assert!((a.z, a.y) == (b.z, b.y) && (a.z, a.y) == (c.z, c.y), "{a} {b} {c}");
+}
+
+#[test]
 fn copies_stand_beside_the_original_at_the_same_depth() {
     let registry = Registry::builtin();
     // From the front, and from above and aside.

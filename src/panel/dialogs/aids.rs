@@ -24,10 +24,8 @@ fn icons(config: &FileDialogConfig) -> [(&str, &'static str); 7] {
 
 /// Says what the icon under the pointer does.
 pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &FileDialogConfig) {
-    let Some(pointer) = ctx.pointer_hover_pos().filter(|at| top.contains(*at)) else { return };
-    if ctx.layer_id_at(pointer) != Some(layer) {
-        return;
-    }
+    let pointer = ctx.pointer_hover_pos().filter(|at| top.contains(*at));
+    let Some(pointer) = pointer.filter(|at| ctx.layer_id_at(*at) == Some(layer)) else { return };
     let icons = icons(config);
     let named = |shape: &Shape| {
         let Shape::Text(text) = shape else { return None };
@@ -41,6 +39,12 @@ pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &File
             shape => named(shape),
         })
     });
+    // One frame measures the words, the next shows them, and a window at rest draws none by itself.
+    let id = Id::new("words of an icon");
+    let now = found.map(|(_, words)| words);
+    if ctx.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default::<Option<&str>>(id), now)) != now {
+        ctx.request_repaint();
+    }
     if let Some((rect, words)) = found {
         Tooltip::always_open(ctx.clone(), layer, Id::new("icon of a dialog"), rect)
             .show(|ui| ui.label(words));

@@ -36,7 +36,8 @@ impl Past {
     /// True if there is something to go on with: to open a lesson and look at its first step is no beginning.
     #[must_use]
     pub fn is_begun(&self) -> bool {
-        self.step > 0 || !self.finished && !(self.done.is_empty() && self.tries.is_empty())
+        let touched = !self.done.is_empty() || !self.tries.is_empty();
+        self.step > 0 || (touched && !self.finished)
     }
 
     /// In a few words: "step 3 of 9", "finished".
