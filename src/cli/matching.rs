@@ -23,7 +23,7 @@ use crate::{
         save::{self, Expected},
         variant::LETTERS,
     },
-    text::number,
+    text::{listed, number},
 };
 
 #[derive(Args, Debug)]
@@ -178,6 +178,9 @@ fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String 
     for ((name, value), before) in found.values.iter().zip(before) {
         text += &format!("{name}: {before} → {value}\n");
     }
+    if !found.kept.is_empty() {
+        text += &format!("unchanged: {}\n", listed(&found.kept, "and"));
+    }
     text + &format!("{}: {} → {}\n", what.unit(), digits(found.before), digits(found.after))
 }
 
@@ -196,6 +199,7 @@ fn as_json(found: &Match, view: usize, what: What) -> String {
         "before": found.before,
         "after": found.after,
         "values": values,
+        "unchanged": found.kept,
     });
     format!("{all:#}\n")
 }

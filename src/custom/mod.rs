@@ -149,6 +149,7 @@ fn declared(
         author: said.author,
         source: said.source,
         summary: said.summary,
+        synonyms: &[],
         equation: said.equation,
         laws: said.laws,
         ambient,

@@ -10,10 +10,7 @@ use std::{
     },
 };
 
-use crate::{
-    registry::Registry,
-    scene::{Object, Scene},
-};
+use crate::{registry::Registry, scene::Scene};
 
 mod edit;
 mod history;
@@ -373,10 +370,9 @@ impl Document {
         self.number_parts(registry);
     }
 
-    /// Changes an object as a consequence of the last step, which undoes it too.
-    pub fn go_on(&mut self, object: usize, change: impl FnOnce(&mut Object)) {
-        let patch =
-            self.patch(Extent::Object(object), None, |document| change(&mut document.scene.objects[object]));
+    /// Changes a part as a consequence of the last step, which undoes it too.
+    pub fn go_on(&mut self, part: Extent, change: impl FnOnce(&mut Scene)) {
+        let patch = self.patch(part, None, |document| change(&mut document.scene));
         self.history.go_on(patch);
     }
 

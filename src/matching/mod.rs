@@ -53,10 +53,10 @@ use picture::Picture;
 use search::{Found, Free, Search, Target};
 use sides::Side;
 
-/// The most evaluations of a search that compares lobes or highlights.
-const MOST_LOBES: usize = 3000;
-/// The most pictures of a search that compares them.
-const MOST_PICTURES: usize = 500;
+/// The most evaluations of a search that compares lobes or highlights, and those more for each number that is free.
+const MOST_LOBES: [usize; 2] = [2500, 250];
+/// The most pictures of a search that compares them, likewise.
+const MOST_PICTURES: [usize; 2] = [400, 50];
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -135,6 +135,8 @@ pub struct Request<'a> {
 pub struct Match {
     /// The values for the view. Parameters that hardly matter are not among them.
     pub values: Vec<(&'static str, Value)>,
+    /// The free parameters that keep their values, since others hardly come nearer.
+    pub kept: Vec<&'static str>,
     /// The error with the present values: see [`What::unit`].
     pub before: f64,
     /// The error with these.
@@ -325,16 +327,19 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
     // An endless function shows only when it runs.
     can_run()?;
     let Found { values, before, after } = found?;
-    Ok(Match { values, before, after })
+    let given = |name: &str| values.iter().any(|(known, _)| *known == name);
+    let kept = free.iter().map(|free| free.parameter.name).filter(|name| !given(name)).collect();
+    Ok(Match { values, kept, before, after })
 }
 
 fn search(
     target: &mut impl Target,
     free: &[Free],
-    most: usize,
+    [most, each]: [usize; 2],
     progress: &Progress,
 ) -> Result<Found, Cancelled> {
-    Search::new(target, free, most, progress).run()
+    let axes: usize = free.iter().map(|free| free.axes.len()).sum();
+    Search::new(target, free, most + each * axes, progress).run()
 }
 
 /// The parameters that are free.

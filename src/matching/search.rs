@@ -1,8 +1,12 @@
 //! The search for the values that come nearest.
 //!
-//! It starts from the present values and from the most promising of some points spread over the ranges, descends from
-//! each, and keeps the best of everything that it has seen. Then it gives up what is not needed: a parameter that
+//! It descends from the present values; then it searches each parameter alone, and the best of them together, one more at
+//! a time; then it descends from the best so far and from the most promising of some points spread over all ranges. It
+//! keeps the best of everything that it has seen, so more free parameters never end worse than fewer of them that were
+//! tried. Then it gives up what is not needed: a parameter that
 //! hardly matters keeps its value, and digits that change nothing are left out. Nothing in it is random.
+
+use std::time::{Duration, Instant};
 
 use super::{
     axis::{Axis, numbers_of, value_of},
@@ -19,6 +23,14 @@ const SPREAD: usize = 24;
 const DESCENTS: usize = 4;
 /// The end of each descent.
 const LIMITS: Limits = Limits { steps: 25, least_gain: 1e-7, least_move: 1e-6, first_step: 0.5 };
+/// The end of a descent that only shows which parameters are worth more.
+const SHORT: Limits = Limits { steps: 8, ..LIMITS };
+/// Values of one parameter that are tried, beside the present one.
+const SCANNED: usize = 6;
+/// The most parameters that are added one by one.
+const GROWN: usize = 6;
+/// No search takes longer; the best that was found by then counts.
+const LONGEST: Duration = Duration::from_secs(60);
 /// A parameter keeps its value, and digits are left out, if the error grows by no more than this part of itself, or of
 /// the error at the start.
 const GIVEN_UP: [f64; 2] = [1e-3, 1e-4];
@@ -68,10 +80,13 @@ pub(super) struct Search<'a, T> {
     /// The most evaluations.
     most: usize,
     evaluations: usize,
+    /// Those after which the present way ends.
+    until: usize,
+    begun: Instant,
     /// True for the few evaluations at the end, which are made whatever was spent.
     last: bool,
     cancelled: bool,
-    best: (f64, Vec<f64>),
+    best: (f64, Option<Point>),
     step: String,
 }
 
@@ -83,9 +98,11 @@ impl<'a, T: Target> Search<'a, T> {
             progress,
             most,
             evaluations: 0,
+            until: most,
+            begun: Instant::now(),
             last: false,
             cancelled: false,
-            best: (f64::INFINITY, Vec::new()),
+            best: (f64::INFINITY, None),
             step: String::new(),
         }
     }
@@ -108,19 +125,25 @@ impl<'a, T: Target> Search<'a, T> {
                 return Err(Cancelled);
             }
         }
-        let (error, numbers) = std::mem::take(&mut self.best);
-        if numbers.is_empty() || error >= before {
+        let (error, best) = std::mem::take(&mut self.best);
+        let Some(best) = best.filter(|_| error < before) else {
             return Ok(Found { values: Vec::new(), before, after: before });
-        }
-        let best = Point { numbers, on: vec![true; self.free.len()] };
+        };
         self.last = true;
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
         let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
         Ok(Found { values: self.values(&best), before, after })
     }
 
+    /// The axes of all parameters.
     fn axes(&self) -> impl Iterator<Item = &'a Axis> + use<'a, T> {
         self.free.iter().flat_map(|free| &free.axes)
+    }
+
+    /// The same, each with the index of its parameter.
+    fn owners(&self) -> Vec<(usize, &'a Axis)> {
+        let of = |(i, free): (usize, &'a Free)| free.axes.iter().map(move |axis| (i, axis));
+        self.free.iter().enumerate().flat_map(of).collect()
     }
 
     /// The present values.
@@ -149,7 +172,8 @@ impl<'a, T: Target> Search<'a, T> {
     /// The differences at a point, and the root of their mean square.
     fn differences(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
         self.cancelled |= (self.progress.cancelled)();
-        if self.cancelled || self.evaluations >= self.most && !self.last {
+        let spent = self.evaluations >= self.until.min(self.most) || self.begun.elapsed() > LONGEST;
+        if self.cancelled || spent && !self.last {
             return Err(Stop);
         }
         if self.evaluations.is_multiple_of(self.most.div_ceil(100)) {
@@ -177,57 +201,175 @@ impl<'a, T: Target> Search<'a, T> {
         self.differences(point, &mut scratch)
     }
 
-    /// The differences where every parameter is given; the best are kept.
-    fn all_given(&mut self, numbers: &[f64], to: &mut [f64]) -> Result<f64, Stop> {
-        let point = Point { numbers: numbers.to_owned(), on: vec![true; self.free.len()] };
-        let error = self.differences(&point, to)?;
+    /// The differences at a point; the best are kept.
+    fn noted(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
+        let error = self.differences(point, to)?;
         if error < self.best.0 {
-            self.best = (error, point.numbers);
+            self.best = (error, Some(point.clone()));
         }
         Ok(error)
     }
 
+    /// The number of differences, at least as many as there are axes: the last ones are always 0.
+    fn count(&self) -> usize {
+        self.target.count().max(self.axes().count())
+    }
+
+    /// Looks for the best, each way with its share of the evaluations; the end of a share is not that of the search.
     fn look(&mut self) -> Result<(), Stop> {
-        let axes: Vec<&Axis> = self.axes().collect();
-        let mut scratch = vec![0.0; self.count()];
-        let present = self.present();
-        let mut starts = Vec::new();
-        for i in 0..SPREAD {
-            self.step = format!("trying start {} of {SPREAD}", i + 1);
-            let numbers: Vec<f64> =
-                axes.iter().zip(spread(i, axes.len())).map(|(axis, at)| axis.value(at)).collect();
-            starts.push((self.all_given(&numbers, &mut scratch)?, numbers));
-        }
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        starts.truncate(DESCENTS);
-        starts.insert(0, (0.0, present));
-        let ranges = vec![(0.0, 1.0); axes.len()];
-        let all = starts.len();
-        for (i, (_, numbers)) in starts.into_iter().enumerate() {
-            self.step = format!("descending from start {} of {all}", i + 1);
-            let mut at: Vec<f64> = axes.iter().zip(numbers).map(|(axis, v)| axis.coordinate(v)).collect();
-            descend(self, &mut at, &ranges, LIMITS)?;
+        let all: Vec<usize> = (0..self.free.len()).collect();
+        let present = Point { numbers: self.present(), on: vec![true; all.len()] };
+        let ways: [(f64, &mut dyn FnMut(&mut Self) -> Result<(), Stop>); 3] = [
+            (0.25, &mut |search| {
+                "descending from the present values".clone_into(&mut search.step);
+                search.descend_from(&present, &all, LIMITS).map(drop)
+            }),
+            (0.65, &mut |search| if all.len() > 1 { search.grow() } else { Ok(()) }),
+            (1.0, &mut |search| search.look_around(&all)),
+        ];
+        for (share, way) in ways {
+            self.until = (share * self.most as f64).ceil() as usize;
+            let ended = way(self);
+            if self.cancelled {
+                return ended;
+            }
             if self.best.0 < NONE {
-                return Ok(());
+                break;
             }
         }
         "trying whole numbers".clone_into(&mut self.step);
-        self.try_neighbours(&axes)
+        self.try_neighbours()
+    }
+
+    /// Searches each parameter alone, then the best of them, the best with the second, and so on. What none of them
+    /// alone can do is seen to by [`look_around`](Self::look_around); where many are free, what few can do is missed
+    /// there.
+    fn grow(&mut self) -> Result<(), Stop> {
+        let present = Point { numbers: self.present(), on: vec![false; self.free.len()] };
+        let mut alone = Vec::new();
+        for (i, free) in self.free.iter().enumerate() {
+            self.step = format!("trying {} alone", free.parameter.label);
+            let found = self.scan(&present, i).and_then(|start| self.descend_from(&start, &[i], SHORT));
+            match found {
+                Ok(found) => alone.push((found.0, i, found.1)),
+                Err(Stop) if self.cancelled => return Err(Stop),
+                Err(Stop) => break,
+            }
+        }
+        alone.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut chosen = Vec::new();
+        let mut so_far: Option<(f64, Point)> = None;
+        for (error, i, point) in alone.into_iter().take(GROWN) {
+            let Some((before, start)) = &so_far else {
+                chosen.push(i);
+                so_far = Some((error, point));
+                continue;
+            };
+            self.step = format!("trying {} parameters together", chosen.len() + 1);
+            let before = *before;
+            let mut together = start.clone();
+            together.on[i] = true;
+            let start = self.scan(&together, i)?;
+            let mut more = chosen.clone();
+            more.push(i);
+            let found = self.descend_from(&start, &more, SHORT)?;
+            if found.0 < before {
+                (chosen, so_far) = (more, Some(found));
+            }
+        }
+        Ok(())
+    }
+
+    /// The best of some values of a parameter, where others are as at a point.
+    fn scan(&mut self, from: &Point, parameter: usize) -> Result<Point, Stop> {
+        let mut scratch = vec![0.0; self.count()];
+        let first: usize = self.free[..parameter].iter().map(|free| free.axes.len()).sum();
+        let axes = &self.free[parameter].axes;
+        let mut best = (f64::INFINITY, from.clone());
+        for step in 0..=SCANNED {
+            let mut point = from.clone();
+            point.on[parameter] = true;
+            // The first is as it was.
+            if let Some(step) = step.checked_sub(1) {
+                let at = (step as f64 + 0.5) / SCANNED as f64;
+                axes.iter().enumerate().for_each(|(k, axis)| point.numbers[first + k] = axis.value(at));
+            }
+            let error = self.noted(&point, &mut scratch)?;
+            if error < best.0 {
+                best = (error, point);
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Descends from the best so far, and from the most promising of points spread over all ranges.
+    fn look_around(&mut self, all: &[usize]) -> Result<(), Stop> {
+        let axes: Vec<&Axis> = self.axes().collect();
+        let mut scratch = vec![0.0; self.count()];
+        let on = vec![true; all.len()];
+        let mut starts = Vec::new();
+        for i in 0..SPREAD {
+            self.step = format!("trying start {} of {SPREAD}", i + 1);
+            let numbers = axes.iter().zip(spread(i, axes.len())).map(|(axis, at)| axis.value(at)).collect();
+            let point = Point { numbers, on: on.clone() };
+            starts.push((self.noted(&point, &mut scratch)?, point));
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(DESCENTS);
+        if let Some(best) = self.best.1.clone() {
+            starts.insert(0, (self.best.0, Point { on, ..best }));
+        }
+        let count = starts.len();
+        for (i, (_, point)) in starts.into_iter().enumerate() {
+            self.step = format!("descending from start {} of {count}", i + 1);
+            self.descend_from(&point, all, LIMITS)?;
+            if self.best.0 < NONE {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes downhill from a point, changing only these parameters. Returns the error and the point where it ends.
+    fn descend_from(
+        &mut self,
+        start: &Point,
+        parameters: &[usize],
+        limits: Limits,
+    ) -> Result<(f64, Point), Stop> {
+        let mut slope =
+            Slope { point: start.clone(), axes: Vec::new(), best: (f64::INFINITY, None), of: self };
+        let mut first = 0;
+        for (i, free) in slope.of.free.iter().enumerate() {
+            if parameters.contains(&i) {
+                slope.point.on[i] = true;
+                slope.axes.extend(free.axes.iter().enumerate().map(|(k, axis)| (first + k, axis)));
+            }
+            first += free.axes.len();
+        }
+        let mut at: Vec<f64> =
+            slope.axes.iter().map(|(i, axis)| axis.coordinate(start.numbers[*i])).collect();
+        let ranges = vec![(0.0, 1.0); at.len()];
+        descend(&mut slope, &mut at, &ranges, limits)?;
+        let (error, point) = slope.best;
+        Ok((error, point.unwrap_or_else(|| start.clone())))
     }
 
     /// Moves each whole number by one, as long as that helps.
-    fn try_neighbours(&mut self, axes: &[&Axis]) -> Result<(), Stop> {
+    fn try_neighbours(&mut self) -> Result<(), Stop> {
         /// Further rounds seldom help.
         const ROUNDS: usize = 3;
         let mut scratch = vec![0.0; self.count()];
+        let owners = self.owners();
         for _ in 0..ROUNDS {
             let before = self.best.0;
-            for (i, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.is_whole()) {
+            for (i, (owner, axis)) in owners.iter().enumerate().filter(|(_, (_, axis))| axis.is_whole()) {
                 for step in [-1.0, 1.0] {
-                    let mut numbers = self.best.1.clone();
-                    numbers[i] = axis.legal(numbers[i] + step);
-                    if numbers != self.best.1 {
-                        self.all_given(&numbers, &mut scratch)?;
+                    let Some(best) = self.best.1.as_ref().filter(|best| best.on[*owner]) else { continue };
+                    let mut point = best.clone();
+                    point.numbers[i] = axis.legal(point.numbers[i] + step);
+                    if point.numbers != best.numbers {
+                        self.noted(&point, &mut scratch)?;
                     }
                 }
             }
@@ -249,13 +391,7 @@ impl<'a, T: Target> Search<'a, T> {
                 (point, error) = (without, there);
             }
         }
-        let owners: Vec<(usize, &Axis)> = self
-            .free
-            .iter()
-            .enumerate()
-            .flat_map(|(i, free)| free.axes.iter().map(move |axis| (i, axis)))
-            .collect();
-        for (at, (owner, axis)) in owners.into_iter().enumerate() {
+        for (at, (owner, axis)) in self.owners().into_iter().enumerate() {
             if axis.is_whole() || !point.on[owner] {
                 continue;
             }
@@ -279,15 +415,40 @@ impl<'a, T: Target> Search<'a, T> {
     }
 }
 
-impl<T: Target> Residuals for Search<'_, T> {
-    /// At least as many as there are axes: the last ones are always 0.
+/// The way downhill: some of the axes are searched, the others stay.
+struct Slope<'s, 'a, T> {
+    of: &'s mut Search<'a, T>,
+    /// Where it is, with the values of those that stay.
+    point: Point,
+    /// Their places among all, in order.
+    axes: Vec<(usize, &'a Axis)>,
+    best: (f64, Option<Point>),
+}
+
+impl<T: Target> Slope<'_, '_, T> {
+    fn noted(&mut self, to: &mut [f64]) -> Result<(), Stop> {
+        let error = self.of.noted(&self.point, to)?;
+        if error < self.best.0 {
+            self.best = (error, Some(self.point.clone()));
+        }
+        Ok(())
+    }
+
+    fn move_to(&mut self, point: &[f64]) {
+        for ((i, axis), at) in self.axes.iter().zip(point) {
+            self.point.numbers[*i] = axis.value(*at);
+        }
+    }
+}
+
+impl<T: Target> Residuals for Slope<'_, '_, T> {
     fn count(&self) -> usize {
-        self.target.count().max(self.free.iter().map(|free| free.axes.len()).sum())
+        self.of.count()
     }
 
     fn at(&mut self, point: &[f64], residuals: &mut [f64]) -> Result<(), Stop> {
-        let numbers: Vec<f64> = self.axes().zip(point).map(|(axis, at)| axis.value(*at)).collect();
-        self.all_given(&numbers, residuals).map(drop)
+        self.move_to(point);
+        self.noted(residuals)
     }
 
     fn derivatives(
@@ -296,15 +457,17 @@ impl<T: Target> Residuals for Search<'_, T> {
         residuals: &mut [f64],
         columns: &mut [Vec<f64>],
     ) -> Result<(), Stop> {
-        let axes: Vec<&Axis> = self.axes().collect();
-        let numbers: Vec<f64> = axes.iter().zip(point).map(|(axis, at)| axis.value(*at)).collect();
-        self.all_given(&numbers, residuals)?;
-        for (i, (axis, column)) in axes.iter().zip(columns).enumerate() {
-            let mut there = numbers.clone();
-            there[i] = axis.beside(numbers[i]);
+        self.move_to(point);
+        self.noted(residuals)?;
+        for (k, column) in columns.iter_mut().enumerate() {
+            let (i, axis) = self.axes[k];
+            let here = self.point.numbers[i];
+            self.point.numbers[i] = axis.beside(here);
             // Between legal values: whole numbers are apart.
-            let way = axis.coordinate(there[i]) - axis.coordinate(numbers[i]);
-            self.all_given(&there, column)?;
+            let way = axis.coordinate(self.point.numbers[i]) - axis.coordinate(here);
+            let ended = self.noted(column);
+            self.point.numbers[i] = here;
+            ended?;
             column.iter_mut().zip(&*residuals).for_each(|(to, from)| *to = (*to - from) / way);
         }
         Ok(())

@@ -47,6 +47,7 @@ fn a_model_matched_with_itself_finds_its_own_values() {
         // The variant inherits the other two: free, they keep their values.
         let all = matched(&scene, what, &["k_a", "k_d", "k_s", "alpha"]).expect("a match");
         assert_eq!(all.values, [PHONG[1].clone(), PHONG[3].clone()], "{what:?} {all:?}");
+        assert_eq!(all.kept, ["k_a", "k_s"]);
         assert!(all.after < 1e-6 && all.before > 0.01, "{what:?} {all:?}");
         // A wrong twin: another value that is not free leaves a rest.
         let some = matched(&scene, what, &["alpha"]).expect("a match");
@@ -55,7 +56,8 @@ fn a_model_matched_with_itself_finds_its_own_values() {
         let mut same = scene.clone();
         same.variants[0].material = Default::default();
         let none = matched(&same, what, &["k_a", "k_d", "k_s", "alpha"]).expect("a match");
-        assert_eq!(none, Match { values: Vec::new(), before: 0.0, after: 0.0 }, "{what:?}");
+        assert_eq!((none.values, none.before, none.after), (Vec::new(), 0.0, 0.0), "{what:?}");
+        assert_eq!(none.kept, ["k_a", "k_d", "k_s", "alpha"]);
     }
 }
 
@@ -206,7 +208,7 @@ fn several_materials_are_matched_together() {
     scene.objects.push(other);
     // Without an override each has its own.
     let none = matched(&scene, What::Lobe, &["alpha"]).expect("a match");
-    assert_eq!(none, Match { values: Vec::new(), before: 0.0, after: 0.0 });
+    assert_eq!((none.values, none.before, none.after), (Vec::new(), 0.0, 0.0));
     scene.variants[0].material.set("alpha", Value::Integer(1000));
     let both = matched(&scene, What::Lobe, &["alpha"]).expect("a match");
     assert!((10.0..80.0).contains(&found(&both, "alpha")), "{both:?}");

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::colour::{srgb_encode, srgb_encode8};
+use super::colour::{luminance, srgb_encode, srgb_encode8};
 
 /// The lowest colour temperature of a light, kelvin: a dull red glow.
 pub const MIN_TEMPERATURE: f32 = 1000.0;
@@ -47,8 +47,8 @@ pub fn black_body_xyz(kelvin: f64) -> DVec3 {
 
 /// The linear Rec. 709 colour of a black body of a temperature in kelvin, clamped to the legal range.
 ///
-/// Colours outside the gamut are clamped (blue, below about 1900 K), and the largest channel is 1: the temperature sets
-/// only the colour, and the intensity of the light its brightness.
+/// Colours outside the gamut are clamped (blue, below about 1900 K), and the largest channel is 1: the colour as a display
+/// shows it. Light of this colour has [`light_of`] it.
 #[must_use]
 pub fn black_body(kelvin: f32) -> Vec3 {
     let kelvin = if kelvin.is_nan() { WHITE_TEMPERATURE } else { kelvin };
@@ -61,7 +61,15 @@ pub fn black_body(kelvin: f32) -> Vec3 {
     (rgb / rgb.max_element()).as_vec3()
 }
 
-/// The same, sRGB-encoded in eight bits.
+/// Light of the hue of a colour, with the luminance of white: candela, lumen and lux are photometric, so equal numbers
+/// are equally bright at every temperature. Channels may exceed 1. Black stays black.
+#[must_use]
+pub fn light_of(colour: Vec3) -> Vec3 {
+    let luminance = luminance(colour);
+    if luminance > 0.0 { colour / luminance } else { Vec3::ZERO }
+}
+
+/// The same as [`black_body`], sRGB-encoded in eight bits.
 #[must_use]
 pub fn black_body_rgb8(kelvin: f32) -> [u8; 3] {
     black_body(kelvin).to_array().map(srgb_encode8)

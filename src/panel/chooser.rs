@@ -1,5 +1,7 @@
 //! The chooser of reflection models: families as headings, name, author and year; type to search.
 
+use std::cell::RefCell;
+
 use bevy_egui::egui::{
     self, Button, Color32, Id, Key, Modifiers, Popup, PopupCloseBehavior, Rect, RectAlign, RichText,
     ScrollArea, Sense, Stroke, TextEdit, Tooltip, Ui, WidgetInfo, WidgetType, pos2, vec2,
@@ -11,6 +13,7 @@ use super::{
     theme::{self, Palette},
 };
 use crate::{
+    parameter::{Parameter, ParameterKind},
     reflection::{Family, ModelEntry},
     registry::Registry,
 };
@@ -23,9 +26,39 @@ pub fn matches(text: &str, search: &str) -> bool {
     plain(search).split_whitespace().all(|word| text.split_whitespace().any(|found| found.starts_with(word)))
 }
 
+/// Everything by which a model is found beside its [`words`]: synonyms, then its parameters and their choices. Each with
+/// what people call it.
+fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
+    let of = |parameter: &'static Parameter| {
+        let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
+        let choices = match parameter.kind {
+            ParameterKind::Choice { options, .. } => options,
+            _ => &[],
+        };
+        std::iter::once(own).chain(choices.iter().map(|(id, name)| (format!("{name} {id}"), *name)))
+    };
+    let synonyms = model.declaration.synonyms.iter().map(|synonym| ((*synonym).to_owned(), *synonym));
+    synonyms.chain(model.parameters.iter().flat_map(of))
+}
+
+/// The words by which the list introduces a model.
+fn words(model: &ModelEntry) -> String {
+    let d = model.declaration;
+    [d.name, d.id, d.author, d.family.name(), d.summary].join(" ")
+}
+
+/// The reason why a model is found, where its name, author, family and summary do not tell: a synonym, a parameter or a
+/// choice, as people call it.
+fn reason(model: &ModelEntry, search: &str) -> Option<&'static str> {
+    let words = words(model);
+    let unsaid: Vec<_> = search.split_whitespace().filter(|word| !matches(&words, word)).collect();
+    let first = unsaid.first()?;
+    further(model).find(|(text, _)| matches(text, first)).map(|(_, name)| name)
+}
+
 /// The models that a search finds, in the order in which the chooser lists them: those whose name it is
-/// first, then by family, then in the order of registration. Every word of the search must begin a word of
-/// name, id, author, family or summary.
+/// first, then those of which it is a synonym, then by family, then in the order of registration. Every word of the
+/// search must begin a word of name, id, author, family, summary, a synonym, a parameter or one of its choices.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     let mut families = Vec::new();
@@ -35,15 +68,23 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
         }
     }
     let hit = |m: &&ModelEntry| {
-        let d = m.declaration;
-        matches(&[d.name, d.id, d.author, d.family.name(), d.summary].join(" "), search)
+        let further: Vec<_> = further(m).map(|(text, _)| text).collect();
+        matches(&format!("{} {}", words(m), further.join(" ")), search)
     };
     let mut found: Vec<_> = families
         .iter()
         .flat_map(|f| registry.models().iter().filter(move |m| m.declaration.family == *f))
         .filter(hit)
         .collect();
-    found.sort_by_key(|m| !matches(&[m.declaration.name, m.declaration.id].join(" "), search));
+    found.sort_by_key(|m| {
+        let d = m.declaration;
+        let names = [d.name, d.id].join(" ");
+        match (matches(&names, search), matches(&format!("{names} {}", d.synonyms.join(" ")), search)) {
+            (true, _) => 0,
+            (_, true) => 1,
+            _ => 2,
+        }
+    });
     found
 }
 
@@ -227,8 +268,8 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
 
 const MODELS: Words = Words {
     label: "Search reflection models",
-    hint: "Search: name, author, year",
-    none: "No model has that in its name, author, year or description.",
+    hint: "Search: name, author, year, GGX, metalness…",
+    none: "No model has that in its name, author, year, description, parameters or choices.",
     foot: "↑ ↓ Enter choose · Esc closes · 1–9 without this list",
 };
 
@@ -243,9 +284,12 @@ pub fn models<'a>(
     current: Option<&str>,
     first: Option<&'a str>,
 ) -> Option<Option<&'a ModelEntry>> {
-    let found = |search: &str| {
-        let plain = first.filter(|_| search.trim().is_empty()).map(|_| None);
-        plain.into_iter().chain(find(registry, search).into_iter().map(Some)).collect()
+    // What was found is told by the rows.
+    let search = RefCell::new(String::new());
+    let found = |typed: &str| {
+        typed.clone_into(&mut search.borrow_mut());
+        let plain = first.filter(|_| typed.trim().is_empty()).map(|_| None);
+        plain.into_iter().chain(find(registry, typed).into_iter().map(Some)).collect()
     };
     let entry = |model: &Option<&'a ModelEntry>| -> Entry<'a> {
         let Some(d) = model.map(|m| m.declaration) else {
@@ -255,7 +299,10 @@ pub fn models<'a>(
         Entry {
             heading: d.family.name(),
             name: d.name,
-            note: d.author.to_owned(),
+            note: match model.and_then(|m| reason(m, &search.borrow())) {
+                Some(reason) => format!("{reason} · {}", d.author),
+                None => d.author.to_owned(),
+            },
             number: session.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
             swatch: None,
             current: current == Some(d.id),
@@ -398,5 +445,40 @@ mod tests {
             assert_eq!(ids(search).first(), Some(&first), "{search}");
         }
         assert!(ids("no such model").is_empty());
+    }
+
+    #[test]
+    fn models_are_found_by_synonyms_parameters_and_choices() {
+        let registry = Registry::builtin();
+        let ids = |s: &str| find(&registry, s).iter().map(|m| m.declaration.id).collect::<Vec<_>>();
+        for search in ["ggx", "GGX", "Trowbridge–Reitz", "trowbridge reitz", "PBR"] {
+            for id in ["microfacet", "metallic_roughness", "disney", "openpbr"] {
+                assert!(ids(search).contains(&id), "{search}: {:?}", ids(search));
+            }
+            assert!(!ids(search).contains(&"lambert"), "{search}");
+        }
+        for (search, id) in [
+            ("metalness", "metallic_roughness"),
+            ("plastic", "phong"),
+            ("clearcoat", "openpbr"),
+            // A parameter by its label, its name and its symbol.
+            ("shininess", "blinn_phong"),
+            ("sheen_tint", "disney"),
+            ("alpha_x", "ward"),
+            ("α", "phong"),
+            // A choice.
+            ("beckmann", "microfacet"),
+            // All of it together, and the year with it.
+            ("ggx 2012 clearcoat", "disney"),
+        ] {
+            assert!(ids(search).contains(&id), "{search}: {:?}", ids(search));
+        }
+        // A name comes before everything else, and a synonym before a parameter.
+        assert_eq!(ids("disney").first(), Some(&"disney"));
+        assert_eq!(ids("ggx").first(), Some(&"microfacet"));
+        let microfacet = registry.model("microfacet").expect("built in");
+        assert_eq!(reason(microfacet, "microfacet ggx"), Some("GGX"));
+        assert_eq!(reason(microfacet, "masking"), None, "the summary has it");
+        assert_eq!(reason(registry.model("disney").expect("built in"), "sheen_tint"), Some("sheen tint"));
     }
 }

@@ -9,7 +9,7 @@ use bevy_egui::egui::{
     self, Align2, Color32, Context, Event, Id, Key, Label, LayerId, Modifiers, Order, Rect, Sense, Shape,
     Stroke, TextStyle, Ui, containers::panel::PanelState, pos2, vec2,
 };
-use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
+use egui_file_dialog::{DialogMode, DialogState, FileDialog, FileDialogLabels};
 
 use super::{
     preview::{self, Preview, Source},
@@ -29,6 +29,8 @@ use crate::{
         save::as_json,
     },
 };
+
+mod aids;
 
 /// Their share of the window.
 const SHARE: f32 = 0.7;
@@ -85,6 +87,7 @@ impl Default for Dialogs {
                 .title(title)
                 .id(id)
                 .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
+                .labels(labels())
                 .default_file_name("scene.json")
         };
         let folder = FileDialog::new()
@@ -112,10 +115,16 @@ impl Default for Dialogs {
     }
 }
 
+/// The line below the list leaves its room to the name.
+fn labels() -> FileDialogLabels {
+    FileDialogLabels { selected_file: "File:".to_owned(), ..FileDialogLabels::default() }
+}
+
 fn lesson_dialog() -> FileDialog {
     let filter = "Lessons (*.md)";
     let mut dialog = FileDialog::new()
         .title("Open a lesson")
+        .labels(labels())
         .id("lesson dialog")
         .add_file_filter_extensions(filter, vec!["md"])
         .default_file_filter(filter)
@@ -155,6 +164,7 @@ fn file_dialog(format: &FileFormat) -> FileDialog {
     let filter = format!("Files ({})", extensions.join(", "));
     let mut dialog = FileDialog::new()
         .title(&format!("Choose {}", format.name))
+        .labels(labels())
         .id("file dialog")
         .add_file_filter_extensions(&filter, format.extensions.to_vec())
         .default_file_filter(&filter)
@@ -350,13 +360,30 @@ impl Dialogs {
                 Exported::Plot => Action::Plot(PlotCommand::To(path)),
             });
         }
-        for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.lesson, &self.export] {
+        let mut entered = false;
+        for dialog in [
+            &mut self.open,
+            &mut self.save,
+            &mut self.folder,
+            &mut self.file,
+            &mut self.lesson,
+            &mut self.export,
+        ] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
             lighten(ctx, layer, &palette);
             // It keeps the pointer to itself, but not the keys.
             if *dialog.state() == DialogState::Open {
                 ctx.memory_mut(|m| m.set_modal_layer(layer));
                 let list = Places::of(ctx, layer.id);
+                if let Some(places) = &list {
+                    aids::name_icons(ctx, layer, places.top, dialog.config_mut());
+                    let selected = dialog.selected_entry();
+                    let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
+                    if is_folder && dialog.mode() == DialogMode::PickFile {
+                        let label = dialog.config_mut().labels.open_button.clone();
+                        entered |= aids::open_folder(ctx, layer, places.bottom, &label);
+                    }
+                }
                 self.typed_into = list.as_ref().and_then(|places| places.focused(ctx));
                 let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
                 self.blank = if is_blank { self.blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
@@ -366,6 +393,12 @@ impl Dialogs {
                     _ => {}
                 }
             }
+        }
+        if entered {
+            // As if by the keyboard: the dialog shows what is in the folder.
+            ctx.memory_mut(|m| m.focused().into_iter().for_each(|focus| m.surrender_focus(focus)));
+            self.again = Some(Key::Enter);
+            ctx.request_repaint();
         }
         ctx.set_global_style(plain);
         actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
@@ -470,6 +503,11 @@ fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
     };
     let preview = preview::of(ui.ctx(), &source, registry);
     preview::paint(ui, place, &preview);
+    // Whole, where the line below the list has no room for it.
+    if let Source::File(path) = &source {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        ui.add(Label::new(theme::small(ui, name)).wrap_mode(egui::TextWrapMode::Wrap));
+    }
     egui::ScrollArea::vertical().show(ui, |ui| match preview {
         Preview::Waiting => {}
         Preview::Failed(why) => {

@@ -23,11 +23,14 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 Vec::new()
             }
             Opened::Failed(problems) => {
+                // Tried again, it may have other problems.
+                session.healed(&path);
                 // The latest message stands on top: the first problem, and above it the consequence.
                 for problem in problems.into_iter().rev() {
-                    session.say(Severity::Error, problem);
+                    session.say_about(&path, Severity::Error, problem);
                 }
-                session.say(
+                session.say_about(
+                    &path,
                     Severity::Error,
                     format!("{} was not opened; {} is still shown.", path.display(), session.title()),
                 );

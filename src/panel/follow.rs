@@ -6,7 +6,7 @@ use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
 use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::{
-    document::Selection,
+    document::{Extent, Selection},
     parameter::{Parameter, ParameterKind, Value},
     registry::Registry,
     scene::{Object, check::Declared},
@@ -54,9 +54,9 @@ fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, wit
         None => drop(object.material.0.remove(&name)),
     };
     if within_step {
-        changes
-            .into_iter()
-            .for_each(|(i, name, to)| session.document.go_on(i, |object| put(object, name, to)));
+        changes.into_iter().for_each(|(i, name, to)| {
+            session.document.go_on(Extent::Object(i), |scene| put(&mut scene.objects[i], name, to))
+        });
     } else {
         // No step of the user's: undoing it would bring back what no model takes.
         session.document.amend(|scene| {

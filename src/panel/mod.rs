@@ -63,6 +63,7 @@ mod labels;
 pub mod laws;
 pub mod lesson;
 mod linked;
+pub mod manual;
 pub mod marks;
 mod matching;
 pub mod maths;

@@ -78,10 +78,33 @@ impl<'a> Stand<'a> {
         let radius = radius(of, self.registry);
         let free = |p: Vec3| self.free(p, radius);
         let step = 0.55 * of.size;
-        self.search(of.position, step, |p| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius))
+        let fits = |p: Vec3| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius);
+        // Rather cut by the edge of the picture than behind the original.
+        let cut = |p: Vec3| free(p) && self.sees(p, 0.0) && self.is_beside_all(p, radius);
+        let apart = 2.2 * radius.max(0.05);
+        self.beside(of.position, apart, fits)
+            .or_else(|| self.beside(of.position, apart, cut))
+            .or_else(|| self.search(of.position, step, fits))
             .or_else(|| self.search(of.position, step, |p| free(p) && self.sees(p, radius)))
             .or_else(|| self.search(of.position, step, free))
             .unwrap_or_else(|| self.lattice(of.position))
+    }
+
+    /// The nearest place beside another as the camera sees it, at the same depth, that fits: to the right, to the left,
+    /// then above and below, so many steps away.
+    fn beside(&self, of: Vec3, step: f32, fits: impl Fn(Vec3) -> bool) -> Option<Vec3> {
+        /// Farther away it is beside it no more.
+        const STEPS: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
+        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y].map(|way| self.turn * way);
+        // So fine that the depth stays.
+        let steps = 10.0 * self.steps();
+        let places = |ways: &[Vec3]| {
+            let ways = ways.to_vec();
+            STEPS
+                .into_iter()
+                .flat_map(move |n| ways.clone().into_iter().map(move |way| round(of + n * step * way, steps)))
+        };
+        places(&ways[..2]).chain(places(&ways[2..])).find(|p| fits(*p))
     }
 
     /// The place of a new light, or of one more near a place.
@@ -103,7 +126,11 @@ impl<'a> Stand<'a> {
             let lights = self.scene.lights.iter().filter_map(|l| l.position);
             self.free(p, 0.0) && lights.into_iter().all(|q| p.distance(q) > step)
         };
-        self.search(wanted, step, |p| apart(p) && self.sees(p, 0.08 * p.distance(self.eye)))
+        // A copy of a light out of view is near it all the same.
+        let hidden = near.is_some_and(|near| !self.sees(near, 0.0));
+        let fits = |p: Vec3| apart(p) && (hidden || self.sees(p, 0.08 * p.distance(self.eye)));
+        near.and_then(|near| self.beside(near, 1.1 * step, fits))
+            .or_else(|| self.search(wanted, step, fits))
             .or_else(|| self.search(wanted, step, apart))
             .unwrap_or_else(|| self.lattice(wanted))
     }

@@ -83,7 +83,7 @@ mod tests {
     use crate::panel::state::Past;
 
     fn past(step: usize) -> Past {
-        Past { title: "Gamma".to_owned(), step, steps: 9, done: [0, 2].into(), finished: false }
+        Past { title: "Gamma".to_owned(), step, steps: 9, done: [0, 2].into(), ..Past::default() }
     }
 
     #[test]

@@ -409,6 +409,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
         });
         let help = ui.menu_button("Help", |ui| {
             ui.set_width(MENU_WIDTH);
+            item(ui, "Manual", Action::Manual, actions);
             item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!session.view.keys_open)), actions);
             menu::submenu(ui, "Lessons", |ui| list::entries(ui, session, actions));
             item(ui, "About", Action::View(ViewChange::About(true)), actions);

@@ -151,7 +151,7 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     heading(ui, "Lessons", |_| ());
     let Some(source) = session.progress.next() else { return };
-    let past = session.progress.of(&source.name()).filter(|past| past.step > 0);
+    let past = session.progress.of(&source.name()).filter(|past| past.is_begun());
     let shipped = match source {
         LessonSource::Shipped(i) => LESSONS.get(i),
         LessonSource::File(_) => None,
@@ -162,8 +162,8 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let begun = past.map(|past| format!("Go on: {}", past.words()));
     let minutes = shipped.and_then(|lesson| lesson.minutes);
     let small = begun.unwrap_or_else(|| {
-        let is_new = session.progress.lessons.values().all(|past| !past.finished && past.step == 0);
-        let way = if is_new { "Begin here" } else { "Go on" };
+        let is_new = session.progress.lessons.values().all(|past| !past.finished && !past.is_begun());
+        let way = if is_new { "Begin here" } else { "Next" };
         minutes.map_or_else(|| way.to_owned(), |minutes| format!("{way}: {minutes} min"))
     });
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{small}, {title}")));

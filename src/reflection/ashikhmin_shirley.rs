@@ -80,6 +80,7 @@ impl ReflectionModel for AshikhminShirley {
         author: "Ashikhmin, Shirley 2000",
         source: "M. Ashikhmin, P. Shirley (2000), An Anisotropic Phong BRDF Model, journal of graphics tools 5(2), 25–32",
         summary: "A highlight with a Fresnel factor, stretched on brushed surfaces, over a diffuse base that dims beneath it: lacquer, polished wood.",
+        synonyms: &["anisotropic", "brushed metal", "varnish"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = 28/23 C_b (1 − F_0) P_L P_V N·L" },

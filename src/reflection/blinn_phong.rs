@@ -52,6 +52,7 @@ impl ReflectionModel for BlinnPhong {
         author: "J. F. Blinn 1977",
         source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77, 192–198",
         summary: "Phong with the half vector: cheaper, and its highlights stretch at grazing angles like real ones.",
+        synonyms: &["plastic", "shiny", "specular", "half vector"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
             EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },

@@ -57,6 +57,7 @@ impl ReflectionModel for BlinnPhongNormalised {
         author: "Blinn 1977, Giesen 2009",
         source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77; normalised as in F. Giesen (2009), Phong Normalization Factor Derivation",
         summary: "Blinn–Phong that conserves energy: sharper highlights are brighter, and their light is taken from the diffuse part.",
+        synonyms: &["plastic", "shiny", "specular", "half vector"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },

@@ -24,6 +24,7 @@ impl Declaration {
             author: "",
             source: "",
             summary: "",
+            synonyms: &[],
             equation: &[],
             laws: Laws::NONE,
             ambient: Ambient::Formula,
@@ -60,6 +61,12 @@ impl Declaration {
     #[must_use]
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }
+    }
+
+    /// The same with other names by which people look for it.
+    #[must_use]
+    pub const fn synonyms(self, synonyms: &'static [&'static str]) -> Self {
+        Self { synonyms, ..self }
     }
 
     /// The same with its equation.

@@ -47,6 +47,7 @@ impl ReflectionModel for BurleyDiffuse {
         author: "B. Burley 2012",
         source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically-Based Shading in Film and Game Production",
         summary: "The base of Disney's model, fitted to measured materials: smooth surfaces darken at the edge, rough ones brighten.",
+        synonyms: &["Disney diffuse", "retroreflection"],
         equation: &[
             EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L f_L f_V" },
             EquationPart {

@@ -97,6 +97,7 @@ impl ReflectionModel for CookTorrance {
         author: "R. L. Cook, K. E. Torrance 1982",
         source: "R. L. Cook, K. E. Torrance (1982), A Reflectance Model for Computer Graphics, ACM Transactions on Graphics 1(1), 7–24",
         summary: "Microfacets with exact Fresnel equations: metals get their colour from measured n and k, and highlights whiten at grazing angles.",
+        synonyms: &["Beckmann", "metal", "microfacets"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },

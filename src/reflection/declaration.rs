@@ -18,6 +18,8 @@ pub struct Declaration {
     pub source: &'static str,
     /// Its purpose and look, in one or two sentences.
     pub summary: &'static str,
+    /// Other names by which people look for it: "GGX", "PBR", "plastic".
+    pub synonyms: &'static [&'static str],
     /// The equation, one part per term so that the window can colour them.
     pub equation: &'static [EquationPart],
     /// The physical laws that the model keeps for all directions and legal parameters.

@@ -51,6 +51,7 @@ impl ReflectionModel for Eon {
         author: "Portsmouth, Kutz, Hill 2024",
         source: "J. Portsmouth, P. Kutz, S. Hill (2024), EON: A Practical Energy-Preserving Rough Diffuse BRDF, arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025",
         summary: "Energy-preserving Oren–Nayar: flat and rough without darkening. A white surface reflects exactly the incident light.",
+        synonyms: &["clay", "Oren–Nayar"],
         equation: &[
             EquationPart {
                 term: Term::Diffuse,

@@ -211,6 +211,7 @@ impl ReflectionModel for Hapke {
         author: "B. Hapke 1981, 1984",
         source: "B. Hapke (1981), Bidirectional Reflectance Spectroscopy 1. Theory, Journal of Geophysical Research 86(B4); (1984), 3. Correction for Macroscopic Roughness, Icarus 59; (1986), 4. The Extinction Coefficient and the Opposition Effect, Icarus 67",
         summary: "Regolith: the flat disc of the full Moon, and the surge of brightness when the light is behind the observer.",
+        synonyms: &["Moon", "asteroid", "dust", "opposition effect"],
         equation: &[
             EquationPart { term: Term::Diffuse, text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) M S(θ_m)" },
             EquationPart { term: Term::Diffuse, text: "M = (1 + B) P + H(μ_l) H(μ_v) − 1" },

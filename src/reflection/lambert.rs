@@ -35,6 +35,7 @@ impl ReflectionModel for Lambert {
         author: "J. H. Lambert 1760",
         source: "J. H. Lambert (1760), Photometria sive de mensura et gradibus luminis, colorum et umbrae",
         summary: "The ideal matte surface: equally bright from every direction. The reference for all others.",
+        synonyms: &["matte", "diffuse reflector"],
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Formula,

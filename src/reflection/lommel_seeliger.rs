@@ -45,6 +45,7 @@ impl ReflectionModel for LommelSeeliger {
         author: "Seeliger 1888, Lommel 1889",
         source: "H. Seeliger (1888), Zur Photometrie zerstreut reflectirender Substanzen, Sitzungsberichte der Bayerischen Akademie der Wissenschaften 18; E. Lommel (1889), Die Photometrie der diffusen Zurückwerfung, Annalen der Physik 272(2)",
         summary: "Single scattering in a dark powder, such as the ground of the Moon: under full light a ball looks like a flat disc.",
+        synonyms: &["Moon", "asteroid", "dust"],
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = C_b/2 N·L/(N·L + N·V)" }],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,

@@ -85,6 +85,18 @@ impl ReflectionModel for MetallicRoughness {
         author: "B. Karis 2013; glTF 2.0",
         source: "B. Karis (2013), Real Shading in Unreal Engine 4, SIGGRAPH course; Khronos Group (2021), glTF 2.0 Specification, appendix B",
         summary: "The material of today's engines and of glTF: base colour, metallic, roughness, reflectance. Start here for any real material.",
+        synonyms: &[
+            "PBR",
+            "physically based",
+            "GGX",
+            "Trowbridge–Reitz",
+            "metalness",
+            "glTF",
+            "Filament",
+            "Unreal",
+            "plastic",
+            "BSDF",
+        ],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − F)(1 − m) C_b (N·L)" },

@@ -292,6 +292,16 @@ impl ReflectionModel for Microfacet {
         author: "K. Torrance, E. Sparrow 1967",
         source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114; factors by several authors",
         summary: "Distribution, masking, Fresnel term, diffuse base and multiple scattering as choices: every published combination is a setting.",
+        synonyms: &[
+            "PBR",
+            "physically based",
+            "GGX",
+            "Trowbridge–Reitz",
+            "Walter",
+            "Cook–Torrance",
+            "metal",
+            "BSDF",
+        ],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = f_d C_b (1 − F(N·L)) (1 − F(N·V)) N·L" },

@@ -61,6 +61,7 @@ impl ReflectionModel for Minnaert {
         author: "M. Minnaert 1941",
         source: "M. Minnaert (1941), The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93, 403–410",
         summary: "Powers of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
+        synonyms: &["Moon", "velvet"],
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = C_b (k + 1)/2 (N·L)^k (N·V)^{k − 1}"
         }],

@@ -54,6 +54,7 @@ impl ReflectionModel for ModLambert {
         author: "Mitchell, McTaggart, Green 2006",
         source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; generalised here: coefficient and exponent can be set",
         summary: "Diffuse wrap: softens the edge of the shadow and lights the far side. Half-Lambert at a diffuse coefficient of 0.5.",
+        synonyms: &["half Lambert", "wrapped diffuse", "Valve"],
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
         }],

@@ -56,6 +56,7 @@ impl ReflectionModel for ModifiedPhong {
         author: "Lewis 1993, Lafortune & Willems 1994",
         source: "R. R. Lewis (1993), Making Shaders More Physically Plausible, Eurographics Workshop on Rendering; E. P. Lafortune, Y. D. Willems (1994), Using the Modified Phong Reflectance Model for Physically Based Rendering, Report CW 197, KU Leuven",
         summary: "Phong made reciprocal and energy conserving. Its highlight fades towards grazing angles, where real ones grow.",
+        synonyms: &["plastic", "shiny", "specular"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },

@@ -456,6 +456,21 @@ impl ReflectionModel for OpenPbr {
         author: "Academy Software Foundation 2026",
         source: "Z. Andersson and others (2026), OpenPBR Surface specification 1.1.1, Academy Software Foundation",
         summary: "The exchange standard of film and design: metal and rough bodies under a coat, fuzz and thin films.",
+        synonyms: &[
+            "PBR",
+            "physically based",
+            "principled",
+            "standard surface",
+            "GGX",
+            "Trowbridge–Reitz",
+            "metalness",
+            "clearcoat",
+            "car paint",
+            "plastic",
+            "iridescence",
+            "MaterialX",
+            "BSDF",
+        ],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {

@@ -69,6 +69,7 @@ impl ReflectionModel for OrenNayar {
         author: "Oren, Nayar 1994",
         source: "M. Oren, S. K. Nayar (1994), Generalization of Lambert's Reflectance Model, SIGGRAPH '94, 239–246",
         summary: "Rough matte surfaces such as plaster and the moon: they reflect light back towards its source, so spheres look flat.",
+        synonyms: &["clay", "Moon"],
         equation: &[
             EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L S" },
             EquationPart {

@@ -52,6 +52,7 @@ impl ReflectionModel for Phong {
         author: "B. T. Phong 1975",
         source: "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317",
         summary: "Ambient, diffuse and a highlight around the mirror direction. Easy to control, but not physical.",
+        synonyms: &["plastic", "shiny", "specular"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
             EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },

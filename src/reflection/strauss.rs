@@ -117,6 +117,7 @@ impl ReflectionModel for Strauss {
         author: "P. S. Strauss 1990",
         source: "P. S. Strauss (1990), A Realistic Lighting Model for Computer Animators, IEEE Computer Graphics and Applications 10(6), 56–64",
         summary: "Smoothness and metalness instead of coefficients: the first model with today's parameters.",
+        synonyms: &["metalness", "plastic"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {

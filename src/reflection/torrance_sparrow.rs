@@ -92,6 +92,7 @@ impl ReflectionModel for TorranceSparrow {
         author: "K. E. Torrance, E. M. Sparrow 1967",
         source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114",
         summary: "The first microfacet model: explains why, under grazing light, the highlight is brightest beyond the mirror direction.",
+        synonyms: &["microfacets", "off-specular peak"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },

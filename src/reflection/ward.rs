@@ -71,6 +71,7 @@ impl ReflectionModel for Ward {
         author: "G. J. Ward 1992",
         source: "G. J. Ward (1992), Measuring and Modeling Anisotropic Reflection, SIGGRAPH '92, 265–272; A. Dür (2006), An Improved Normalization for the Ward Reflectance Model, journal of graphics tools 11(1), 51–59",
         summary: "A Gaussian highlight made to fit measurements, stretched on brushed surfaces. Dür's form conserves the light of small highlights and gains light at grazing angles.",
+        synonyms: &["anisotropic", "brushed metal", "Beckmann"],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s) C_b N·L" },

@@ -95,7 +95,7 @@ pub(super) struct LightFile<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     colour: Option<[u8; 3]>,
     /// Colour temperature in kelvin: the colour of a black body of this temperature. A candle has 1900, a light bulb
-    /// 2700, white is 6500. The brightness stays the same. Conflicts with `colour`.
+    /// 2700, white is 6500. The luminance is that of a white light. Conflicts with `colour`.
     #[schemars(range(min = 1000, max = 40000))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour_temperature: Option<f32>,

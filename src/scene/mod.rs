@@ -228,14 +228,17 @@ impl Light {
     }
 
     /// The colour for calculation, however it is given.
+    ///
+    /// A colour takes away from white light, as a filter does. A temperature keeps the luminance of white.
     #[must_use]
     pub fn colour_under(&self, encoding: Encoding) -> Vec3 {
-        match (self.colour_temperature, encoding) {
-            (None, _) => encoding.decode(self.colour),
-            (Some(kelvin), Encoding::Srgb) => temperature::black_body(kelvin),
+        let Some(kelvin) = self.colour_temperature else { return encoding.decode(self.colour) };
+        let colour = temperature::black_body(kelvin);
+        temperature::light_of(match encoding {
+            Encoding::Srgb => colour,
             // Gamma-naive: the numbers of a colour picker are used unchanged.
-            (Some(kelvin), Encoding::Off) => temperature::black_body(kelvin).map(srgb_encode),
-        }
+            Encoding::Off => colour.map(srgb_encode),
+        })
     }
 
     /// The colour in sRGB, however it is given.

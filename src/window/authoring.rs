@@ -43,6 +43,7 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
                 }
             }
         }
+        Effect::AdoptModel(path) => adopt(session, registry, path),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => {
                 session.say(Severity::Info, told(&exported, folder));
@@ -85,6 +86,33 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
                 format!("{} exists already and was left as it is; choose another name.", path.display()),
             );
         }
+        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
+    }
+}
+
+/// Copies a model into the folder of custom models.
+fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
+    let Some((folder, name)) = models_folder(registry).zip(from.file_name()) else {
+        let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
+        return session.say(Severity::Error, why);
+    };
+    let path = folder.join(name);
+    let text = match custom::file::read(from, &name.to_string_lossy()) {
+        Ok(text) => text,
+        Err(problem) => {
+            let text = format!("{} was not copied: {}.", from.display(), problem.message);
+            return session.say(Severity::Error, text);
+        }
+    };
+    match write_new(&path, &text) {
+        Ok(()) => {
+            session.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            session.say(Severity::Info, format!("{} was copied to {}.", from.display(), folder.display()));
+        }
+        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => session.say(
+            Severity::Error,
+            format!("{} exists already and was left as it is; rename the other file.", path.display()),
+        ),
         Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
     }
 }

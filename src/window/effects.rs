@@ -6,7 +6,9 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
-use super::{authoring, camera, editor, exports, files, laws, matching, plots, recovery, shaders, watching};
+use super::{
+    authoring, camera, editor, exports, files, laws, manual, matching, plots, recovery, shaders, watching,
+};
 use crate::{
     panel::{
         effects::run as run_files,
@@ -96,7 +98,11 @@ pub(super) fn carry_out(
             | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }
-            Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
+            Effect::OpenManual => manual::show(&mut session),
+            Effect::NewModel { .. }
+            | Effect::DuplicateModel { .. }
+            | Effect::AdoptModel(_)
+            | Effect::ExportShaders(_) => {
                 if let Some(folder) = authoring::write(&effect, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }

@@ -23,6 +23,7 @@ mod gizmos;
 mod input;
 pub mod laws;
 mod lessons;
+pub mod manual;
 mod matching;
 mod open;
 mod options;

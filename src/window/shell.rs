@@ -1,7 +1,5 @@
 //! The window on the desktop: its title, its size on the screen, its closing, its rest.
 
-use std::path::PathBuf;
-
 use bevy::{
     app::{App, Last, Plugin, PostUpdate, PreUpdate, Startup},
     ecs::prelude::*,
@@ -14,7 +12,6 @@ use super::{frames, input, redraw};
 use crate::{
     panel::state::{Action, LabEffect, Session},
     registry::Registry,
-    scene::formats,
 };
 
 /// The window on the desktop. It sleeps while nothing changes.
@@ -73,22 +70,24 @@ fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<Primar
     }
 }
 
-/// The first scene among the files that are dropped on the window opens; one window shows one scene.
+/// What is dropped on the window opens, or is added to the scene.
 fn file_dropped(
     mut drops: MessageReader<FileDragAndDrop>,
     mut session: ResMut<Session>,
     registry: Res<Registry>,
     mut effects: MessageWriter<LabEffect>,
 ) {
-    let mut dropped = drops.read().filter_map(|drop| match drop {
-        FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
-        FileDragAndDrop::HoveredFile { .. } | FileDragAndDrop::HoveredFileCanceled { .. } => None,
-    });
-    let Some(first) = dropped.next() else { return };
-    let is_scene = |path: &PathBuf| formats::is_scene_file(path, &registry);
-    // What is no scene is opened, too: the message says why not.
-    let file = if is_scene(&first) { first } else { dropped.find(is_scene).unwrap_or(first) };
-    for effect in session.apply(Action::Open(file), &registry) {
+    let dropped: Vec<_> = drops
+        .read()
+        .filter_map(|drop| match drop {
+            FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
+            FileDragAndDrop::HoveredFile { .. } | FileDragAndDrop::HoveredFileCanceled { .. } => None,
+        })
+        .collect();
+    if dropped.is_empty() {
+        return;
+    }
+    for effect in session.apply(Action::Drop(dropped), &registry) {
         effects.write(LabEffect(effect));
     }
 }

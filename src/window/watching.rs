@@ -143,7 +143,8 @@ fn follow_named_files(
         match file.problem() {
             Some(problem) if suspects.remove(&path) => {
                 complain(&problem);
-                session.say(Severity::Error, format!("{problem}; the last good version is shown."));
+                let text = format!("{problem}; the last good version is shown.");
+                session.say_about(&path, Severity::Error, text);
             }
             Some(_) if news => {
                 watch.0.report_later(&path, GRACE);
@@ -151,6 +152,7 @@ fn follow_named_files(
             }
             None if news => {
                 suspects.remove(&path);
+                session.healed(&path);
                 scene.set_changed();
                 session.say(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
             }

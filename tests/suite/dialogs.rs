@@ -375,3 +375,84 @@ fn a_lamp_gets_the_file_that_is_chosen_and_keeps_its_own_if_that_is_no_good() {
     let said = bench.session.messages.iter().any(|message| message.text.contains(problem));
     assert!(said, "the mistake is told");
 }
+
+#[test]
+fn a_folder_is_opened_by_the_button_as_by_a_double_click() {
+    for percent in [100, 150] {
+        let (mut bench, folder) = open(ThemeChoice::Dark, percent);
+        bench.key(Key::Escape, Modifiers::NONE);
+        let inner = folder.path().join("of_last_year");
+        fs::create_dir(&inner).expect("created");
+        fs::copy(folder.path().join("shapes.json"), inner.join("inside.json")).expect("copied");
+        bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the folder", |b: &mut Bench| b.says("of_last_year"));
+        select(&mut bench, "of_last_year");
+        bench.settle();
+        let open = |bench: &mut Bench| {
+            let button = bench.tree.iter().rfind(|s| s.label.ends_with("  Open") && !s.disabled);
+            let at = button.expect("enabled").rect.center();
+            bench.click_at(at, bevy_egui::egui::PointerButton::Primary);
+        };
+        open(&mut bench);
+        until(&mut bench, "what is in it", |b: &mut Bench| {
+            b.tree.iter().any(|s| s.label.contains("inside.json"))
+        });
+        assert!(bench.dialogs.is_open());
+        assert!(!bench.effects.iter().any(|effect| matches!(effect, Effect::OpenFile(_))));
+        bench.effects.clear();
+        // There it opens files again.
+        select(&mut bench, "inside.json");
+        bench.settle();
+        open(&mut bench);
+        assert!(!bench.dialogs.is_open());
+        let file = inner.join("inside.json");
+        assert!(
+            matches!(&bench.effects[..], [Effect::OpenFile(path)] if path.file_name() == file.file_name()),
+            "{:?}",
+            bench.effects
+        );
+    }
+}
+
+#[test]
+fn the_icons_of_a_dialog_say_what_they_do() {
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    bench.settle();
+    for (icon, words) in [
+        ("⏶", "The folder that this one is in"),
+        ("⏴", "Back: the folder before"),
+        ("⏵", "Forward again"),
+        ("☰", "Reload, hidden files and more"),
+    ] {
+        let sign = bench.shapes().into_iter().find_map(|shape| match &shape {
+            Shape::Text(text) if text.galley.text() == icon => Some(shape.visual_bounding_rect()),
+            _ => None,
+        });
+        let sign = sign.unwrap_or_else(|| panic!("no icon {icon}"));
+        bench.frame(vec![Event::PointerMoved(sign.center())]);
+        bench.settle();
+        assert!(texts(&mut bench).iter().any(|text| text == words), "{icon}: {:?}", texts(&mut bench));
+    }
+}
+
+#[test]
+fn the_name_of_the_selected_file_is_whole() {
+    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
+    let (mut bench, folder) = open(ThemeChoice::Dark, 150);
+    bench.key(Key::Escape, Modifiers::NONE);
+    fs::copy(folder.path().join("shapes.json"), folder.path().join(NAME)).expect("copied");
+    bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+    until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("a_room")));
+    select(&mut bench, "a_room");
+    until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == NAME));
+    let screen = bench.ctx.content_rect();
+    let whole = bench.shapes().into_iter().any(|shape| match &shape {
+        Shape::Text(text) => {
+            let seen = shape.visual_bounding_rect();
+            let beside = seen.left() > screen.left() + 0.6 * screen.width();
+            text.galley.text() == NAME && !text.galley.elided && screen.contains_rect(seen) && beside
+        }
+        _ => false,
+    });
+    assert!(whole, "beside the list, in as many lines as it takes");
+}

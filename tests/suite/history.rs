@@ -476,3 +476,54 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
     assert!(document.edit(unknown, Selection::Room, &registry).is_err());
     assert!(*document == before);
 }
+
+/// A scene that was built from the default one is not called and described like it, and undoing brings both back.
+#[test]
+fn the_words_of_the_default_scene_go_once_they_are_untrue() {
+    let registry = Registry::builtin();
+    let words = |session: &Session| (session.document.name.clone(), session.document.description.clone());
+    let default = Scene::default();
+    let both = (default.name.clone(), default.description.clone());
+    let after = |actions: Vec<Action>| {
+        let mut session = Session::new(Scene::default());
+        session.document.end_gesture();
+        for action in actions {
+            session.apply(action, &registry);
+        }
+        session
+    };
+    let object = |field| Action::Edit(Edit::Object(0, field));
+    // It is still what it is called.
+    let moved = after(vec![
+        object(ObjectField::Size(3.0)),
+        Action::Edit(Edit::ShadingModel("phong".to_owned())),
+        Action::Edit(Edit::Display(Display { exposure: 1.0, ..Display::default() })),
+    ]);
+    assert_eq!(words(&moved), both);
+    // It is matte no longer.
+    let shiny = after(vec![Action::Edit(Edit::Model("blinn_phong".to_owned()))]);
+    assert_eq!(words(&shiny), (both.0.clone(), None));
+    assert_eq!(words(&after(vec![Action::Edit(Edit::Light(0, LightField::Colour([9, 9, 9])))])).1, None);
+    // Nor one light and one sphere.
+    for actions in [
+        vec![Action::AddObject("torus".to_owned())],
+        vec![Action::AddLight("spot".to_owned())],
+        vec![Action::Duplicate(Selection::Object(0))],
+        vec![object(ObjectField::Type("teapot".to_owned()))],
+    ] {
+        let mut session = after(actions.clone());
+        assert_eq!(words(&session), (None, None), "{actions:?}");
+        assert_eq!(session.title(), "Untitled scene");
+        assert_eq!(session.document.steps().len(), 1, "{actions:?}");
+        session.apply(Action::Undo, &registry);
+        assert_eq!(words(&session), both, "{actions:?}");
+        assert_eq!(*session.document, default);
+        session.apply(Action::Redo, &registry);
+        assert_eq!(words(&session), (None, None), "{actions:?}");
+    }
+    // Words of the user's own stay.
+    let own = Scene { name: Some("Mine".to_owned()), description: Some("Two.".to_owned()), ..default };
+    let mut session = Session::new(own);
+    session.apply(Action::AddObject("torus".to_owned()), &registry);
+    assert_eq!(words(&session), (Some("Mine".to_owned()), Some("Two.".to_owned())));
+}

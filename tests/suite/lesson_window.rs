@@ -7,7 +7,7 @@ use lights_camera_models::{
     channel::DebugChannel,
     curves::Kind,
     document::{Edit, ObjectField, Selection},
-    lesson::shipped::LESSONS,
+    lesson::{Task, shipped::LESSONS},
     optics::TermSelection,
     panel::{
         self, effects,
@@ -476,6 +476,13 @@ fn an_answer_is_chosen_by_mouse_or_key_and_only_the_right_one_does_the_task() {
     assert!(!bench.says("It is turned away."));
     bench.click("The left one.");
     assert!(bench.says("It is turned away.") && bench.says("The left one.: wrong") && !bench.says("Done"));
+    // Unmistakable: in words, and in the colour of errors; and it is counted.
+    assert!(bench.says("Wrong. Try another answer.") && bench.says("1 try"));
+    let error = DARK.error;
+    let row = bench.find("The left one.: wrong").expect("an answer").rect;
+    assert!(bench.shapes().into_iter().any(|shape| matches!(
+        shape, Shape::Rect(r) if r.rect == row && r.stroke.color == error && r.stroke.width >= 2.0
+    )));
     assert!(done(&bench).is_empty());
     // By keyboard: into the lesson, to the answer, Enter.
     bench.key(Key::F6, Modifiers::NONE);
@@ -489,6 +496,12 @@ fn an_answer_is_chosen_by_mouse_or_key_and_only_the_right_one_does_the_task() {
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(bench.says("It faces the light.") && bench.says("The right one.: right") && bench.says("Done"));
     assert_eq!(done(&bench), [1].into());
+    assert!(bench.says("Right.") && bench.says("2 tries") && !bench.says("Wrong. Try another answer."));
+    // It is kept, and no further look at an answer counts.
+    bench.click("The left one.: wrong");
+    let past = bench.session.progress.lessons.values().next().expect("it is kept").clone();
+    assert_eq!(past.tries, [(1, 2)].into());
+    assert!(bench.says("2 tries"));
 }
 
 #[test]
@@ -603,8 +616,14 @@ fn a_lesson_goes_on_where_it_was_left() {
     assert!(effects.contains(&Effect::SaveProgress(name.clone())));
     let progress = bench.session.progress.clone();
     assert_eq!(progress.last.as_deref(), Some(name.as_str()));
-    let past =
-        Past { title: "Light and angle".to_owned(), step: 2, steps: 4, done: [1].into(), finished: false };
+    let past = Past {
+        title: "Light and angle".to_owned(),
+        step: 2,
+        steps: 4,
+        done: [1].into(),
+        tries: [(1, 1)].into(),
+        ..Past::default()
+    };
     assert_eq!(progress.of(&name), Some(&past));
     assert_eq!(progress.next(), Some(desk.source()));
     // Another day.
@@ -1066,8 +1085,32 @@ fn the_door_goes_on_with_the_last_lesson() {
     assert_eq!(bench.session.progress.next(), Some(LessonSource::Shipped(0)));
     assert!(bench.says(&format!("The next one is “{}”.", LESSONS[2].title)));
     bench.apply(Action::View(ViewChange::Examples(true)));
-    let door = format!("Go on: {} min, {}", LESSONS[0].minutes.expect("given"), LESSONS[0].title);
-    assert!(bench.find(&door).is_some(), "the first is a beginning no longer");
+    let door =
+        |word: &str| format!("{word}: {} min, {}", LESSONS[0].minutes.expect("given"), LESSONS[0].title);
+    assert!(bench.find(&door("Next")).is_some(), "the first is a beginning no longer");
+    assert!(bench.find(&door("Go on")).is_none(), "it was never begun");
+}
+
+#[test]
+fn to_look_at_a_lesson_is_not_to_begin_it() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    go(&mut bench, LessonCommand::Open(LessonSource::Shipped(3)));
+    go(&mut bench, LessonCommand::Leave);
+    bench.apply(Action::View(ViewChange::Examples(true)));
+    assert_eq!(bench.session.progress.next(), Some(LessonSource::Shipped(0)));
+    let door = format!("Begin here: {} min, {}", LESSONS[0].minutes.expect("given"), LESSONS[0].title);
+    assert!(bench.find(&door).is_some());
+    assert!(bench.tree.iter().all(|seen| !seen.label.starts_with("Go on")));
+    // An answer is a beginning, also a wrong one.
+    go(&mut bench, LessonCommand::Open(LessonSource::Shipped(3)));
+    let at = LESSONS[3].steps.iter().position(|step| matches!(step.task, Some(Task::Predict { .. })));
+    go(&mut bench, LessonCommand::GoTo(at.expect("it asks something")));
+    go(&mut bench, LessonCommand::Answer(0));
+    go(&mut bench, LessonCommand::GoTo(0));
+    go(&mut bench, LessonCommand::Leave);
+    assert_eq!(bench.session.progress.next(), Some(LessonSource::Shipped(3)));
+    assert!(bench.tree.iter().any(|seen| seen.label.starts_with("Go on: step 1 of ")));
 }
 
 #[test]

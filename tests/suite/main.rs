@@ -55,6 +55,7 @@ mod lessons_played;
 mod linked;
 mod links;
 mod lobe;
+mod manual;
 mod marks;
 mod matching;
 mod memory;

@@ -9,9 +9,10 @@ use bevy::{
 use bevy_egui::egui::{Key, Modifiers};
 use lights_camera_models::{
     document::{Edit, VariantField},
-    matching::{Match, What},
+    matching::{self, Match, Request, What, match_view},
     panel::state::{Action, CompareCommand, Effect, LabEffect, MatchCommand, Matching, Session, Severity},
     parameter::{Value, Values},
+    progress::Progress,
     registry::Registry,
     scene::{
         Scene, Variant,
@@ -67,6 +68,7 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(run.out.starts_with("view B matched to view A on the highlight\nalpha: 32 → 12"), "{}", run.out);
     assert!(run.out.contains("0.1 is about 10 %: 0."), "{}", run.out);
+    assert!(run.out.contains("\nunchanged: k_a, k_d and k_s\n"), "{}", run.out);
     assert_eq!(names(at), ["a.json"], "nothing is written unasked");
 
     let arguments =
@@ -75,6 +77,7 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     assert_eq!((&json["view"], &json["on"]), (&json!("B"), &json!("highlight")));
     let alpha = json["values"]["alpha"].as_i64().expect("it was found");
     assert!((124..=132).contains(&alpha), "{json:#}");
+    assert_eq!(json["unchanged"], json!(["k_s"]));
     assert_eq!(json["values"].as_object().map(serde_json::Map::len), Some(1), "{json:#}");
     let [before, after] = ["before", "after"].map(|key| json[key].as_f64().expect("a number"));
     assert!(before > 0.5 && after < 0.01, "{json:#}");
@@ -161,7 +164,7 @@ pub fn ask(bench: &mut Bench, model: &str) {
 pub fn run(bench: &mut Bench) {
     bench.apply(Action::Match(MatchCommand::Close));
     let values = vec![("k_s", Value::Number(0.3)), ("alpha", Value::Integer(128))];
-    let found = Match { values, before: 0.0312, after: 0.00204 };
+    let found = Match { values, kept: vec!["k_a"], before: 0.0312, after: 0.00204 };
     let scene = (*bench.session.document).clone();
     bench.session.matched(&scene, (1, What::Lobe), Some(Ok(found)), &bench.registry);
     bench.session.facts.matching =
@@ -292,4 +295,43 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     let expected =
         "View C was not matched: there is no view C to be matched; the scene has 2 views: A and B.";
     assert_eq!(said, (Severity::Error, expected.to_owned()));
+}
+
+/// With every number of a model free, a view comes at least as near as with any of them alone.
+#[test]
+fn more_free_parameters_never_end_worse() {
+    let registry = Registry::builtin();
+    let cases: [(What, &str, &[(&'static str, Value)], f32); 3] = [
+        (What::Highlight, "disney", &[("roughness", Value::Number(0.2))], 0.5),
+        (What::Lobe, "disney", &[("roughness", Value::Number(0.06)), ("metallic", Value::Number(1.0))], 0.7),
+        (What::Highlight, "blinn_phong", &[("alpha", Value::Integer(200))], 0.5),
+    ];
+    for (what, model, values, other) in cases {
+        let mut scene = Scene { reflection_model: model.to_owned(), ..Scene::default() };
+        values.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
+        let mut variant = Variant { reflection_model: Some("disney".to_owned()), ..Variant::default() };
+        variant.material.set("roughness", Value::Number(other));
+        scene.variants = vec![variant];
+        let all: Vec<_> = matching::parameters(&scene, 1, &registry)
+            .into_iter()
+            .filter(|(_, usual)| *usual)
+            .map(|(parameter, _)| parameter.name)
+            .collect();
+        assert!(all.len() >= 8, "{all:?}");
+        let matched = |parameters: &[&str]| {
+            let request = Request { scene: &scene, view: 1, what, parameters };
+            match_view(&request, &registry, &Progress::NONE).expect("a match")
+        };
+        let together = matched(&all);
+        for alone in ["roughness", "metallic", "specular"] {
+            let alone = matched(&[alone]);
+            assert!(together.after <= 1.01 * alone.after + 1e-4, "{what:?} {model}: {together:?}\n{alone:?}");
+        }
+        // What stayed is told, and nothing is told twice.
+        let mut told: Vec<_> = together.values.iter().map(|(name, _)| *name).chain(together.kept).collect();
+        let mut expected = all.clone();
+        told.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(told, expected, "{what:?} {model}");
+    }
 }

@@ -14,7 +14,7 @@ use lights_camera_models::{
         TermSelection,
         colour::{BACKGROUND, Encoding},
     },
-    panel::state::{Action, Session},
+    panel::state::{Action, Effect, Session},
     parameter::{FileFormat, NamedFile, Parameter, ParameterKind, Value},
     reference,
     registry::Registry,
@@ -25,6 +25,7 @@ use lights_camera_models::{
         save,
     },
     shape::{PolygonMesh, mesh_file},
+    window::authoring::write,
 };
 
 use crate::{
@@ -530,4 +531,73 @@ fn an_open_window_follows_the_file_and_keeps_the_last_good_one() {
     assert!(said.contains("roof.obj:2: a vertex (v) must be three numbers"), "{said}");
     fs::write(&model, roof(2.0)).expect("written");
     window.until("a high roof again", |p| red(p).abs_diff(high) < high / 10);
+}
+
+#[test]
+fn what_is_dropped_is_added_to_the_scene_or_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("roof.obj"), roof(0.5)).expect("written");
+    fs::write(at("broken.obj"), "f 1 2 3\n").expect("written");
+    let ies = "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n50 50\n";
+    fs::write(at("lamp.IES"), ies).expect("written");
+    fs::write(at("velvet.wgsl"), "// a model").expect("written");
+    fs::write(at("light.md"), "# A lesson").expect("written");
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    let drop = |session: &mut Session, names: &[&str]| {
+        session.apply(Action::Drop(names.iter().map(|name| at(name)).collect()), &registry)
+    };
+    // Objects are added, each as one step, and called like their files.
+    assert_eq!(drop(&mut session, &["roof.obj", "roof.obj"]), []);
+    let names: Vec<_> = session.document.objects.iter().map(|object| object.name.as_deref()).collect();
+    assert_eq!(names, [None, Some("roof"), Some("roof 2")]);
+    assert_eq!(session.document.objects[1].object_type, "mesh");
+    assert!(session.document.objects[1].shape.0.values().any(|v| v.to_string().contains("roof.obj")));
+    assert_eq!((session.document.done(), session.selection), (2, Selection::Object(2)));
+    // One that is broken is none.
+    drop(&mut session, &["broken.obj"]);
+    assert_eq!(session.document.done(), 2);
+    assert!(session.messages.last().is_some_and(|m| m.text.contains("broken.obj")));
+    // A lamp is added; one that is selected gets the file.
+    drop(&mut session, &["lamp.IES"]);
+    assert_eq!(session.document.lights.len(), 2);
+    assert_eq!((session.document.lights[1].light_type.as_str(), session.document.done()), ("photometric", 3));
+    assert_eq!(session.selection, Selection::Light(1));
+    drop(&mut session, &["lamp.IES"]);
+    assert_eq!(session.document.lights.len(), 2);
+    // A lesson opens, and a scene among other files.
+    assert_eq!(drop(&mut session, &["light.md"]), [Effect::OpenLesson(at("light.md"))]);
+    let mut fresh = Session::default();
+    assert_eq!(drop(&mut fresh, &["roof.obj", "room.json"]), [Effect::OpenFile(at("room.json"))]);
+    // A model from elsewhere is copied only if the user says so.
+    assert_eq!(drop(&mut fresh, &["velvet.wgsl"]), []);
+    let (label, action) = fresh.messages.last().and_then(|m| m.offer.clone()).expect("an offer");
+    assert_eq!(label, "Copy it there");
+    assert_eq!(fresh.apply(*action, &registry), [Effect::AdoptModel(at("velvet.wgsl"))]);
+    // Then it is written beside the others, and one that is there is left alone.
+    let models = tempfile::tempdir().expect("a folder");
+    let mut registry = Registry::builtin();
+    lights_camera_models::custom::folder::declare_folder(models.path(), &mut registry);
+    write(&Effect::AdoptModel(at("velvet.wgsl")), &mut fresh, &registry);
+    let copy = models.path().join("velvet.wgsl");
+    assert_eq!(fs::read_to_string(&copy).expect("copied"), "// a model");
+    assert_eq!(fresh.wanted_model.as_deref(), Some("velvet"));
+    fs::write(&copy, "// mine").expect("written");
+    write(&Effect::AdoptModel(at("velvet.wgsl")), &mut fresh, &registry);
+    assert_eq!(fs::read_to_string(&copy).expect("left alone"), "// mine");
+    assert!(fresh.messages.last().is_some_and(|m| m.text.contains("exists already")));
+}
+
+#[test]
+fn the_file_of_a_mesh_is_the_first_field_of_it() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = bevy_egui::egui::vec2(1280.0, 900.0);
+    bench.apply(Action::AddObject("mesh".to_owned()));
+    let file = bench.tree.iter().find(|seen| seen.label.starts_with("model file: ")).expect("a knob").rect;
+    let section = bench.tree.iter().find(|seen| seen.label == "Reflection" && seen.rect.left() > 900.0);
+    let below = section.expect("a section").rect;
+    let name = bench.find("Delete Mesh 1").expect("the header").rect;
+    assert!(name.bottom() <= file.top() && file.bottom() <= below.top(), "{name:?} {file:?} {below:?}");
+    assert_eq!(bench.tree.iter().filter(|seen| seen.label.starts_with("model file: ")).count(), 1);
 }

@@ -1,7 +1,7 @@
 //! New parts of a scene stand free and in view, and a new light shows the scene without blowing it out.
 
 use bevy_egui::egui::{Pos2, Rect, vec2};
-use glam::{Quat, Vec3};
+use glam::{Mat3, Quat, Vec3};
 use lights_camera_models::{
     document::Selection,
     optics::{
@@ -97,6 +97,48 @@ fn copies_stand_free_too() {
     session.apply(Action::Duplicate(Selection::Light(0)), &registry);
     let [a, b] = [0, 1].map(|i| session.document.lights[i].position.unwrap());
     assert!(a.distance(b) > 0.2);
+}
+
+#[test]
+fn the_copy_of_the_default_sphere_stands_beside_it() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let [a, b, c] = [0, 1, 2].map(|i| session.document.objects[i].position);
+    assert!((a.z, a.y) == (b.z, b.y) && (a.z, a.y) == (c.z, c.y), "{a} {b} {c}");
+}
+
+#[test]
+fn copies_stand_beside_the_original_at_the_same_depth() {
+    let registry = Registry::builtin();
+    // From the front, and from above and aside.
+    let looks = [
+        (Vec3::new(5.0, 5.0, 9.9), Vec3::NEG_Z),
+        (Vec3::new(9.5, 9.0, 9.0), Vec3::new(-1.0, -0.9, -0.9).normalize()),
+    ];
+    for (eye, ahead) in looks {
+        let mut session = Session::default();
+        session.document = lights_camera_models::document::Document::new(Scene {
+            objects: vec![Object { size: 1.0, ..Object::default() }],
+            ..Scene::default()
+        });
+        session.facts.eye = eye;
+        session.facts.camera = Quat::from_mat3(&Mat3::look_to_rh(ahead, Vec3::Y).transpose());
+        let seen = |p: Vec3| session.facts.camera.inverse() * (p - eye);
+        let first = seen(session.document.objects[0].position);
+        let mut copied = session.clone();
+        for i in 1..=2 {
+            copied.apply(Action::Duplicate(Selection::Object(0)), &registry);
+            let copy = seen(copied.document.objects[1].position);
+            assert!((copy.z - first.z).abs() < 0.02, "{i}: at {copy}, not at the depth of {first}");
+            assert!((copy.y - first.y).abs() < 0.02, "{i}: {copy} is not beside {first}");
+            assert!(((copy.x - first.x).abs() - 1.1).abs() < 0.15, "{i}: {copy} is not next to {first}");
+        }
+        copied.apply(Action::Duplicate(Selection::Light(0)), &registry);
+        let [of, copy] = [0, 1].map(|i| seen(copied.document.lights[i].position.expect("it has one")));
+        assert!((copy.z - of.z).abs() < 0.02, "{copy} {of}");
+    }
 }
 
 #[test]

@@ -4,7 +4,11 @@ use std::collections::HashSet;
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
-    optics::{TermSelection, colour::Encoding},
+    optics::{
+        TermSelection,
+        colour::{Encoding, luminance, srgb_encode},
+        temperature,
+    },
     parameter::{Value, Values},
     reference::{self, Picture, Settings},
     registry::Registry,
@@ -345,15 +349,43 @@ fn lights_have_the_colour_of_their_temperature() {
         scene.display.encoding = encoding;
         for kelvin in [1900.0, 2700.0, 6500.0, 12_000.0] {
             scene.lights[0].colour_temperature = Some(kelvin);
-            // The reported sRGB colour is that of a white object, decoded or not.
+            // The reported sRGB colour is that of a white object, decoded or not, whose largest channel is 1.
+            scene.lights[0].intensity = scene.lights[0].colour_under(encoding).max_element().recip();
             assert_eq!(shown(&scene), scene.lights[0].rgb8(), "{kelvin} K {encoding:?}");
         }
     }
+    scene.lights[0].intensity = luminance(temperature::black_body(1900.0).map(srgb_encode));
     let [r, g, b] = shown(&Scene {
         lights: vec![Light { colour_temperature: Some(1900.0), ..scene.lights[0].clone() }],
         ..scene.clone()
     });
     assert!(r == 255 && g < 160 && b < 60, "a candle is orange: {r} {g} {b}");
+}
+
+/// Lumens are photometric: they say how bright a light is, whatever its colour.
+#[test]
+fn equal_lumens_give_equal_luminance_at_every_temperature() {
+    for encoding in Encoding::ALL {
+        let mut scene = wall("lambert", "phong", 5.0);
+        scene.display.encoding = encoding;
+        scene.objects[0].material.set("base_colour", Value::Colour([255; 3]));
+        scene.lights[0].luminous_flux = Some(800.0);
+        let lit = |scene: &Scene, kelvin: Option<f32>| {
+            let mut scene = scene.clone();
+            scene.lights[0].colour_temperature = kelvin;
+            let picture = render(&scene, &SMALL);
+            luminance(picture.pixels[picture.pixels.len() / 2 + SMALL.width as usize / 2].truncate())
+        };
+        let white = lit(&scene, None);
+        assert!(white > 0.1);
+        for kelvin in [1000.0, 1900.0, 2700.0, 4000.0, 6500.0, 12_000.0, 40_000.0] {
+            let ratio = lit(&scene, Some(kelvin)) / white;
+            assert!((ratio - 1.0).abs() < 1e-5, "{kelvin} K {encoding:?}: {ratio}");
+        }
+        // A colour is a filter, and a wrong twin of a temperature.
+        scene.lights[0].colour = temperature::black_body_rgb8(2700.0);
+        assert!(lit(&scene, None) / white < 0.8);
+    }
 }
 
 #[test]

@@ -717,3 +717,50 @@ fn what_is_recovered_and_on_disk_by_now_is_saved() {
     assert_eq!(desk.session.questions.open, None);
     assert!(!desk.session.is_dirty());
 }
+
+#[test]
+fn the_strip_that_an_error_unfolded_folds_once_it_is_mended() {
+    let good = text(&three());
+    let strip = |desk: &Desk| (desk.session.view.bottom_open, desk.session.view.bottom_tab.clone());
+    let mut desk = Desk::new();
+    let before = strip(&desk);
+    assert!(!before.0);
+    desk.edited("{ broken");
+    assert_eq!(strip(&desk), (true, "messages".to_owned()));
+    desk.edited("{ worse");
+    assert!(desk.session.view.bottom_open, "it is still broken");
+    desk.edited(&good);
+    assert_eq!(strip(&desk), before);
+    // One that the user had open, or touched since, stays.
+    desk.act(Action::View(ViewChange::BottomTab("messages".to_owned())));
+    desk.edited("{ broken");
+    desk.edited(&good);
+    assert!(desk.session.view.bottom_open);
+    desk.act(Action::View(ViewChange::Bottom(false)));
+    desk.edited("{ broken");
+    desk.act(Action::View(ViewChange::BottomTab("messages".to_owned())));
+    desk.edited(&good);
+    assert!(desk.session.view.bottom_open);
+    // Another panel comes back.
+    desk.act(Action::View(ViewChange::BottomTab("explain".to_owned())));
+    desk.edited("{ broken");
+    assert_eq!(strip(&desk), (true, "messages".to_owned()));
+    desk.edited(&good);
+    assert_eq!(strip(&desk), (true, "explain".to_owned()));
+    desk.act(Action::View(ViewChange::Bottom(false)));
+    // Another error keeps it.
+    desk.edited("{ broken");
+    desk.session.say(Severity::Error, "Something else.");
+    desk.edited(&good);
+    assert!(desk.session.view.bottom_open);
+    // A file that was not opened, and is once it is mended.
+    let mut desk = Desk::new();
+    let other = desk.folder.path().join("other.json");
+    fs::write(&other, "{ broken").unwrap();
+    desk.act(Action::Open(other.clone()));
+    assert!(desk.session.view.bottom_open && desk.session.path == Some(desk.path()));
+    fs::write(&other, &good).unwrap();
+    desk.act(Action::Open(other.clone()));
+    assert_eq!((desk.session.path.clone(), desk.session.view.bottom_open), (Some(other), false));
+    assert!(desk.session.messages.iter().all(|m| m.severity != Severity::Error));
+}

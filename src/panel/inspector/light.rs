@@ -178,9 +178,9 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
         let chosen = usize::from(light.colour_temperature.is_some());
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(if i == 0 {
-                "Red, green and blue, as on a display."
+                "Red, green and blue, as on a display. Like a filter, a colour takes away from white light."
             } else {
-                "The temperature of a black body that glows in this colour."
+                "The temperature of a black body that glows in this colour. It is as bright as white light."
             });
         };
         match segmented(ui, "Colour by", &choices, Some(chosen), tip) {
@@ -204,8 +204,8 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
                 label: "colour temperature",
                 unit: "K",
                 help: "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
-                       midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. How bright the \
-                       light is does not change.",
+                       midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. The luminance stays \
+                       that of a white light of this intensity.",
                 ..Caption::default()
             };
             let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
@@ -217,7 +217,8 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
             let caption = Caption {
                 label: "colour",
                 unit: "sRGB",
-                help: "The colour of the light; white leaves the materials as they are.",
+                help: "The colour of the light; white leaves the materials as they are. Other colours are a filter: blue \
+                       alone has 7 % of the luminance of white.",
                 ..Caption::default()
             };
             knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])).map(LightField::Colour)

@@ -35,10 +35,11 @@ pub(super) fn object(
     let model = registry.model(session.scene().model_of(object));
     let shown = Shown { session, registry, object, model };
     let mut fields = Vec::new();
+    shown.files(ui, i, actions);
     section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
     section(ui, "Material", true, |ui| shown.material(ui, &mut fields, actions));
     section(ui, "Shape and position", true, |ui| {
-        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, i, &mut fields, actions));
+        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, &mut fields, actions));
     });
     actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
 }
@@ -102,7 +103,7 @@ impl Shown<'_> {
     }
 
     /// The object type, its size and its place.
-    fn geometry(&self, ui: &mut Ui, i: usize, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
+    fn geometry(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
         let Self { session, registry, object, .. } = *self;
         let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
         let names: Vec<_> = types.iter().map(|d| d.name).collect();
@@ -112,7 +113,7 @@ impl Shown<'_> {
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             fields.push(ObjectField::Type(types[k].id.to_owned()));
         }
-        self.shape(ui, i, fields, actions);
+        self.shape(ui, fields);
         let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
         let size_limits = limits::object_size(session.document.scene_size);
         let default = f64::from(crate::scene::DEFAULT_SIZE);
@@ -163,15 +164,25 @@ impl Shown<'_> {
         }
     }
 
-    /// The knobs of the parameters of the object type.
-    fn shape(&self, ui: &mut Ui, i: usize, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
+    /// The files that make the object what it is.
+    fn files(&self, ui: &mut Ui, i: usize, actions: &mut Vec<Action>) {
         let Self { registry, object, .. } = *self;
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
-            if let Value::File(file) = object.shape.get(p) {
-                if knob::file_knob(ui, p, &file) {
-                    actions.push(Action::FileDialog(Selection::Object(i), p));
-                }
+            if let Value::File(file) = object.shape.get(p)
+                && linked::within(ui, Domain::Shape, |ui| knob::file_knob(ui, p, &file))
+            {
+                actions.push(Action::FileDialog(Selection::Object(i), p));
+            }
+        }
+    }
+
+    /// The knobs of the parameters of the object type; its files have theirs above.
+    fn shape(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+        let Self { registry, object, .. } = *self;
+        let Some(shape) = registry.shape(&object.object_type) else { return };
+        for p in shape.parameters {
+            if matches!(object.shape.get(p), Value::File(_)) {
                 continue;
             }
             let unused = usage::unused(shape.parameters, p, &object.shape);

@@ -55,7 +55,7 @@ pub(in crate::panel) fn facts(minutes: Option<u32>, past: Option<&Past>) -> Stri
 /// A lesson; true if it is chosen.
 fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
     let palette = Palette::here(ui);
-    let past = session.progress.of(&lesson.id);
+    let past = session.progress.of(&lesson.id).filter(|past| past.finished || past.is_begun());
     let current = session.lesson.as_ref().is_some_and(|open| open.source == LessonSource::Shipped(i));
     let small = TextStyle::Small.resolve(ui.style());
     let facts = ui.painter().layout_no_wrap(facts(lesson.minutes, past), small, palette.weak);

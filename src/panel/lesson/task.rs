@@ -45,7 +45,7 @@ pub(super) fn task(
             Task::Do(_) => "Do it",
             Task::Find(_) => "Find it",
         };
-        heading(ui, name, open.is_done());
+        heading(ui, name, open);
         match task {
             Task::Predict { question, answers } => predict(ui, open, question, answers, actions),
             Task::Do(goal) | Task::Find(goal) => reach(ui, open, goal, unmet, actions),
@@ -57,19 +57,25 @@ pub(super) fn task(
     ui.add_space(2.0);
 }
 
-/// The kind of task, and a check mark once it is done.
-fn heading(ui: &mut Ui, name: &str, done: bool) {
+/// The kind of task, a check mark once it is done, and the number of tries.
+fn heading(ui: &mut Ui, name: &str, open: &OpenLesson) {
     let palette = Palette::here(ui);
+    let tries = open.tries.get(&open.step).copied().unwrap_or(0);
     ui.horizontal(|ui| {
         let size = TextStyle::Body.resolve(ui.style()).size;
         ui.label(theme::strong(ui, name).color(palette.accent));
-        if done {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            if open.is_done() {
                 ui.label(theme::strong(ui, "Done"));
                 check(ui, size);
-            });
-        }
+            }
+            if tries > 0 {
+                let words = if tries == 1 { "1 try".to_owned() } else { format!("{tries} tries") };
+                ui.label(theme::small(ui, &words));
+                ui.add_space(4.0);
+            }
+        });
     });
 }
 
@@ -99,15 +105,31 @@ fn predict(
         if answer(ui, choice, chosen == Some(i), known) {
             actions.push(Action::Lesson(LessonCommand::Answer(i)));
         }
-        if known && (chosen == Some(i) || choice.right) && !choice.feedback.is_empty() {
+        if known && (chosen == Some(i) || choice.right) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = 0.0;
                 ui.add_space(CIRCLE * theme::scale_here(ui));
-                ui.vertical(|ui| paragraph(ui, &choice.feedback));
+                ui.vertical(|ui| {
+                    verdict(ui, choice.right, open.is_done());
+                    if !choice.feedback.is_empty() {
+                        paragraph(ui, &choice.feedback);
+                    }
+                });
             });
             ui.add_space(2.0);
         }
     }
+}
+
+/// Right or wrong, in a word and a colour.
+fn verdict(ui: &mut Ui, right: bool, done: bool) {
+    let palette = Palette::here(ui);
+    let (words, colour) = match (right, done) {
+        (true, _) => ("Right.", palette.accent),
+        (false, false) => ("Wrong. Try another answer.", palette.error),
+        (false, true) => ("Wrong.", palette.error),
+    };
+    ui.label(theme::strong(ui, words).color(colour));
 }
 
 /// An answer; true if it was chosen now. `known` shows whether it is right.
@@ -134,20 +156,24 @@ fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool
         )
     });
     let hot = response.hovered() || response.has_focus();
-    let fill = if chosen {
-        palette.chosen
-    } else if hot {
-        palette.hovered
-    } else {
-        palette.panel
+    let wrong = known && !choice.right;
+    let fill = match (wrong, chosen) {
+        (true, _) => palette.panel.lerp_to_gamma(palette.error, if chosen { 0.25 } else { 0.1 }),
+        (false, true) => palette.chosen,
+        (false, false) if hot => palette.hovered,
+        (false, false) => palette.panel,
     };
-    let edge = if chosen || hot { palette.accent } else { palette.line };
-    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, edge), StrokeKind::Inside);
+    let (width, edge) = match (wrong, chosen || hot) {
+        (true, _) => (if chosen { 2.0 } else { 1.0 }, palette.error),
+        (false, true) => (1.0, palette.accent),
+        (false, false) => (1.0, palette.line),
+    };
+    ui.painter().rect(rect, 4.0, fill, Stroke::new(width, edge), StrokeKind::Inside);
     let centre = pos2(rect.left() + 0.5 * left, rect.top() + 0.5 * (height.min(28.0 * scale)));
     let sign = Rect::from_center_size(centre, vec2(10.0, 10.0) * scale);
     match (known, choice.right) {
         (true, true) => icon::paint(ui.painter(), sign, Icon::Check, palette.accent),
-        (true, false) => icon::paint(ui.painter(), sign, Icon::Cross, palette.warning),
+        (true, false) => icon::paint(ui.painter(), sign, Icon::Cross, palette.error),
         _ => {
             ui.painter().circle_stroke(centre, 5.0 * scale, Stroke::new(1.2, palette.weak));
         }

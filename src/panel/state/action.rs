@@ -58,6 +58,10 @@ pub enum Action {
     Remove(Selection),
     /// Hide an object or show it again; switch a light off or on.
     Toggle(Selection),
+    /// Open what was dropped on the window, or add it to the scene.
+    Drop(Vec<PathBuf>),
+    /// Show the manual in the browser.
+    Manual,
     /// Begin typing the name of a part in the tree.
     BeginRename(Selection),
     /// Stop typing without a change.
@@ -200,12 +204,20 @@ pub enum ModelCommand {
     ExportDialog,
     /// Write the shaders into a folder.
     Export(PathBuf),
+    /// Copy a file into the folder of custom models, and choose its model.
+    Adopt(PathBuf),
 }
 
 impl Session {
     /// Carries out an action. Returns what needs files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        let revision = self.document.revision();
+        let words = self.default_words();
+        let undoes = matches!(action, Action::Undo | Action::Redo | Action::GoToStep(_));
         let mut effects = self.carry_out(action, registry);
+        if !undoes && self.document.revision() != revision {
+            self.forget_default_words(words);
+        }
         effects.extend(self.resume_lesson());
         // It would undo something else.
         self.messages.check_undo(&self.last_step());
@@ -224,6 +236,8 @@ impl Session {
                 let again = Action::Open(path.clone());
                 return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
             }
+            Action::Drop(paths) => return self.dropped(paths, registry),
+            Action::Manual => return vec![Effect::OpenManual],
             Action::OpenExample(i) => {
                 return self
                     .unless_unsaved(Action::OpenExample(i), |session| session.open_example(i, registry));

@@ -101,6 +101,7 @@ impl Session {
             ModelCommand::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
             ModelCommand::CheckLaws => return self.check_laws(),
             ModelCommand::ExportDialog => return vec![Effect::PickShaderFolder],
+            ModelCommand::Adopt(path) => return vec![Effect::AdoptModel(path)],
             ModelCommand::Export(folder) => return vec![Effect::ExportShaders(folder)],
         }
         Vec::new()

@@ -45,6 +45,9 @@ impl Session {
     pub(in crate::panel) fn disk_settled(&mut self) {
         let notes = std::mem::take(&mut self.disk.notes);
         self.messages.retain(|m| !notes.contains(m));
+        if !notes.is_empty() {
+            self.fold_healed();
+        }
         let known = std::mem::take(&mut self.disk);
         self.disk = OnDisk {
             use_defaults: known.use_defaults,

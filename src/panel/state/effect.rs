@@ -75,6 +75,10 @@ pub enum Effect {
         /// Its name for people.
         name: String,
     },
+    /// Copy a file into the folder of custom models.
+    AdoptModel(PathBuf),
+    /// Write the manual, and show it in the browser.
+    OpenManual,
     /// Open a file in an editor.
     OpenInEditor {
         /// The file.

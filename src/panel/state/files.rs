@@ -48,6 +48,7 @@ impl Session {
     /// The scene of a file has been read: it becomes the document.
     pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
         self.view.examples_open = false;
+        self.healed(&path);
         self.remember_file(&path);
         self.replace_document(Some(path), scene);
         vec![Effect::DocumentChanged, Effect::SaveSettings]
@@ -66,6 +67,42 @@ impl Session {
         let overwrite = path == typed;
         self.keep_files(&path);
         vec![Effect::SaveFile { path, overwrite }]
+    }
+
+    /// True if the scene has the name, and the description, of the default one and is what they say. A lesson has its own
+    /// words.
+    pub(super) fn default_words(&self) -> [bool; 2] {
+        let scene = self.document.scene();
+        let ([light], [object], None) = (&scene.lights[..], &scene.objects[..], &self.lesson) else {
+            return [false; 2];
+        };
+        let default = Scene::default();
+        let (lamp, ball) = (&default.lights[0], &default.objects[0]);
+        let parts = object.object_type == ball.object_type && light.light_type == lamp.light_type;
+        let look = parts
+            && scene.model_of(object) == default.reflection_model
+            && (light.colour, light.colour_temperature) == (lamp.colour, None);
+        [parts && scene.name == default.name, look && scene.description == default.description]
+    }
+
+    /// A scene that was built from the default one is no longer called and described like it, as part of the step that
+    /// made the words untrue. They were true before it if they are given.
+    pub(super) fn forget_default_words(&mut self, before: [bool; 2]) {
+        let now = self.default_words();
+        let default = Scene::default();
+        let scene = self.document.scene();
+        let name = before[0] && !now[0] && scene.name == default.name;
+        let description = before[1] && !now[1] && scene.description == default.description;
+        if (name || description) && self.lesson.is_none() && self.document.done() > 0 {
+            self.document.go_on(Extent::Rest, |scene| {
+                if name {
+                    scene.name = None;
+                }
+                if description {
+                    scene.description = None;
+                }
+            });
+        }
     }
 
     /// The files that lights and objects name relative to the folder of the scene are named from the root on, if the scene goes
@@ -96,16 +133,21 @@ impl Session {
         parameter: &'static Parameter,
         path: &Path,
     ) -> Option<Edit> {
-        let ParameterKind::File { format, .. } = parameter.kind else { return None };
-        let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-        let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
-        let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
-        let file = Value::File(NamedFile::chosen(&written.to_string_lossy(), folder, format));
+        let file = self.chosen(parameter, path)?;
         match part {
             Selection::Light(i) => Some(Edit::Light(i, LightField::Parameter(parameter.name, file))),
             Selection::Object(i) => Some(Edit::Object(i, ObjectField::Shape(parameter.name, file))),
             _ => None,
         }
+    }
+
+    /// A file that was chosen, as the value of a parameter.
+    pub(super) fn chosen(&self, parameter: &Parameter, path: &Path) -> Option<Value> {
+        let ParameterKind::File { format, .. } = parameter.kind else { return None };
+        let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
+        let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
+        Some(Value::File(NamedFile::chosen(&written.to_string_lossy(), folder, format)))
     }
 
     /// The document has been written. Returns what waited for it.

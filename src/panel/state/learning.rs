@@ -19,6 +19,7 @@ use crate::{
     panel::follow::follow_registry,
     registry::Registry,
     scene::Scene,
+    text::plural,
 };
 
 /// True if a goal is about the pixel that is pinned.
@@ -97,7 +98,7 @@ impl Session {
         let mut effects = self.leave_lesson(registry);
         let past = self.progress.of(&source.name()).filter(|past| !(past.finished && past.step == 0));
         let step = past.map_or(0, |past| past.step.min(lesson.steps.len() - 1));
-        let done = past.map(|past| past.done.clone()).unwrap_or_default();
+        let (done, tries) = past.map(|past| (past.done.clone(), past.tries.clone())).unwrap_or_default();
         let scene = match Self::scene_of(&lesson, step, registry) {
             Ok(scene) => scene,
             Err(why) => {
@@ -113,6 +114,7 @@ impl Session {
             step,
             answers: BTreeMap::new(),
             done,
+            tries,
             hint: false,
             asking: false,
             problems: Vec::new(),
@@ -199,6 +201,7 @@ impl Session {
             step: open.step,
             steps: open.lesson.steps.len(),
             done: open.done.clone(),
+            tries: open.tries.clone(),
             finished: past.finished,
         };
         self.progress.last = Some(name.clone());
@@ -293,8 +296,11 @@ impl Session {
         let all = open.answers.entry(step).or_default();
         if all.last() != Some(&answer) {
             all.push(answer);
+            if !open.done.contains(&step) {
+                *open.tries.entry(step).or_default() += 1;
+            }
         }
-        if right { self.solved(step) } else { Vec::new() }
+        if right { self.solved(step) } else { self.note_answer() }
     }
 
     fn solved(&mut self, step: usize) -> Vec<Effect> {
@@ -302,6 +308,12 @@ impl Session {
         if !open.done.insert(step) {
             return Vec::new();
         }
+        self.note_answer()
+    }
+
+    /// Keeps what was done in the step, which goes on as it is.
+    fn note_answer(&mut self) -> Vec<Effect> {
+        let Some(open) = &mut self.lesson else { return Vec::new() };
         open.asking = false;
         let (hint, entries) = (open.hint, open.entries);
         let effects = self.note_progress();
@@ -334,11 +346,15 @@ impl Session {
         let Some(open) = &self.lesson else { return Vec::new() };
         let (title, source) = (open.lesson.title.clone(), open.source.clone());
         let (tasks, done) = (open.tasks(), open.done.len());
+        let [right, first] = open.first_tries();
         let past = self.progress.lessons.entry(source.name()).or_default();
         (past.finished, past.step) = (true, 0);
         let mut text = format!("You have finished “{title}”.");
         if done < tasks {
             text.push_str(&format!(" You did {done} of {tasks} tasks."));
+        }
+        if right > 0 {
+            text.push_str(&format!(" {first} of {} at the first try.", plural(right, "right answer")));
         }
         let mut note = Note::new(Severity::Info, text);
         if let LessonSource::Shipped(i) = source
@@ -405,13 +421,18 @@ impl Session {
         registry: &Registry,
     ) -> Vec<Effect> {
         match read {
-            Ok(lesson) => self.begin_lesson(Arc::new(lesson), LessonSource::File(path), registry),
+            Ok(lesson) => {
+                self.healed(&path);
+                self.begin_lesson(Arc::new(lesson), LessonSource::File(path), registry)
+            }
             Err(problems) => {
+                self.healed(&path);
                 // The latest message stands on top: the first problem, and above it the consequence.
                 for problem in problems.iter().rev() {
-                    self.say(Severity::Error, problem_of(&path, problem));
+                    self.say_about(&path, Severity::Error, problem_of(&path, problem));
                 }
-                self.say(Severity::Error, format!("The lesson {} was not opened.", path.display()));
+                let text = format!("The lesson {} was not opened.", path.display());
+                self.say_about(&path, Severity::Error, text);
                 Vec::new()
             }
         }

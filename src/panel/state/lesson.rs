@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Pin, Progress};
+use super::{Past, Pin, Progress};
 use crate::lesson::shipped::LESSONS;
 
 /// Where a lesson comes from.
@@ -66,13 +66,15 @@ pub enum LessonCommand {
 }
 
 impl Progress {
-    /// The lesson to go on with: the one that was open last, unless it is finished; else the first that is not.
+    /// The lesson to go on with: the one that was open last, if it was begun and not finished; else the first that is not
+    /// finished.
     #[must_use]
     pub fn next(&self) -> Option<LessonSource> {
-        let finished = |name: &str| self.of(name).is_some_and(|past| past.finished && past.step == 0);
-        if let Some(last) = self.last.as_deref().filter(|last| !finished(last)) {
+        let begun = |name: &str| self.of(name).is_some_and(Past::is_begun);
+        if let Some(last) = self.last.as_deref().filter(|last| begun(last)) {
             return Some(LessonSource::named(last));
         }
+        let finished = |name: &str| self.of(name).is_some_and(|past| past.finished && !past.is_begun());
         let open = LESSONS.iter().position(|lesson| !finished(&lesson.id));
         (!LESSONS.is_empty()).then(|| LessonSource::Shipped(open.unwrap_or(0)))
     }

@@ -121,13 +121,22 @@ impl Session {
                 format!("{} {value}", parameter.map_or(*name, |p| p.label))
             })
             .collect();
+        let kept: Vec<_> = found
+            .kept
+            .iter()
+            .map(|name| registry.material_parameter(name).map_or(*name, |parameter| parameter.label))
+            .collect();
+        let kept = match kept.as_slice() {
+            [] => String::new(),
+            names => format!(" Unchanged: {}.", listed(names, "and")),
+        };
         let steps = self.document.done();
         let edit = Edit::Variant(view - 1, VariantField::Materials(found.values, "Match"));
         self.edit_here(edit, registry);
         self.look(registry);
         if self.document.done() != steps {
             let text = format!(
-                "View {letter} matched to view A on the {}: {}. Error: {} → {} ({}).",
+                "View {letter} matched to view A on the {}: {}.{kept} Error: {} → {} ({}).",
                 what.id(),
                 listed(&values, "and"),
                 digits(found.before),

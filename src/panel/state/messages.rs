@@ -1,6 +1,9 @@
 //! Messages to the user, and badges of the picture.
 
-use std::ops::Deref;
+use std::{
+    ops::Deref,
+    path::{Path, PathBuf},
+};
 
 use super::{Action, MESSAGES_TAB, Session, Severity};
 use crate::files::printable;
@@ -54,6 +57,18 @@ pub struct Messages {
     said_at: Option<Step>,
     /// The number of messages that were ever added.
     added: usize,
+    /// The messages about a file, which go once it is as it should be.
+    about: Vec<(PathBuf, Note)>,
+    /// The strip as it was before an error unfolded it, and the errors that there were then.
+    unfolded: Option<Unfolded>,
+}
+
+/// The strip before it unfolded itself.
+#[derive(Clone, Debug, PartialEq)]
+struct Unfolded {
+    open: bool,
+    tab: String,
+    errors: usize,
 }
 
 /// The number of steps that are done, and the name of the last one.
@@ -124,6 +139,10 @@ impl Messages {
         self.notes.retain(keep);
     }
 
+    fn errors(&self) -> usize {
+        self.iter().filter(|note| note.severity == Severity::Error).count()
+    }
+
     /// Removes all messages.
     pub fn clear(&mut self) {
         self.notes.clear();
@@ -144,10 +163,49 @@ impl Session {
 
     pub(in crate::panel) fn note(&mut self, note: Note) {
         if note.severity == Severity::Error {
+            let seen = self.view.bottom_open && self.view.bottom_tab == MESSAGES_TAB;
+            if !seen && self.messages.unfolded.is_none() {
+                let (open, tab) = (self.view.bottom_open, self.view.bottom_tab.clone());
+                self.messages.unfolded = Some(Unfolded { open, tab, errors: self.messages.errors() });
+            }
             self.view.unfold(MESSAGES_TAB);
         }
         self.keep_news();
         self.messages.add(note);
+    }
+
+    /// Says something about a file, which goes once the file is [`healed`](Self::healed).
+    pub fn say_about(&mut self, path: &Path, severity: Severity, text: impl Into<String>) {
+        let note = Note::new(severity, text);
+        self.messages.about.push((path.to_owned(), note.clone()));
+        self.messages.about.drain(..self.messages.about.len().saturating_sub(MAX_MESSAGES));
+        self.note(note);
+    }
+
+    /// A file is as it should be: what was said of it is over.
+    pub fn healed(&mut self, path: &Path) {
+        let about = std::mem::take(&mut self.messages.about);
+        let (gone, stay): (Vec<_>, Vec<_>) = about.into_iter().partition(|(known, _)| known == path);
+        self.messages.about = stay;
+        if !gone.is_empty() {
+            self.messages.retain(|note| gone.iter().all(|(_, known)| known != note));
+            self.fold_healed();
+        }
+    }
+
+    /// The strip folds itself if an error unfolded it and no such error is left.
+    pub(super) fn fold_healed(&mut self) {
+        let Some(before) = &self.messages.unfolded else { return };
+        let seen = self.view.bottom_open && self.view.bottom_tab == MESSAGES_TAB;
+        if seen && self.messages.errors() <= before.errors {
+            (self.view.bottom_open, self.view.bottom_tab) = (before.open, before.tab.clone());
+            self.messages.unfolded = None;
+        }
+    }
+
+    /// The user did something with the strip: it stays as it is.
+    pub(super) fn keep_strip(&mut self) {
+        self.messages.unfolded = None;
     }
 
     /// True if nothing was changed since the last message was added.

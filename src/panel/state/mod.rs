@@ -54,6 +54,7 @@ mod aside;
 mod author;
 mod compare;
 mod disk;
+mod dropped;
 mod edit;
 mod effect;
 mod export;

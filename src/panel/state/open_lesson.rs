@@ -36,6 +36,8 @@ pub struct OpenLesson {
     pub answers: BTreeMap<usize, Vec<usize>>,
     /// The steps whose tasks are done.
     pub done: BTreeSet<usize>,
+    /// The answers that were given in each step until the right one, that one included.
+    pub tries: BTreeMap<usize, usize>,
     /// True if the hint is shown.
     pub hint: bool,
     /// True while the learner is asked whether to skip the task.
@@ -73,6 +75,13 @@ impl OpenLesson {
     #[must_use]
     pub fn tasks(&self) -> usize {
         self.lesson.steps.iter().filter(|step| step.task.is_some()).count()
+    }
+
+    /// The number of questions that were answered rightly, and of those at the first try.
+    #[must_use]
+    pub fn first_tries(&self) -> [usize; 2] {
+        let right = || self.tries.iter().filter(|(step, _)| self.done.contains(step));
+        [right().count(), right().filter(|(_, tries)| **tries == 1).count()]
     }
 
     /// The answer that was chosen last in this step.

@@ -11,6 +11,11 @@ use crate::{
 
 impl Session {
     pub(super) fn add_light(&mut self, id: &str, registry: &Registry) {
+        self.add_light_with(id, |_| (), registry);
+    }
+
+    /// Adds a light of a type, with more that it begins with.
+    pub(super) fn add_light_with(&mut self, id: &str, with: impl FnOnce(&mut Light), registry: &Registry) {
         let Some(entry) = registry.light(id) else { return };
         if self.document.lights.len() >= MAX_LIGHTS {
             self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
@@ -26,6 +31,7 @@ impl Session {
             intensity: d.default_intensity,
             ..Light::default()
         };
+        with(&mut light);
         let (intensity, clips) = stand.intensity(&light, entry);
         light.intensity = intensity;
         let at = self.document.lights.len();
@@ -39,6 +45,17 @@ impl Session {
     }
 
     pub(super) fn add_object(&mut self, id: &str, registry: &Registry) {
+        self.add_object_with(id, None, |_| (), registry);
+    }
+
+    /// Adds an object of a type, called like this unless another is, with more that it begins with.
+    pub(super) fn add_object_with(
+        &mut self,
+        id: &str,
+        name: Option<String>,
+        with: impl FnOnce(&mut Object),
+        registry: &Registry,
+    ) {
         if registry.shape(id).is_none() {
             return;
         }
@@ -47,7 +64,10 @@ impl Session {
             return;
         }
         let (position, size) = self.stand(registry).object(id);
-        let object = Object { object_type: id.to_owned(), position, size, ..Object::default() };
+        let taken = |name: &String| self.document.objects.iter().any(|o| o.name.as_ref() == Some(name));
+        let name = name.map(|name| if taken(&name) { free_name(&self.document, &name) } else { name });
+        let mut object = Object { object_type: id.to_owned(), name, position, size, ..Object::default() };
+        with(&mut object);
         let at = self.document.objects.len();
         self.document.insert_object(at, object, "Add", self.selection, registry);
         self.select_new(Selection::Object(at));

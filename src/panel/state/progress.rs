@@ -26,11 +26,20 @@ pub struct Past {
     pub steps: usize,
     /// The steps whose tasks are done.
     pub done: BTreeSet<usize>,
+    /// The answers that were given in each step until the right one, that one included.
+    pub tries: BTreeMap<usize, usize>,
     /// True if it was finished once.
     pub finished: bool,
 }
 
 impl Past {
+    /// True if there is something to go on with: to open a lesson and look at its first step is no beginning.
+    #[must_use]
+    pub fn is_begun(&self) -> bool {
+        let touched = !self.done.is_empty() || !self.tries.is_empty();
+        self.step > 0 || (touched && !self.finished)
+    }
+
     /// In a few words: "step 3 of 9", "finished".
     #[must_use]
     pub fn words(&self) -> String {

@@ -395,6 +395,9 @@ impl Session {
             ViewChange::Bottom(false) => self.view.guest_tab = None,
             _ => {}
         }
+        if matches!(change, ViewChange::Bottom(_) | ViewChange::BottomTab(_)) {
+            self.keep_strip();
+        }
         let left = self.view.left_width;
         self.view.change(change);
         if self.lesson.is_some() {

@@ -1,0 +1,69 @@
+//! Aids that the dialogs lack: words for their icons, and a button that opens a folder.
+
+use bevy_egui::egui::{
+    Area, Button, Context, Id, LayerId, Order, Rect, Shape, Tooltip, epaint::ClippedShape, vec2,
+};
+use egui_file_dialog::FileDialogConfig;
+
+/// The room of an icon around its sign, points.
+const ICON: f32 = 6.0;
+
+/// The sign of each icon at the top, and what it does.
+fn icons(config: &FileDialogConfig) -> [(&str, &'static str); 7] {
+    [
+        (&config.parent_directory_icon, "The folder that this one is in"),
+        (&config.back_icon, "Back: the folder before"),
+        (&config.forward_icon, "Forward again"),
+        (&config.new_folder_icon, "Create a new folder here"),
+        (&config.path_edit_icon, "Type the path"),
+        (&config.menu_icon, "Reload, hidden files and more"),
+        (&config.search_icon, "Search in this folder"),
+    ]
+    .map(|(icon, words)| (icon.as_str(), words))
+}
+
+/// Says what the icon under the pointer does.
+pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &FileDialogConfig) {
+    let pointer = ctx.pointer_hover_pos().filter(|at| top.contains(*at));
+    let Some(pointer) = pointer.filter(|at| ctx.layer_id_at(*at) == Some(layer)) else { return };
+    let icons = icons(config);
+    let named = |shape: &Shape| {
+        let Shape::Text(text) = shape else { return None };
+        let rect = shape.visual_bounding_rect().expand(ICON);
+        let icon = icons.iter().find(|(icon, _)| *icon == text.galley.text())?;
+        rect.contains(pointer).then_some((rect, icon.1))
+    };
+    let found = ctx.graphics(|graphics| {
+        graphics.get(layer)?.all_entries().find_map(|ClippedShape { shape, .. }| match shape {
+            Shape::Vec(shapes) => shapes.iter().find_map(named),
+            shape => named(shape),
+        })
+    });
+    // One frame measures the words, the next shows them, and a window at rest draws none by itself.
+    let id = Id::new("words of an icon");
+    let now = found.map(|(_, words)| words);
+    if ctx.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default::<Option<&str>>(id), now)) != now {
+        ctx.request_repaint();
+    }
+    if let Some((rect, words)) = found {
+        Tooltip::always_open(ctx.clone(), layer, Id::new("icon of a dialog"), rect)
+            .show(|ui| ui.label(words));
+    }
+}
+
+/// A button over that of the dialog, which opens files alone. True if it was clicked.
+pub(super) fn open_folder(ctx: &Context, layer: LayerId, bottom: Rect, label: &str) -> bool {
+    // The only thing there that is disabled.
+    let place = ctx.viewport(|v| {
+        let widgets = v.this_pass.widgets.get_layer(layer);
+        widgets.filter(|w| !w.enabled && bottom.contains_rect(w.rect)).map(|w| w.rect).last()
+    });
+    let Some(place) = place else { return false };
+    let id = Id::new("open the selected folder");
+    let area = Area::new(id).order(Order::Foreground).fixed_pos(place.min).constrain(false);
+    let button = area.show(ctx, |ui| {
+        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
+        ui.add_sized(place.size(), Button::new(label))
+    });
+    button.inner.on_hover_text("Show what is in this folder").clicked()
+}

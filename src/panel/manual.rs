@@ -1,0 +1,183 @@
+//! The manual: the documents of the program as one page, which a browser shows without the network.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maud::{DOCTYPE, PreEscaped, html};
+use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
+
+/// The pages, with their ids: the names of their files.
+pub const PAGES: [(&str, &str); 14] = [
+    ("README", include_str!("../../docs/README.md")),
+    ("window", include_str!("../../docs/window.md")),
+    ("scenes", include_str!("../../docs/scenes.md")),
+    ("reflection-models", include_str!("../../docs/reflection-models.md")),
+    ("shading-and-lights", include_str!("../../docs/shading-and-lights.md")),
+    ("comparing", include_str!("../../docs/comparing.md")),
+    ("lessons", include_str!("../../docs/lessons.md")),
+    ("command-line", include_str!("../../docs/command-line.md")),
+    ("study", include_str!("../../docs/study.md")),
+    ("exporting", include_str!("../../docs/exporting.md")),
+    ("performance", include_str!("../../docs/performance.md")),
+    ("custom-models", include_str!("../../docs/custom-models.md")),
+    ("extending", include_str!("../../docs/extending.md")),
+    ("architecture", include_str!("../../docs/architecture.md")),
+];
+
+/// The page.
+#[must_use]
+pub fn page() -> String {
+    let sections: Vec<_> = PAGES.iter().map(|(id, text)| (*id, section(id, text))).collect();
+    let whole = html! {
+        (DOCTYPE)
+        html lang="en-GB" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Lights, Camera, Models! – manual" }
+                style { (PreEscaped(include_str!("manual.css"))) }
+            }
+            body {
+                nav aria-label="Pages" {
+                    strong { "Manual" }
+                    " " small { (env!("CARGO_PKG_VERSION")) }
+                    ul { @for (id, (title, _)) in &sections { li { a href={ "#" (id) } { (title) } } } }
+                }
+                main { @for (id, (_, body)) in &sections { section id=(id) { (PreEscaped(body)) } } }
+            }
+        }
+    };
+    whole.into_string()
+}
+
+/// The title of a document, and its content as HTML. Links within the documents lead to places of the page; others than
+/// to the web, such as those to files of the source, are plain text. Pictures are named: the program carries none.
+fn section(id: &str, text: &str) -> (String, String) {
+    let mut slugs = BTreeMap::new();
+    let mut title = String::new();
+    let mut events = Vec::new();
+    let mut links = Vec::new();
+    let mut parser = Parser::new_ext(text, Options::ENABLE_TABLES);
+    while let Some(event) = parser.next() {
+        match event {
+            // Comments, with the names of generated tables.
+            Event::Html(_) | Event::InlineHtml(_) => {}
+            Event::Start(Tag::Heading { level, .. }) => {
+                let within: Vec<_> =
+                    parser.by_ref().take_while(|e| !matches!(e, Event::End(TagEnd::Heading(_)))).collect();
+                let words = plain(&within);
+                let anchor = format!("{id}--{}", numbered(&mut slugs, slug(&words)));
+                if level == HeadingLevel::H1 && title.is_empty() {
+                    title.clone_from(&words);
+                }
+                let attribute = Some(CowStr::from(anchor));
+                let tag = Tag::Heading { level, id: attribute, classes: Vec::new(), attrs: Vec::new() };
+                events.push(Event::Start(tag));
+                // A heading is no link.
+                events.extend(
+                    within
+                        .into_iter()
+                        .filter(|e| !matches!(e, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link))),
+                );
+                events.push(Event::End(TagEnd::Heading(level)));
+            }
+            Event::Start(Tag::Link { link_type, dest_url, title, id: label }) => {
+                let target = target(id, &dest_url);
+                links.push(target.is_some());
+                let link = |to: String| Tag::Link { link_type, dest_url: to.into(), title, id: label };
+                events.extend(target.map(link).map(Event::Start));
+            }
+            Event::End(TagEnd::Link) => {
+                if links.pop() == Some(true) {
+                    events.push(Event::End(TagEnd::Link));
+                }
+            }
+            Event::Start(Tag::Image { .. }) => {
+                events.push(Event::InlineHtml("<span class=\"picture\">Picture: ".into()));
+            }
+            Event::End(TagEnd::Image) => events.push(Event::InlineHtml("</span>".into())),
+            other => events.push(other),
+        }
+    }
+    let mut body = String::new();
+    push_html(&mut body, events.into_iter());
+    (title, body)
+}
+
+/// The place that a link of a page leads to; `None` if it is none of the manual nor of the web.
+fn target(page: &str, to: &str) -> Option<String> {
+    if to.starts_with("https://") || to.starts_with("http://") {
+        return Some(to.to_owned());
+    }
+    let (file, place) = to.split_once('#').unwrap_or((to, ""));
+    let named = match file {
+        "" => page,
+        file => file.strip_suffix(".md").filter(|name| PAGES.iter().any(|(id, _)| id == name))?,
+    };
+    Some(if place.is_empty() { format!("#{named}") } else { format!("#{named}--{place}") })
+}
+
+/// The words of a heading.
+fn plain(events: &[Event]) -> String {
+    let text = |event: &Event| match event {
+        Event::Text(text) | Event::Code(text) => text.to_string(),
+        Event::SoftBreak => " ".to_owned(),
+        _ => String::new(),
+    };
+    events.iter().map(text).collect()
+}
+
+/// The anchor of a heading, as forges make it.
+fn slug(words: &str) -> String {
+    let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+    words.to_lowercase().chars().filter(kept).map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+/// The same, told apart from earlier ones of the page.
+fn numbered(known: &mut BTreeMap<String, usize>, slug: String) -> String {
+    let count = known.entry(slug.clone()).or_insert(0);
+    *count += 1;
+    if *count == 1 { slug } else { format!("{slug}-{}", *count - 1) }
+}
+
+/// The anchors that links of a page lead to, without those that it has: none, if it is whole.
+#[must_use]
+pub fn dead_links(page: &str) -> BTreeSet<String> {
+    let attributes = |name: &str| -> BTreeSet<String> {
+        page.split(&format!("{name}=\""))
+            .skip(1)
+            .filter_map(|rest| Some(rest.split_once('"')?.0.to_owned()))
+            .collect()
+    };
+    let ids: BTreeSet<_> = attributes("id").into_iter().map(|id| format!("#{id}")).collect();
+    attributes("href").into_iter().filter(|to| to.starts_with('#') && !ids.contains(to)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_within_the_page_to_the_web_or_nowhere() {
+        assert_eq!(target("window", "scenes.md#tables").as_deref(), Some("#scenes--tables"));
+        assert_eq!(target("window", "#camera").as_deref(), Some("#window--camera"));
+        assert_eq!(target("window", "scenes.md").as_deref(), Some("#scenes"));
+        assert_eq!(target("window", "https://bevy.org").as_deref(), Some("https://bevy.org"));
+        for elsewhere in ["../src/lib.rs", "other.md", "javascript:alert(1)", "file:///etc/passwd"] {
+            assert_eq!(target("window", elsewhere), None, "{elsewhere}");
+        }
+        let text =
+            "# A & `b`\n\n## Same\n\n## Same\n\n<!-- t -->\n\n[in](#same-1) [out](../x.rs) ![Alt](y.png)\n";
+        let (title, body) = section("page", text);
+        assert_eq!(title, "A & b");
+        for part in [
+            "id=\"page--a--b\"",
+            "id=\"page--same-1\"",
+            "<a href=\"#page--same-1\">in</a> out",
+            "Picture: Alt",
+        ] {
+            assert!(body.contains(part), "{part}: {body}");
+        }
+        assert!(!body.contains("<!--") && !body.contains("<img"));
+        assert_eq!(dead_links("<a href=\"#x\"> <b id=\"y\"> <a href=\"#y\">"), ["#x".to_owned()].into());
+    }
+}

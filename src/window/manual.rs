@@ -1,0 +1,46 @@
+//! The manual as a file, in the folder of the user's data, for the browser.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    files,
+    library::assets::data_folder,
+    panel::{
+        manual,
+        state::{Session, Severity},
+    },
+};
+
+/// The name of the file.
+const FILE: &str = "manual.html";
+
+/// Writes the manual of this version into a folder. Returns the file.
+///
+/// # Errors
+/// A sentence, if the folder or the file cannot be written.
+pub fn write(folder: &Path) -> Result<PathBuf, String> {
+    let path = folder.join(FILE);
+    let page = manual::page();
+    // It stays as it is while a browser shows it.
+    if files::read(&path, page.len() as u64).is_ok_and(|known| known == page.as_bytes()) {
+        return Ok(path);
+    }
+    std::fs::create_dir_all(folder)
+        .map_err(files::FileError::from)
+        .and_then(|()| files::write(&path, page.as_bytes()))
+        .map_err(|why| format!("The manual could not be written to {}: {why}.", path.display()))?;
+    Ok(path)
+}
+
+/// Shows the manual in the browser, or says why not.
+pub(super) fn show(session: &mut Session) {
+    let folder = data_folder().unwrap_or_else(|| std::env::temp_dir().join("lights-camera-models"));
+    let shown = write(&folder).and_then(|path| match ::open::that_detached(&path) {
+        Ok(()) => Ok(path),
+        Err(why) => Err(format!("No browser could be started ({why}): the manual is {}.", path.display())),
+    });
+    match shown {
+        Ok(path) => session.say(Severity::Info, format!("The browser shows the manual, {}.", path.display())),
+        Err(why) => session.say(Severity::Warning, why),
+    }
+}
