@@ -364,7 +364,9 @@ impl Painter {
         }
         let mut shown = Vec::with_capacity(job.plan.parts.len());
         for part in &job.plan.parts {
-            shown.push(if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? });
+            let drawn = if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? };
+            let outlined = shown.is_empty() && job.plan.is_map();
+            shown.push(if outlined { drawn.outlined(&part.scene, registry) } else { drawn });
         }
         let rgb8 = match shown.pop() {
             Some(only) if shown.is_empty() => only.into_rgb8(),

@@ -34,6 +34,10 @@ pub(super) const LETTER: f32 = 13.0;
 pub(super) const DISC: f32 = 6.0;
 /// Distance within which a line is grasped, points.
 const REACH: f32 = 6.0;
+/// Distance of handles from the object that they belong to, points: they cover none of it.
+const CLEAR: f32 = 7.0;
+/// The shortest arrow beyond the object, as a part of its length.
+const STUB: f32 = 0.5;
 /// Lines of a ring.
 const SIDES: usize = 72;
 
@@ -149,6 +153,15 @@ impl Placed {
         along.chain([self.end])
     }
 
+    /// Without the lines that are nearer to the middle than this.
+    fn beyond(mut self, middle: Pos2, radius: f32) -> Self {
+        for lines in [&mut self.lines, &mut self.far] {
+            let runs = lines.iter().flat_map(|line| line.split(|p| p.distance(middle) < radius));
+            *lines = runs.filter(|run| run.len() > 1).map(<[Pos2]>::to_vec).collect();
+        }
+        self
+    }
+
     /// The half side of the squares around its points.
     pub(super) fn half(&self) -> f32 {
         REACH.max(self.radius)
@@ -169,17 +182,22 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     };
     // In a small view they are small.
     let part = (0.0034 * lens.rect().size().min_elem()).min(1.0);
+    let clear = clearance(target, part, lens);
     let mut all = Vec::new();
     match (&target.body, mode) {
         (Body::Object(..), HandleMode::Turn) => {
-            all.extend((0..3).map(|axis| ring(target.at, axis, part * RING, lens)));
+            let radius = clear.map_or(part * RING, |clear| (clear + CLEAR).max(part * RING));
+            let cut = clear.unwrap_or_default();
+            all.extend((0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(middle, cut)));
         }
         (Body::Object(_, radius), HandleMode::Size) => {
-            all.extend(size(target.at, middle, *radius, lens));
+            all.extend(size(target.at, middle, *radius, clear.unwrap_or(GAP), lens));
         }
-        (Body::Object(..), HandleMode::Move) => all.extend(arrows(target.at, middle, part * ARM, lens)),
+        (Body::Object(..), HandleMode::Move) => {
+            all.extend(arrows(target.at, middle, part * ARM, clear, lens));
+        }
         (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
-            all.extend(arrows(target.at, middle, part * ARM, lens));
+            all.extend(arrows(target.at, middle, part * ARM, None, lens));
         }
         (Body::Light(..), _) => {}
     }
@@ -204,8 +222,17 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     all
 }
 
+/// The distance from the middle, points, beyond which handles cover nothing of the object; none if the object leaves them no
+/// room in the picture.
+fn clearance(target: &Target, part: f32, lens: &Lens) -> Option<f32> {
+    let Body::Object(object, _) = target.body else { return None };
+    let clear = 0.5 * object.size / lens.metres(target.at, 1.0) + CLEAR;
+    let arm = (1.0 + STUB) * part * ARM;
+    (clear + arm < 0.5 * lens.rect().size().min_elem()).then_some(clear)
+}
+
 /// The arrows along the axes of the room, and the disc that moves in the plane of the picture.
-fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
+fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<f32>, lens: &Lens) -> Vec<Placed> {
     let length = lens.metres(at, arm);
     let mut all = Vec::new();
     for (axis, way) in Vec3::AXES.into_iter().enumerate() {
@@ -216,8 +243,10 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
             continue;
         }
         // Towards the camera it would grow without end.
-        let tip = middle + along * (1.2 * arm / along.length()).min(1.0);
-        let line = vec![middle + along.normalized() * GAP.min(0.3 * arm), tip];
+        let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
+        let to = along.length().min(1.2 * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
+        let tip = middle + to * along.normalized();
+        let line = vec![middle + from * along.normalized(), tip];
         let end = tip + along.normalized() * LETTER;
         all.push(Placed {
             handle: Handle::Axis(axis),
@@ -238,7 +267,7 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
         handle: Handle::Plane,
         lines: Vec::new(),
         far: Vec::new(),
-        end: middle + corner * (ASIDE * arm / ARM).max(DISC + GAP),
+        end: middle + corner * (ASIDE * arm / ARM).max(DISC + clear.unwrap_or(GAP)),
         radius: DISC,
         point: at,
     });
@@ -278,14 +307,14 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
 }
 
 /// The handle of the size, on the way to the upper right.
-fn size(at: Vec3, middle: Pos2, radius: f32, lens: &Lens) -> Option<Placed> {
+fn size(at: Vec3, middle: Pos2, radius: f32, clear: f32, lens: &Lens) -> Option<Placed> {
     let way = vec2(1.0, -1.0).normalized();
     let edge = [lens.rect().right() - middle.x, middle.y - lens.rect().top()]
         .map(|room| (room - 20.0) / way.x.abs());
     let most = edge[0].min(edge[1]).max(GAP + DISC);
     let points = (radius / lens.metres(at, 1.0)).max(NEAREST).min(most);
     let end = middle + points * way;
-    let line = vec![middle + GAP * way, end];
+    let line = vec![middle + clear.min(points) * way, end];
     Some(Placed {
         handle: Handle::Size,
         lines: vec![line],
