@@ -310,15 +310,16 @@ fn header(
                 ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
                 let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
                 let at = badge.right_center() + vec2(8.0, 0.0) * scale;
-                // A presentation says the rest below, and cuts nothing.
-                let parts = if session.view.presenting { fitting(ui, parts, size, ink, room) } else { parts };
-                // With symbols as in the equation, if the words have room.
+                // With symbols as in the equation, if the words have room. A presentation says the rest below.
                 let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
                 let less = if session.view.presenting { 0.0 } else { dots.size().x };
-                let lines = Lines::within(ui, parts, size, ink, room - less, 1);
+                let all = parts.len();
+                let parts = fitting(ui, parts, size, ink, room - less);
+                let cut = parts.len() < all && !session.view.presenting;
+                let lines = Lines::within(ui, parts, size, ink, room, 1);
                 if lines.size.y < 1.9 * size && lines.size.x <= room {
                     let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
-                    if lines.cut {
+                    if cut {
                         ui.painter().galley(place.right_top(), dots, ink);
                     }
                     lines.paint(ui, place.min, ink);

@@ -36,6 +36,8 @@ const AXES: f32 = 240.0;
 /// The side of their corner, points.
 const AXES_CORNER: f32 = 84.0;
 
+/// The least width of a part of a picture with badges of its own, points.
+const NARROWEST: f32 = 140.0;
 /// The width of a wide legend, points.
 const WIDE_PLATE: f32 = 330.0;
 /// The part of a picture that the plate about an error covers at most.
@@ -188,12 +190,13 @@ pub fn views(
             let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
             let is_second = layout == Layout::Wipe && cell.part.min != cell.rect.min;
-            // What stands at the right already, such as the legend of a lobe, and in a narrow picture also what is at the left.
+            // Below the legend of a lobe, which stands there already, and in a narrow picture below what is at the left.
             let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * theme::scale_here(ui);
-            let in_the_way =
-                |place: &&Rect| place.is_positive() && (narrow || place.right() > cell.rect.right() - 16.0);
-            let below = all.written.iter().filter(in_the_way).map(|place| place.bottom() + 4.0);
-            let below = below.filter(|y| *y < cell.rect.center().y).fold(first, f32::max);
+            let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
+                .expand2(vec2(0.0, 16.0));
+            let there = all.written.iter().filter(|place| place.is_positive() && place.intersects(corner));
+            let left = next.filter(|_| narrow).unwrap_or(first);
+            let below = there.map(|place| place.bottom() + 4.0).fold(left, f32::max);
             let from = match session.document.comparison.edge {
                 Edge::Vertical if is_second => (Align2::RIGHT_TOP, below),
                 Edge::Horizontal if is_second => (Align2::LEFT_TOP, first.max(cell.part.top() + 8.0)),
@@ -202,7 +205,10 @@ pub fn views(
             let top = channel(ui, cell.rect, from, cell.view, session, registry, &mut all);
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
-            next = Some(badges(ui, cell.rect, (from.0, top), signs, &mut all));
+            // The edge of a wipe crosses no words where there is room beside it.
+            let beside = layout == Layout::Wipe && cell.part.width() >= NARROWEST * theme::scale_here(ui);
+            let room = if beside { cell.part } else { cell.rect };
+            next = Some(badges(ui, room, (from.0, top), signs, &mut all));
         }
     });
     all
@@ -248,14 +254,16 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
     let margin = 10.0;
     let room = (rect.width() - 2.0 * margin).min(560.0 * theme::scale_here(ui)) - left - 2.0 * padding.x;
     let ink = palette.panel;
-    let lay_out = |text: &str, font: FontId, rows: usize| {
-        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room.max(64.0));
+    let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
+        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room);
         job.wrap.max_rows = rows;
         painter.layout_job(job)
     };
     let body = TextStyle::Body.resolve(ui.style()).size;
-    let mut galleys = vec![lay_out(&heading, FontId::new(1.12 * body, theme::semibold()), 3)];
-    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2)));
+    let large = || FontId::new(1.12 * body, theme::semibold());
+    let room = room.max(64.0);
+    let mut galleys = vec![lay_out(&heading, large(), 3, room)];
+    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
     let size_of = |galleys: &[std::sync::Arc<egui::Galley>]| {
         let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
         let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
@@ -266,10 +274,15 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
     while galleys.len() > 1 && size_of(&galleys).x * size_of(&galleys).y > most {
         galleys.pop();
     }
+    let too_large = |galleys: &[_]| size_of(galleys).x * size_of(galleys).y > most;
     for rows in [2, 1] {
-        if size_of(&galleys).x * size_of(&galleys).y > most {
-            galleys = vec![lay_out(&heading, FontId::new(1.12 * body, theme::semibold()), rows)];
+        if too_large(&galleys) {
+            galleys = vec![lay_out(&heading, large(), rows, room)];
         }
+    }
+    if too_large(&galleys) {
+        let less = most / size_of(&galleys).y - left - 2.0 * padding.x;
+        galleys = vec![lay_out(&heading, large(), 1, less.max(1.0))];
     }
     let size = size_of(&galleys);
     let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);

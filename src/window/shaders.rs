@@ -63,7 +63,7 @@ impl Plugin for ShaderFilesPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             LabFrame,
-            (follow.in_set(Loading::Shaders), (tell, feed_compiling).in_set(LabSystems::Upload)),
+            (follow.in_set(Loading::Shaders), (tell, feed_compiling).chain().in_set(LabSystems::Upload)),
         );
     }
 
