@@ -284,6 +284,10 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
         let less = most / size_of(&galleys).y - left - 2.0 * padding.x;
         galleys = vec![lay_out(&heading, large(), 1, less.max(1.0))];
     }
+    if too_large(&galleys) {
+        // There is no room but for the frame.
+        return (Vec::new(), Rect::NOTHING);
+    }
     let size = size_of(&galleys);
     let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);
     let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());

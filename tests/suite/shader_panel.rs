@@ -67,9 +67,12 @@ fn the_plate_about_an_error_covers_a_quarter_of_the_picture_at_most() {
             bench.apply(Action::View(ViewChange::Scale(scale)));
             (0..views).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
             bench.settle();
-            let plate = bench.tree.iter().find(|s| s.label.starts_with("Showing ")).expect("a plate").rect;
             let cell = bench.area.cells.last().map_or(bench.area.rect, |cell| cell.rect);
-            let share = plate.area() / cell.area();
+            let Some(plate) = bench.tree.iter().find(|s| s.label.starts_with("Showing ")) else {
+                assert!(cell.area() < 10_000.0, "{scale} %, {views} more views: {cell:?} has room for it");
+                continue;
+            };
+            let share = plate.rect.area() / cell.area();
             assert!(share <= 0.25, "{scale} %, {views} more views: {share}");
         }
     }

@@ -435,7 +435,7 @@ mod tests {
         session.facts.camera = Quat::IDENTITY;
         session.facts.eye = Vec3::new(5.0, 5.0, 9.0);
         let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
-        let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(40.0, 0.0), false)
+        let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(80.0, 0.0), false)
         else {
             panic!()
         };
