@@ -268,13 +268,18 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) 
         if along.length() < SHORTEST.min(0.5 * arm) {
             continue;
         }
-        // Towards the camera it would grow without end.
-        let clear = clear.map(|clear| clear.towards(along));
-        let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
-        let to = along.length().min(1.2 * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
-        let tip = middle + to * along.normalized();
-        let line = vec![middle + from * along.normalized(), tip];
-        let end = tip + along.normalized() * LETTER;
+        let way = along.normalized();
+        let arrow = |clear: Option<f32>| {
+            let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
+            // Towards the camera it would grow without end.
+            let to = along.length().min(1.2 * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
+            (vec![middle + from * way, middle + to * way], middle + (to + LETTER) * way)
+        };
+        // Outside the view it could not be grasped.
+        let inside = lens.rect().shrink(LETTER);
+        let beyond =
+            Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
+        let (line, end) = beyond.unwrap_or_else(|| arrow(None));
         all.push(Placed {
             handle: Handle::Axis(axis),
             lines: vec![line],
