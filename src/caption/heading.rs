@@ -12,8 +12,8 @@ use crate::{
     scene::{Scene, variant::LETTERS},
 };
 
-/// A view in one line: "B · Phong, α 27". It says what the view overrides, and "as A" if that is nothing; of view A, the
-/// scene itself, it says what the others override. Empty if there is no such view.
+/// A view in one line: "B · Phong, α 27". It says what any of the views overrides, so that the headings of all say the same
+/// things, and "as A" of a view that overrides nothing. Empty if there is no such view.
 #[must_use]
 pub fn header(scene: &Scene, view: usize, registry: &Registry) -> String {
     line(&header_parts(scene, view, registry))
@@ -31,7 +31,7 @@ pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part
 /// The same without the letter.
 #[must_use]
 pub fn view_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
-    parts_of(scene, view, &Said::of(scene, view), registry)
+    parts_of(scene, view, &Said::in_heading(scene, view), registry)
 }
 
 /// What of a view is to be said, in parts.
@@ -185,7 +185,7 @@ mod tests {
             [
                 "A · Phong, Gouraud shading, k_d 0.8, all terms, ACES (fitted), −1 EV, gamma-correct, tessellation 32",
                 "B · Blinn–Phong, Flat shading, k_d 0.5, diffuse term alone, AgX, +2 EV, gamma-naive, tessellation 12",
-                "C · all terms, no tone mapping, 0 EV, gamma-correct",
+                "C · Phong, Gouraud shading, k_d 0.8, all terms, no tone mapping, 0 EV, gamma-correct, tessellation 32",
             ]
         );
     }

@@ -31,6 +31,14 @@ impl Said {
         said
     }
 
+    /// What the heading of a view says: what any of them overrides, unless this one overrides nothing.
+    pub(super) fn in_heading(scene: &Scene, view: usize) -> Self {
+        let own = scene.overrides(view).unwrap_or_default();
+        let nothing =
+            Variant { name: own.name.clone(), based_on: own.based_on.clone(), ..Variant::default() };
+        if view > 0 && own == nothing { Self::default() } else { Self::of(scene, 0) }
+    }
+
     fn add(&mut self, variant: &Variant) {
         self.model |= variant.reflection_model.is_some();
         self.shading |= variant.shading_model.is_some();

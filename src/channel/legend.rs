@@ -4,7 +4,7 @@ use super::{
     DebugChannel, Setting,
     colours::{AWAY, BELOW, CLIPPED, EDGE, INFINITE, NAN, NEGATIVE, TOWARDS},
 };
-use crate::{registry::Registry, scene::Scene};
+use crate::{registry::Registry, scene::Scene, shading::Stage};
 
 /// The meaning of the colours of a channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,12 +22,24 @@ impl Setting {
     /// The legend of the channel in a picture of a scene.
     #[must_use]
     pub fn legend(&self, scene: &Scene, registry: &Registry) -> Legend {
+        // Vertices with a colour of their own, and those of which the normal is shown.
+        let mut vertices = [false; 2];
+        for object in scene.shown().filter(|_| self.channel == DebugChannel::Vertices) {
+            let shading = registry.shading_model(scene.shading_model_of(object));
+            let own = shading.is_some_and(|shading| shading.declaration.stage == Stage::Vertex);
+            vertices[usize::from(!own)] = true;
+        }
         let title = match self.channel {
             DebugChannel::Normals => "Interpolated normals: x, y, z as red, green, blue".to_owned(),
             DebugChannel::FaceNormals => "Face normals: x, y, z as red, green, blue".to_owned(),
             DebugChannel::VertexNormals => "Vertex normals".to_owned(),
             DebugChannel::Wireframe => "Wireframe: visible edges of polygons".to_owned(),
-            DebugChannel::Vertices => "Vertices: Gouraud colour or normal".to_owned(),
+            DebugChannel::Vertices => match vertices {
+                [true, false] => "Vertices: the colour calculated there (Gouraud)",
+                [true, true] => "Vertices: Gouraud colour; where there is none, the normal",
+                _ => "Vertices: normals, x, y, z as red, green, blue",
+            }
+            .to_owned(),
             DebugChannel::NDotL | DebugChannel::NDotH => {
                 let light = self.light_name(scene, registry);
                 let light = light.unwrap_or_else(|| "no light has a direction".to_owned());
@@ -55,6 +67,7 @@ impl Setting {
         let axes: &[_] =
             &[([255, 128, 128], "right (+x)"), ([128, 255, 128], "up (+y)"), ([128, 128, 255], "out (+z)")];
         let colours = match self.channel {
+            DebugChannel::Vertices if vertices == [true, false] => &[],
             DebugChannel::Normals
             | DebugChannel::FaceNormals
             | DebugChannel::VertexNormals
@@ -103,6 +116,20 @@ mod tests {
     }
 
     #[test]
+    fn the_legend_of_vertices_explains_normals_only_where_there_are_some() {
+        let mut scene = Scene { shading_model: "gouraud".to_owned(), ..Scene::default() };
+        let gouraud = legend(DebugChannel::Vertices, &scene);
+        assert!(gouraud.title.contains("colour calculated there") && gouraud.colours.is_empty());
+        scene.objects.push(scene.objects[0].clone());
+        scene.objects[1].shading_model = Some("phong".to_owned());
+        let both = legend(DebugChannel::Vertices, &scene);
+        assert!(both.title.contains("Gouraud colour") && both.colours.len() == 3);
+        scene.shading_model = "flat".to_owned();
+        let normals = legend(DebugChannel::Vertices, &scene);
+        assert!(!normals.title.contains("Gouraud") && normals.colours.len() == 3);
+    }
+
+    #[test]
     fn legends_name_values_units_and_the_light() {
         let mut scene = Scene { lights: vec![Light::default(), Light::default()], ..Scene::default() };
         scene.lights[0].enabled = false;
@@ -120,7 +147,8 @@ mod tests {
         assert!(depth.title.ends_with(", m"));
         for channel in DebugChannel::ALL.into_iter().filter(|c| !c.is_picture()) {
             let legend = legend(channel, &scene);
-            assert!(legend.scale.is_some() || !legend.colours.is_empty(), "{channel:?}");
+            let own = channel == DebugChannel::Vertices && legend.title.contains("Gouraud");
+            assert!(own || legend.scale.is_some() || !legend.colours.is_empty(), "{channel:?}");
         }
     }
 }

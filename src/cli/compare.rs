@@ -200,6 +200,14 @@ impl View<'_> {
         }
     }
 
+    /// The picture of the view with the outlines of its objects, if it is one of a scene.
+    fn outlined(&self, shown: Shown, registry: &Registry) -> Shown {
+        match self.input.scene().and_then(|scene| scene.seen(self.view, registry)) {
+            Some((seen, _)) => shown.outlined(&seen, registry),
+            None => shown,
+        }
+    }
+
     fn report(&self) -> Side {
         match self.input {
             Input::Picture(name, _) => Side { file: name.clone(), view: None, name: None },
@@ -305,7 +313,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     views.iter().try_for_each(|view| view.check(registry))?;
     let [a, b] = [views[0], other(&comparison, &views)];
     let [shown_a, shown_b] = [a, b].map(|view| view.shown(size, arguments.samples, registry));
-    let shown = [shown_a?, shown_b?];
+    let mut shown = [shown_a?, shown_b?];
+    if arguments.output.is_some() && comparison.layout == Layout::Difference {
+        let [shown_a, shown_b] = shown;
+        shown = [a.outlined(shown_a, registry), b.outlined(shown_b, registry)];
+    }
     let invalid = |error: crate::compare::Unequal| {
         Failure::Invalid(format!("{} and {}: {error}", a.input.name(), b.input.name()))
     };

@@ -385,7 +385,8 @@ impl Painter {
         for part in &job.plan.parts {
             let (drawn, remark) =
                 if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? };
-            shown.push(drawn);
+            let outlined = shown.is_empty() && job.plan.is_map();
+            shown.push(if outlined { drawn.outlined(&part.scene, registry) } else { drawn });
             remarks.extend(remark);
         }
         let rgb8 = match shown.pop() {

@@ -33,7 +33,7 @@ pub(super) struct Choice {
     /// Compare display codes, or linear light: codes or light
     #[arg(long, value_parser = values)]
     values: Option<Compared>,
-    /// Multiply differences by this, 1 to 100, before they become colours
+    /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
     #[arg(long, value_name = "FACTOR", value_parser = amplification)]
     amplification: Option<f32>,
     /// Place the edge of a wipe here: 0 at the left or top, 1 at the right or bottom
@@ -92,7 +92,7 @@ impl Choice {
             sign: self.sign.unwrap_or(comparison.sign),
             channel: self.channel.unwrap_or(comparison.channel),
             values: self.values.unwrap_or(comparison.values),
-            amplification: self.amplification.unwrap_or(comparison.amplification),
+            amplification: self.amplification.or(comparison.amplification),
             split: self.split.unwrap_or(comparison.split),
             edge: self.edge.unwrap_or(comparison.edge),
             with: comparison.with,
@@ -175,8 +175,11 @@ impl Plan {
 
     /// True if the picture is made from light, not from display codes.
     pub(super) fn needs_light(&self) -> bool {
-        self.comparison.layout == Layout::Difference
-            && self.comparison.values == Compared::Light
-            && self.parts.len() > 1
+        self.is_map() && self.comparison.values == Compared::Light
+    }
+
+    /// True if the picture is a map of differences.
+    pub(super) fn is_map(&self) -> bool {
+        self.comparison.layout == Layout::Difference && self.parts.len() > 1
     }
 }

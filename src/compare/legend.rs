@@ -31,8 +31,8 @@ pub(super) fn full(values: Compared) -> f32 {
 }
 
 impl Texts {
-    pub(super) fn new(comparison: &Comparison) -> Self {
-        let Comparison { sign, channel, values, amplification, with, .. } = *comparison;
+    pub(super) fn new(comparison: &Comparison, amplification: f32) -> Self {
+        let Comparison { sign, channel, values, with, .. } = *comparison;
         let other = LETTERS.get(with).copied().unwrap_or("B");
         let difference = match (sign, amplification == 1.0) {
             (Sign::Absolute, _) => format!("|{other} − A|"),
@@ -75,8 +75,8 @@ pub fn short(number: f32) -> String {
 
 /// Draws the legend in a lower corner where it does not cover the largest difference: the bar, and the texts as far as
 /// there is room.
-pub(super) fn draw(canvas: &mut Canvas, comparison: &Comparison, largest: Option<&Largest>) {
-    let texts = Texts::new(comparison);
+pub(super) fn draw(canvas: &mut Canvas, comparison: &Comparison, factor: f32, largest: Option<&Largest>) {
+    let texts = Texts::new(comparison, factor);
     let scale = canvas.scale();
     let px = 16.0 * scale;
     let style = Lettering::Regular;
@@ -146,20 +146,20 @@ mod tests {
 
     #[test]
     fn the_legend_says_what_is_shown_in_which_unit() {
-        let plain = Texts::new(&Comparison::default());
+        let plain = Texts::new(&Comparison::default(), 1.0);
         assert_eq!(plain.title, "|B − A|: largest channel, display codes");
         assert_eq!(plain.numbers, ["0", "128", "255"]);
-        let amplified = Texts::new(&Comparison {
+        let light = Comparison {
             sign: Sign::Signed,
             channel: Channel::Luminance,
             values: Compared::Light,
-            amplification: 8.0,
             with: 2,
             ..Comparison::default()
-        });
+        };
+        let amplified = Texts::new(&light, 8.0);
         assert_eq!(amplified.title, "8 × (C − A): luminance, linear light");
         assert_eq!(amplified.numbers, ["−0.125", "0", "+0.125"]);
-        let codes = Texts::new(&Comparison { amplification: 10.0, ..Comparison::default() });
+        let codes = Texts::new(&Comparison::default(), 10.0);
         assert_eq!(codes.numbers, ["0", "12.8", "25.5"]);
     }
 

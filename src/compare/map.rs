@@ -3,18 +3,29 @@
 use rayon::prelude::*;
 
 use super::{
-    canvas::Canvas,
+    canvas::{BRIGHT, Canvas, DARK},
     colours::Colours,
     legend,
     pair::{Differences, Pair, Unequal},
 };
-use crate::scene::Comparison;
+use crate::scene::{Comparison, comparison::Sign};
+
+/// How much of an outline covers the colours below it.
+const OUTLINE: f32 = 0.6;
 
 impl Differences {
+    /// The factor by which a comparison multiplies these differences: its own, or the one that fits the largest.
+    #[must_use]
+    pub fn amplification(&self, comparison: &Comparison) -> f32 {
+        let largest = self.largest.as_ref().map_or(0.0, |largest| largest.difference.abs());
+        comparison.amplification.unwrap_or_else(|| legend::fitting_amplification(comparison.values, largest))
+    }
+
     /// A colour for each difference: red, green, blue, row by row from the top.
     #[must_use]
     pub fn colours(&self, comparison: &Comparison) -> Vec<u8> {
-        let (sign, factor) = (comparison.sign, comparison.amplification / legend::full(comparison.values));
+        let (sign, factor) =
+            (comparison.sign, self.amplification(comparison) / legend::full(comparison.values));
         let colours = Colours::of(sign);
         let none = colours.of_difference(sign, 0.0);
         let mut out = vec![0; 3 * self.pixels.len()];
@@ -29,17 +40,35 @@ impl Differences {
 }
 
 impl Pair<'_> {
-    /// The map of the differences with its legend and the mark: red, green, blue, row by row from the top.
+    /// The map of the differences with the outlines of objects, as far as they are known, its legend and the mark: red,
+    /// green, blue, row by row from the top.
     ///
     /// # Errors
     /// If light is to be compared, and one picture has none.
     pub fn map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
         let differences = self.differences(comparison)?;
         let mut canvas = Canvas { size: self.a.size(), rgb8: differences.colours(comparison) };
+        self.outline(&mut canvas, comparison.sign);
         if let Some(largest) = &differences.largest {
             legend::mark(&mut canvas, largest);
         }
-        legend::draw(&mut canvas, comparison, differences.largest.as_ref());
+        let factor = differences.amplification(comparison);
+        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref());
         Ok(canvas.rgb8)
+    }
+
+    /// Thin lines where objects end, so that a map without large differences still shows where it is.
+    fn outline(&self, canvas: &mut Canvas, sign: Sign) {
+        let Some(outlines) = self.a.outlines().or(self.b.outlines()) else { return };
+        // Signed differences are brightest where they are 0, the others darkest.
+        let ink = match sign {
+            Sign::Absolute => BRIGHT,
+            Sign::Signed => DARK,
+        };
+        let width = canvas.size[0].max(1) as usize;
+        let thick = canvas.scale().round().max(1.0) as u32;
+        for i in outlines.iter().enumerate().filter_map(|(i, on)| on.then_some(i)) {
+            canvas.fill([(i % width) as u32, (i / width) as u32, thick, thick], ink, OUTLINE);
+        }
     }
 }

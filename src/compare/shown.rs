@@ -17,6 +17,7 @@ pub struct Shown {
     rgb8: Vec<u8>,
     light: Option<Picture>,
     covered: Option<Vec<bool>>,
+    outlines: Option<Vec<bool>>,
 }
 
 /// A number of bytes, or of pixels, that does not match the size of a picture.
@@ -42,7 +43,7 @@ impl Shown {
         if rgb8.len() != 3 * pixels {
             return Err(WrongSize { width, height, found: rgb8.len() / 3 });
         }
-        Ok(Self { width, height, rgb8, light: None, covered: None })
+        Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None })
     }
 
     /// The same, where it is known which pixels objects cover.
@@ -76,7 +77,7 @@ impl Shown {
         let (width, height) = (light.width, light.height);
         let rgb8 = light.to_rgb8(display);
         let covered = light.pixels.iter().map(|pixel| pixel.w > 0.0).collect();
-        Self { width, height, rgb8, light: Some(light), covered: Some(covered) }
+        Self { width, height, rgb8, light: Some(light), covered: Some(covered), outlines: None }
     }
 
     /// A view of a scene, drawn by the CPU renderer; view 0 is the scene itself. The terms of `settings` are shown
@@ -87,6 +88,18 @@ impl Shown {
         let terms = if settings.terms == TermSelection::All { own } else { settings.terms };
         let light = reference::render(&seen, registry, &Settings { terms, ..*settings });
         Some(Self::of_light(light, &seen.display))
+    }
+
+    /// The same with the outlines of the objects of the scene that it shows, for a map of differences.
+    #[must_use]
+    pub fn outlined(mut self, scene: &Scene, registry: &Registry) -> Self {
+        self.outlines = Some(reference::outlines(scene, registry, self.size()));
+        self
+    }
+
+    /// True for each pixel where an object ends, if that is known.
+    pub(super) fn outlines(&self) -> Option<&[bool]> {
+        self.outlines.as_deref()
     }
 
     /// Pixels across and down.

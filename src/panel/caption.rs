@@ -8,10 +8,11 @@ use super::{maths, state::Session, theme};
 pub use crate::caption::Part;
 use crate::{
     caption::{display, line, single, terms_alone, value},
+    optics::TermSelection,
     parameter::{Parameter, ParameterKind},
     reflection::usage,
     registry::Registry,
-    scene::Object,
+    scene::{Object, Scene},
 };
 
 /// More values would be a list, not a caption.
@@ -34,8 +35,15 @@ pub fn models_shown(session: &Session) -> BTreeSet<&str> {
 /// The same in parts.
 #[must_use]
 pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
-    let scene = session.scene();
-    let models = models_shown(session);
+    let parts = parts_of(session.scene(), session.terms(), registry);
+    // The picture does not agree yet.
+    let compiling = session.facts.compiling.then(|| Part::new(0, "compiling…"));
+    compiling.into_iter().chain(parts).collect()
+}
+
+/// The parts of the caption of a scene of whose equations these terms are shown.
+pub(super) fn parts_of(scene: &Scene, terms: TermSelection, registry: &Registry) -> Vec<Part> {
+    let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
     let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
     let mut parts = Vec::new();
     match single(&models) {
@@ -59,7 +67,7 @@ pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
     if let (Some(object), None) = (objects.next(), objects.next()) {
         parts.extend(key_values(object, scene.model_of(object), registry));
     }
-    parts.extend(terms_alone(session.terms()));
+    parts.extend(terms_alone(terms));
     parts.extend(display(scene.display));
     parts
 }

@@ -41,17 +41,23 @@ pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>)
 #[must_use]
 pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(DebugChannel, Legend)> {
     let channel = session.channel_of(view)?;
-    let scene = &session.document;
+    let other = channel == DebugChannel::Vertices && view != session.active();
+    let seen = other.then(|| session.document.seen(view, registry)).flatten();
+    let scene = match &seen {
+        Some((scene, _)) => scene,
+        None if view == session.active() => session.scene(),
+        None => &session.document,
+    };
     let setting = Setting::new(channel, scene, registry, session.facts.eye, session.channel_light());
     Some((channel, setting.legend(scene, registry)))
 }
 
-/// Paints the legend of a view's channel from `top` on, if the view shows one; a click on it shows the picture again. Returns
+/// Paints the legend of a view's channel from a corner on, if the view shows one; a click on it shows the picture again. Returns
 /// its place, and the actions asked for there.
 pub(super) fn legend(
     ui: &mut Ui,
     rect: Rect,
-    top: f32,
+    (side, top): (Align2, f32),
     view: usize,
     session: &Session,
     registry: &Registry,
@@ -63,7 +69,7 @@ pub(super) fn legend(
     if let Some(remark) = wires::remark(ui.ctx(), view).filter(|_| channel.has_wires()) {
         legend.title = format!("{} ({remark})", legend.title);
     }
-    let place = plate(ui, rect, Align2::LEFT_TOP, top, &legend);
+    let place = plate(ui, rect, side, top, &legend);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
     let said = format!("Channel: {}. Show the picture", legend.title);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));

@@ -18,10 +18,10 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// The sign in the corner of a picture of so many pixels; for a few of them only while they are shown.
+/// The sign in the corner of a view's picture, which has so many pixels; for a few of them only while they are shown.
 #[must_use]
-pub fn badge(session: &Session, pixels: f64) -> Option<Badge> {
-    let clipping = session.facts.clipping.as_ref()?;
+pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
+    let clipping = session.facts.clipping.get(view)?.as_ref()?;
     let share = clipping.pixels() as f64 / pixels.max(1.0);
     if share < TOLERATED && !session.view.show_clipping {
         return None;
@@ -37,9 +37,10 @@ pub fn badge(session: &Session, pixels: f64) -> Option<Badge> {
     })
 }
 
-/// Marks the clipped parts of the picture.
-pub fn paint(painter: &Painter, rect: Rect, session: &Session, pixels_per_point: f32) {
-    let Some(clipping) = session.facts.clipping.as_ref().filter(|_| session.view.show_clipping) else {
+/// Marks the clipped parts of a view's picture.
+pub fn paint(painter: &Painter, rect: Rect, view: usize, session: &Session, pixels_per_point: f32) {
+    let known = session.facts.clipping.get(view).and_then(Option::as_ref);
+    let Some(clipping) = known.filter(|_| session.view.show_clipping) else {
         return;
     };
     let mut mesh = Mesh::default();
@@ -82,11 +83,12 @@ mod tests {
         let mut counts = vec![0; fields];
         (counts[0], counts[fields - 1]) = (2, 3);
         let mut session = Session::default();
-        assert_eq!(badge(&session, 100.0), None);
-        session.facts.clipping = Clipping::new(counts);
-        assert_eq!(badge(&session, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
-        assert_eq!(badge(&session, 10_000.0), None, "new lights may clip as much");
+        assert_eq!(badge(&session, 0, 100.0), None);
+        session.facts.clipping[0] = Clipping::new(counts);
+        assert_eq!(badge(&session, 1, 100.0), None, "of another view nothing is known");
+        assert_eq!(badge(&session, 0, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
+        assert_eq!(badge(&session, 0, 10_000.0), None, "new lights may clip as much");
         session.view.show_clipping = true;
-        assert!(badge(&session, 10_000.0).is_some(), "where they are shown, that can be ended");
+        assert!(badge(&session, 0, 10_000.0).is_some(), "where they are shown, that can be ended");
     }
 }

@@ -310,12 +310,16 @@ fn header(
                 ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
                 let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
                 let at = badge.right_center() + vec2(8.0, 0.0) * scale;
-                // With symbols as in the equation, if the words have room.
+                // With symbols as in the equation, if the words have room. A presentation says the rest below.
                 let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
-                let lines = Lines::within(ui, parts, size, ink, room - dots.size().x, 1);
+                let less = if session.view.presenting { 0.0 } else { dots.size().x };
+                let all = parts.len();
+                let parts = fitting(ui, parts, size, ink, room - less);
+                let cut = parts.len() < all && !session.view.presenting;
+                let lines = Lines::within(ui, parts, size, ink, room, 1);
                 if lines.size.y < 1.9 * size && lines.size.x <= room {
                     let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
-                    if lines.cut {
+                    if cut {
                         ui.painter().galley(place.right_top(), dots, ink);
                     }
                     lines.paint(ui, place.min, ink);
@@ -333,6 +337,18 @@ fn header(
         ui.label(if view == 0 { "The scene itself.".to_owned() } else { text });
         ui.label(theme::small(ui, "Click: the panels show and change this view."));
     });
+}
+
+/// The first of some parts: as many as fit into one line.
+fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: egui::Color32, room: f32) -> Vec<Part> {
+    while parts.len() > 1 {
+        let lines = Lines::within(ui, parts.clone(), size, ink, room, 1);
+        if lines.size.y < 1.9 * size && lines.size.x <= room {
+            break;
+        }
+        parts.pop();
+    }
+    parts
 }
 
 /// A view in words: its name, unless what it shows says the same, and what it shows.
@@ -537,18 +553,23 @@ fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
     choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
 }
 
-/// The amplification, and a button that chooses it by the largest difference.
+/// The amplification: a number, or the one that fits the largest difference.
 fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     let help = "Differences are multiplied by this before they become colours, 1 to 100.";
     ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
-    let field = egui::DragValue::new(&mut now.amplification).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
-    ui.add(field).on_hover_text(help);
     let largest = session.facts.comparison.as_ref().and_then(|numbers| numbers.largest);
-    let fitting = largest.map(|largest| fitting_amplification(now.values, largest));
-    let fit = ui.add_enabled(fitting.is_some_and(|f| f != now.amplification), Button::new("fit").small());
+    let fitting = fitting_amplification(now.values, largest.unwrap_or(f32::INFINITY));
+    let mut factor = now.amplification.unwrap_or(fitting);
+    let field = egui::DragValue::new(&mut factor).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+    if ui.add(field).on_hover_text(help).changed() {
+        now.amplification = Some(factor);
+    }
+    let fits = now.amplification.is_none();
+    let fit = ui.add(Button::new("auto").small().selected(fits));
+    fit.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, fits, "Amplify automatically"));
     let fit = fit.on_hover_text("Amplify so that the largest difference has nearly the last colour.");
-    if let (true, Some(fitting)) = (fit.clicked(), fitting) {
-        now.amplification = fitting;
+    if fit.clicked() {
+        now.amplification = if fits { Some(factor) } else { None };
     }
 }
 
@@ -576,8 +597,19 @@ const SPACE: f32 = 14.0;
 
 /// Those numbers of the comparison that are wanted; those that have no room are left out.
 fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
-    let Some(numbers) = &session.facts.comparison else { return };
     let palette = Palette::here(ui);
+    // Once, where the usual numbers would be.
+    if let Some(reason) = session.incomparable().filter(|_| wanted("RMSE")) {
+        let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
+        let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+        ui.painter().galley(rect.min, galley, palette.weak);
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &reason));
+        response.on_hover_text(reason);
+        return;
+    }
+    let Some(numbers) = session.facts.comparison.as_ref().filter(|_| session.incomparable().is_none()) else {
+        return;
+    };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {

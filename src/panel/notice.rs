@@ -2,7 +2,7 @@
 
 use std::{thread, time::Duration};
 
-use bevy_egui::egui::{Align2, FontId, Id, Rect, Ui, vec2};
+use bevy_egui::egui::{Align2, Context, FontId, Id, Rect, Ui, vec2};
 
 use super::{
     icon,
@@ -55,15 +55,18 @@ fn moment(severity: Option<Severity>) -> f64 {
     if severity.is_some_and(|severity| severity > Severity::Info) { 2.0 * MOMENT } else { MOMENT }
 }
 
+/// Draws the panels again after so many seconds: nothing else wakes a window at rest.
+pub(super) fn wake(ctx: &Context, seconds: f64) {
+    let (ctx, wait) = (ctx.clone(), Duration::from_secs_f64(seconds.max(0.0)));
+    thread::spawn(move || {
+        thread::sleep(wait);
+        ctx.request_repaint();
+    });
+}
+
 fn plate(ui: &Ui, rect: Rect, size: f32, text: &str, severity: Option<Severity>, first: bool) {
     if first {
-        // Nothing else wakes a window at rest.
-        let ctx = ui.ctx().clone();
-        let wait = Duration::from_secs_f64(moment(severity) + 0.1);
-        thread::spawn(move || {
-            thread::sleep(wait);
-            ctx.request_repaint();
-        });
+        wake(ui.ctx(), moment(severity) + 0.1);
     }
     let palette = Palette::here(ui);
     let left = if severity.is_some() { 1.2 * size } else { 0.0 };

@@ -1,5 +1,7 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
+use std::collections::BTreeSet;
+
 use bevy_egui::egui::{
     self, Align2, CursorIcon, FontFamily, FontId, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
@@ -7,21 +9,25 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    caption::{self, Lines, caption_text, models_shown},
+    caption::{self, Lines, caption_text},
     channels, clipping,
     compare::Arrangement,
     explain, handles, icon, labels, marks,
-    presentation::Stage,
-    state::{Action, Badge, SHADER_TAB, Session, Severity, ViewChange},
+    presentation::{CAPTION, Stage},
+    state::{Action, Badge, Cell, CompareCommand, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
     wires,
 };
 use crate::{
+    caption::single,
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
     registry::Registry,
-    scene::comparison::Layout,
+    scene::{
+        comparison::{Edge, Layout},
+        variant::{LETTERS, MAX_VARIANTS},
+    },
     text::plural,
 };
 
@@ -29,6 +35,13 @@ use crate::{
 const AXES: f32 = 240.0;
 /// The side of their corner, points.
 const AXES_CORNER: f32 = 84.0;
+
+/// The least width of a part of a picture with badges of its own, points.
+const NARROWEST: f32 = 140.0;
+/// The width of a wide legend, points.
+const WIDE_PLATE: f32 = 330.0;
+/// The part of a picture that the plate about an error covers at most.
+const PLATE: f32 = 0.25;
 
 /// The result of painting the overlays.
 #[derive(Debug, Default)]
@@ -56,7 +69,7 @@ pub fn overlays(
         return all;
     }
     wires::paint(ui, rect, rect, session.active(), session, registry);
-    clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
+    clipping::paint(&ui.painter_at(whole), whole, session.active(), session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
@@ -66,8 +79,11 @@ pub fn overlays(
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let top = channel(ui, free, top, session.active(), session, registry, &mut all);
-        badges(ui, free, top, whole, session, registry, &mut all);
+        let from = (Align2::LEFT_TOP, top);
+        let top = channel(ui, free, from, session.active(), session, registry, &mut all);
+        let signs = badges_of(session.active(), whole, ui, session, registry);
+        let signs = signs.into_iter().chain(of_disk(session)).collect();
+        badges(ui, free, (Align2::LEFT_TOP, top), signs, &mut all);
         all.places.push(covered);
         all.written.push(covered);
         hint(ui, rect, session);
@@ -82,17 +98,19 @@ pub fn overlays(
     all
 }
 
-/// Paints the legend of the debug channel of a view from `top` on, if it shows one. Returns the place for what comes below.
+/// Paints the legend of the debug channel of a view from a corner on, if it shows one. Returns the place for what comes below.
 fn channel(
     ui: &mut Ui,
     rect: Rect,
-    top: f32,
+    (side, top): (Align2, f32),
     view: usize,
     session: &Session,
     registry: &Registry,
     to: &mut Overlaid,
 ) -> f32 {
-    let Some((place, actions)) = channels::legend(ui, rect, top, view, session, registry) else { return top };
+    let Some((place, actions)) = channels::legend(ui, rect, (side, top), view, session, registry) else {
+        return top;
+    };
     to.actions.extend(actions);
     to.places.push(place);
     to.written.push(place);
@@ -130,6 +148,8 @@ pub fn views(
     // A difference has no lines of its own.
     for cell in arrangement.cells.iter().filter(|_| layout != Layout::Difference) {
         wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
+        let painter = ui.painter_at(cell.part);
+        clipping::paint(&painter, cell.rect, cell.view, session, ui.pixels_per_point());
     }
     for cell in shown.take(if apart { usize::MAX } else { 1 }) {
         ui.push_id(("view", cell.view), |ui| {
@@ -153,13 +173,42 @@ pub fn views(
             stale_in = Some((cell.view, covered)).filter(|_| covered.is_positive());
         });
     }
+    if let Some((map, reason)) = arrangement.map.zip(session.incomparable()) {
+        let font = TextStyle::Body.resolve(ui.style());
+        all.written.push(plate(ui, map, Align2::CENTER_CENTER, map.center(), &reason, font, 0.0));
+    }
     ui.scope(|ui| {
+        if session.view.presenting {
+            let body = FontId::proportional(CAPTION * arrangement.picture.height());
+            ui.style_mut().text_styles.insert(TextStyle::Body, body);
+        }
+        // Of a difference, both views are to be read.
+        let is_shown = |cell: &&Cell| cell.part.is_positive() || layout == Layout::Difference;
         let mut next = None;
-        for cell in arrangement.cells.iter().filter(|cell| cell.part.is_positive()) {
+        let mut disk = of_disk(session);
+        for cell in arrangement.cells.iter().filter(is_shown) {
             let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
-            let top = next.filter(|_| !apart).unwrap_or(first);
-            next = Some(channel(ui, cell.rect, top, cell.view, session, registry, &mut all));
+            let is_second = layout == Layout::Wipe && cell.part.min != cell.rect.min;
+            // Below the legend of a lobe, which stands there already, and in a narrow picture below what is at the left.
+            let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * theme::scale_here(ui);
+            let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
+                .expand2(vec2(0.0, 16.0));
+            let there = all.written.iter().filter(|place| place.is_positive() && place.intersects(corner));
+            let left = next.filter(|_| narrow).unwrap_or(first);
+            let below = there.map(|place| place.bottom() + 4.0).fold(left, f32::max);
+            let from = match session.document.comparison.edge {
+                Edge::Vertical if is_second => (Align2::RIGHT_TOP, below),
+                Edge::Horizontal if is_second => (Align2::LEFT_TOP, first.max(cell.part.top() + 8.0)),
+                _ => (Align2::LEFT_TOP, next.filter(|_| !apart).unwrap_or(first)),
+            };
+            let top = channel(ui, cell.rect, from, cell.view, session, registry, &mut all);
+            let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
+            signs.extend(disk.take());
+            // The edge of a wipe crosses no words where there is room beside it.
+            let beside = layout == Layout::Wipe && cell.part.width() >= NARROWEST * theme::scale_here(ui);
+            let room = if beside { cell.part } else { cell.rect };
+            next = Some(badges(ui, room, (from.0, top), signs, &mut all));
         }
     });
     all
@@ -205,22 +254,41 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
     let margin = 10.0;
     let room = (rect.width() - 2.0 * margin).min(560.0 * theme::scale_here(ui)) - left - 2.0 * padding.x;
     let ink = palette.panel;
-    let lay_out = |text: &str, font: FontId, rows: usize| {
-        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room.max(64.0));
+    let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
+        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room);
         job.wrap.max_rows = rows;
         painter.layout_job(job)
     };
     let body = TextStyle::Body.resolve(ui.style()).size;
-    let mut galleys = vec![lay_out(&heading, FontId::new(1.12 * body, theme::semibold()), 3)];
-    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2)));
-    // Where there is little room, the heading is what counts.
-    let most = rect.height() - 2.0 * (margin + padding.y);
-    while galleys.len() > 1 && galleys.iter().map(|g| g.size().y + 2.0).sum::<f32>() > most {
+    let large = || FontId::new(1.12 * body, theme::semibold());
+    let room = room.max(64.0);
+    let mut galleys = vec![lay_out(&heading, large(), 3, room)];
+    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
+    let size_of = |galleys: &[std::sync::Arc<egui::Galley>]| {
+        let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
+        let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
+        vec2(width + left, height) + 2.0 * padding
+    };
+    // The picture is what counts, and then the heading; the panel with the errors says all.
+    let most = PLATE * rect.area();
+    while galleys.len() > 1 && size_of(&galleys).x * size_of(&galleys).y > most {
         galleys.pop();
     }
-    let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
-    let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
-    let size = vec2(width + left, height) + 2.0 * padding;
+    let too_large = |galleys: &[_]| size_of(galleys).x * size_of(galleys).y > most;
+    for rows in [2, 1] {
+        if too_large(&galleys) {
+            galleys = vec![lay_out(&heading, large(), rows, room)];
+        }
+    }
+    if too_large(&galleys) {
+        let less = most / size_of(&galleys).y - left - 2.0 * padding.x;
+        galleys = vec![lay_out(&heading, large(), 1, less.max(1.0))];
+    }
+    if too_large(&galleys) {
+        // There is no room but for the frame.
+        return (Vec::new(), Rect::NOTHING);
+    }
+    let size = size_of(&galleys);
     let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);
     let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
     let said = format!("{heading}: {}", lines.join("; "));
@@ -265,18 +333,27 @@ fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId
     place
 }
 
-/// A badge, and what a click on it does.
-type Sign = (Badge, Option<Action>);
+/// Says that the file of the scene is another one by now.
+fn of_disk(session: &Session) -> Option<Sign> {
+    session.disk_badge().map(|badge| (badge, Vec::new()))
+}
 
-/// Says that terms of the equation are hidden, and shows them all.
-fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
-    let shown = match session.terms() {
+/// A badge, and what a click on it asks for.
+type Sign = (Badge, Vec<Action>);
+
+/// Says that terms of the equation are hidden in a view, and shows them all.
+fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
+    let shown = match session.terms_of(view) {
         TermSelection::All => return None,
         other => other.id(),
     };
-    let models = models_shown(session);
-    let whose = match models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1) {
-        _ if !session.lacks_term(registry) => String::new(),
+    let over = session.document.overrides(view).and_then(|variant| variant.reflection_model);
+    let models = match &over {
+        Some(id) => [id.as_str()].into(),
+        None => session.document.shown().map(|o| session.document.model_of(o)).collect::<BTreeSet<_>>(),
+    };
+    let whose = match single(&models).and_then(|id| registry.model(id)) {
+        _ if !session.lacks_term(view, registry) => String::new(),
         Some(model) => format!(", which is 0 with {}", model.declaration.name),
         None => ", which is 0 in this picture".to_owned(),
     };
@@ -286,43 +363,53 @@ fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
         help: "The other terms of the equation are hidden. Click to show them all; T goes on to the next."
             .to_owned(),
     };
-    Some((badge, Some(Action::View(ViewChange::Terms(TermSelection::All)))))
+    Some((badge, vec![Action::View(ViewChange::Terms(TermSelection::All))]))
 }
 
-/// The badges of a picture.
-fn badges(
-    ui: &mut Ui,
-    rect: Rect,
-    top: f32,
-    picture: Rect,
-    session: &Session,
-    registry: &Registry,
-    to: &mut Overlaid,
-) {
+/// The badges of a view's picture. A change that concerns the active view makes this one the active one first.
+fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &Registry) -> Vec<Sign> {
+    let per_point = ui.pixels_per_point();
+    let pixels = f64::from(picture.area() * per_point * per_point);
+    let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
+    let clipped = clipping::badge(session, view, pixels).map(|badge| (badge, vec![toggle]));
+    let mut terms = hidden_terms(view, session, registry);
+    if view != session.active()
+        && let Some((_, actions)) = &mut terms
+    {
+        actions.insert(0, Action::Compare(CompareCommand::Activate(view)));
+    }
+    let mut all: Vec<_> = terms.into_iter().chain(clipped).collect();
+    if !session.document.variants.is_empty() {
+        for (badge, _) in &mut all {
+            badge.text = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], badge.text);
+        }
+    }
+    all
+}
+
+/// Paints badges below each other from a corner on. Returns the place for what comes below.
+fn badges(ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>, to: &mut Overlaid) -> f32 {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let per_point = ui.pixels_per_point();
-    let clipped = clipping::badge(session, f64::from(picture.area() * per_point * per_point));
-    let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
-    let told = session.disk_badge().map(|badge| (badge, None));
-    let all = hidden_terms(session, registry).into_iter().chain(told);
-    let mut at = pos2(rect.left() + 8.0, top);
-    for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {
-        let place = plate(ui, rect, Align2::LEFT_TOP, at, &badge.text, font.clone(), 18.0 * scale);
-        let sense = if action.is_some() { Sense::click() } else { Sense::hover() | Sense::FOCUSABLE };
-        let response = ui.interact(place, ui.id().with(("badge", i)), sense);
+    let mut at = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
+    for (badge, actions) in all {
+        let place = plate(ui, rect, side, at, &badge.text, font.clone(), 18.0 * scale);
+        let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
+        let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
         let painter = ui.painter_at(rect);
-        let here = action.is_some() && (response.hovered() || response.has_focus());
+        let here = !actions.is_empty() && (response.hovered() || response.has_focus());
         let rim = if here { palette.text } else { palette.severity(badge.severity) };
         painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), egui::StrokeKind::Inside);
         let sign = pos2(place.left() + 14.0 * scale, place.center().y);
         icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
-        let role = if action.is_some() { WidgetType::Button } else { WidgetType::Label };
+        let role = if actions.is_empty() { WidgetType::Label } else { WidgetType::Button };
         response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
-        if let Some(action) = action {
+        if !actions.is_empty() {
             to.places.push(place);
-            to.actions.extend(response.clicked().then_some(action));
+        }
+        if response.clicked() {
+            to.actions.extend(actions);
         }
         to.written.push(place);
         let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
@@ -336,6 +423,7 @@ fn badges(
         }
         at.y = place.bottom() + 4.0;
     }
+    at.y
 }
 
 fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {

@@ -113,7 +113,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Sess
         revision: session.document.revision(),
         channel,
         size,
-        observer: session.facts.observer(fov).fitting_width(size),
+        observer: session.facts.observer(fov).fitting(size, session.document.view_angle()),
         terms: session.terms_of(view),
         reloaded: session.shaders.last.clone(),
     };

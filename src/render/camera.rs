@@ -11,7 +11,7 @@ use crate::{
     optics::{colour::BACKGROUND, tone::ToneMapping},
     scene::{
         Observer,
-        observer::{NEAR, rotation, vertical_field_of_view},
+        observer::{NEAR, ViewAngle, rotation},
     },
 };
 use bevy::{
@@ -31,8 +31,8 @@ use bevy::{
 pub struct PictureCamera {
     /// True if it stands at the scene's observer; free once a user has moved it.
     pub follows_observer: bool,
-    /// True if a picture that is narrower than [`WIDE`](crate::scene::observer::WIDE) shows more above and below, so that what a
-    /// wide picture shows at the sides is not cut off: for windows, whose panels take width.
+    /// True if a narrow picture shows more above and below, so that less is cut off at the sides, as
+    /// [`Scene::view_angle`](crate::scene::Scene::view_angle) has it: for windows, whose panels take width.
     pub fits_width: bool,
 }
 
@@ -119,7 +119,8 @@ pub fn follow_scene(
         let Projection::Perspective(perspective) = &*lens else { continue };
         let inset = view.and_then(|view| view.inset).map(|inset| inset.size().as_vec2());
         let aspect = inset.map_or(perspective.aspect_ratio, |size| size.x / size.y);
-        let fov = vertical_field_of_view(observer.field_of_view, aspect, camera.fits_width);
+        let keeps = if camera.fits_width { scene.0.view_angle().keeps } else { 0.0 };
+        let fov = ViewAngle { degrees: observer.field_of_view, keeps }.vertical(aspect);
         if perspective.fov != fov
             && let Projection::Perspective(perspective) = &mut *lens
         {

@@ -121,8 +121,9 @@ pub struct Comparison {
     pub channel: Channel,
     /// The values that are compared.
     pub values: Compared,
-    /// The factor by which a difference is multiplied before it becomes a colour, 1 to 100.
-    pub amplification: f32,
+    /// The factor by which a difference is multiplied before it becomes a colour, 1 to 100; `None` for the one that
+    /// fits the largest difference.
+    pub amplification: Option<f32>,
 }
 
 impl Default for Comparison {
@@ -135,7 +136,7 @@ impl Default for Comparison {
             sign: Sign::default(),
             channel: Channel::default(),
             values: Compared::default(),
-            amplification: 1.0,
+            amplification: None,
         }
     }
 }

@@ -262,8 +262,9 @@ pub(super) struct ComparisonFile {
     #[schemars(extend("default" = "codes"))]
     #[serde(skip_serializing_if = "Option::is_none")]
     values: Option<&'static str>,
-    /// Factor by which a difference is multiplied before it becomes a colour.
-    #[schemars(range(min = 1, max = 100), extend("default" = 1))]
+    /// Factor by which a difference is multiplied before it becomes a colour. Default: the one that fits the largest
+    /// difference.
+    #[schemars(range(min = 1, max = 100))]
     #[serde(skip_serializing_if = "Option::is_none")]
     amplification: Option<f32>,
 }
@@ -419,7 +420,7 @@ impl ComparisonFile {
             sign: unless(comparison.sign, default.sign, Sign::id),
             channel: unless(comparison.channel, default.channel, Channel::id),
             values: unless(comparison.values, default.values, Compared::id),
-            amplification: unless(comparison.amplification, default.amplification, |factor| factor),
+            amplification: comparison.amplification,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::Observer;
+use super::{Observer, Scene, comparison::Layout};
 
 /// Distance of the near plane from the eye, metres. Anything nearer is clipped.
 pub const NEAR: f32 = 0.01;
@@ -34,24 +34,43 @@ pub fn clip_from_room(observer: &Observer, aspect: f32) -> Mat4 {
 /// Width/height for which scenes are composed.
 pub const WIDE: f32 = 16.0 / 9.0;
 
-/// The vertical field of view in radians of a picture of the given width/height.
-#[must_use]
-pub fn vertical_field_of_view(degrees: f32, aspect: f32, fits_width: bool) -> f32 {
-    let radians = degrees.to_radians();
-    if !fits_width || aspect >= WIDE || aspect <= 0.0 {
-        return radians;
+/// The field of view of the pictures in a window, which have any shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewAngle {
+    /// The field of view of the observer, degrees.
+    pub degrees: f32,
+    /// Width/height below which a picture keeps what it shows at the sides, and shows more above and below.
+    pub keeps: f32,
+}
+
+impl ViewAngle {
+    /// The vertical field of view in radians of a picture of the given width/height.
+    #[must_use]
+    pub fn vertical(self, aspect: f32) -> f32 {
+        let radians = self.degrees.to_radians();
+        if aspect >= self.keeps || aspect <= 0.0 {
+            return radians;
+        }
+        2.0 * ((radians * 0.5).tan() * self.keeps / aspect).atan()
     }
-    2.0 * ((radians * 0.5).tan() * WIDE / aspect).atan()
+}
+
+impl Scene {
+    /// The field of view of its pictures in a window. One alone shows what a wide picture shows at the sides; of views beside
+    /// each other the smaller side has the observer's angle, so that objects keep their size.
+    #[must_use]
+    pub fn view_angle(&self) -> ViewAngle {
+        let beside = self.comparison.layout == Layout::SideBySide && !self.variants.is_empty();
+        ViewAngle { degrees: self.observer.field_of_view, keeps: if beside { 1.0 } else { WIDE } }
+    }
 }
 
 impl Observer {
-    /// The same for a picture of this size that fits widths, drawn by a renderer that takes the field of view as the vertical
-    /// one.
+    /// The same with an angle of view for a picture of this size, drawn by a renderer that takes the field of view as the
+    /// vertical one.
     #[must_use]
-    pub fn fitting_width(self, [width, height]: [u32; 2]) -> Self {
-        let aspect = width as f32 / height as f32;
-        let field_of_view = vertical_field_of_view(self.field_of_view, aspect, true).to_degrees();
-        Self { field_of_view, ..self }
+    pub fn fitting(self, [width, height]: [u32; 2], angle: ViewAngle) -> Self {
+        Self { field_of_view: angle.vertical(width as f32 / height as f32).to_degrees(), ..self }
     }
 }
 
@@ -92,10 +111,24 @@ mod tests {
 
     #[test]
     fn a_narrow_window_shows_what_a_wide_picture_shows_at_the_sides() {
-        let half_width = |aspect: f32| (vertical_field_of_view(45.0, aspect, true) * 0.5).tan() * aspect;
+        let window = ViewAngle { degrees: 45.0, keeps: WIDE };
+        let half_width = |aspect: f32| (window.vertical(aspect) * 0.5).tan() * aspect;
         assert!((half_width(1.1) - half_width(WIDE)).abs() < 1e-6);
         assert!((half_width(0.5) - half_width(WIDE)).abs() < 1e-6);
-        assert_eq!(vertical_field_of_view(45.0, 2.5, true), 45f32.to_radians());
-        assert_eq!(vertical_field_of_view(45.0, 1.1, false), 45f32.to_radians());
+        assert_eq!(window.vertical(2.5), 45f32.to_radians());
+    }
+
+    #[test]
+    fn beside_each_other_the_smaller_side_has_the_angle_of_the_observer() {
+        let mut scene = Scene::default();
+        scene.comparison.layout = Layout::SideBySide;
+        assert_eq!(scene.view_angle().keeps, WIDE, "of one view there is nothing beside it");
+        scene.variants.push(crate::scene::Variant::default());
+        let angle = scene.view_angle();
+        assert_eq!(angle.vertical(1.2), 45f32.to_radians());
+        let half_width = (angle.vertical(0.6) * 0.5).tan() * 0.6;
+        assert!((half_width - 22.5f32.to_radians().tan()).abs() < 1e-6);
+        scene.comparison.layout = Layout::Wipe;
+        assert_eq!(scene.view_angle().keeps, WIDE);
     }
 }

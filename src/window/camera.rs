@@ -156,6 +156,12 @@ fn feed_viewpoint(
     }
 }
 
+/// The distance at which something of a size takes about half of the smaller side of the picture, metres; never within it.
+fn framing(size: f32, field_of_view: f32) -> f32 {
+    let tangent = (0.5 * field_of_view.to_radians()).tan();
+    (0.91 * size / tangent).max(1.1 * size).max(2.2 * NEAREST)
+}
+
 /// The camera and the point that it looks at, after a movement.
 fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     let offset = camera.translation - focus;
@@ -242,7 +248,7 @@ impl CameraControl<'_, '_> {
         };
         for (mut orbit, mut transform, mut picture) in &mut self.cameras {
             picture.follows_observer = false;
-            let distance = 2.2 * size.max(NEAREST);
+            let distance = framing(size, scene.observer.field_of_view);
             let backward = transform.rotation * Vec3::Z;
             let place = transform.with_translation(target + backward * distance);
             put_at(&mut orbit, &mut transform, place, target);
@@ -276,6 +282,16 @@ impl CameraControl<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_focused_is_framed_with_every_field_of_view() {
+        for (degrees, size) in [(10.0, 2.0), (45.0, 0.1), (45.0, 8.0), (90.0, 2.0)] {
+            let distance = framing(size, degrees);
+            let share = 0.5 * size / (distance * (0.5f32 * f32::to_radians(degrees)).tan());
+            assert!((0.4..0.6).contains(&share), "{degrees}°: {share}");
+        }
+        assert!(framing(2.0, 150.0) > 2.0, "outside of it");
+    }
 
     #[test]
     fn keys_turn_about_what_is_looked_at_and_keep_the_distance() {

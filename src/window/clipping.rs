@@ -1,7 +1,9 @@
-//! Counts clipped pixels: on the GPU, in the picture that is on screen, once it has come to rest.
+//! Counts clipped pixels: on the GPU, in the picture of each view on screen, once it has come to rest.
 //!
 //! A compute pass reads the texture of the picture. After tone mapping, that holds what the display is asked for, also
 //! beyond what it can show; a picture drawn [straight](Straight) into its texture marks such pixels. A few kilobytes come back, a frame or two later.
+
+use std::collections::HashMap;
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
@@ -12,8 +14,7 @@ use bevy::{
     render::{
         RenderApp, RenderStartup,
         camera::ExtractedCamera,
-        extract_component::ExtractComponentPlugin,
-        extract_resource::{ExtractResource, ExtractResourcePlugin},
+        extract_component::{ExtractComponent, ExtractComponentPlugin},
         gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
         render_resource::{
@@ -32,17 +33,18 @@ use wgpu::{BufferUsages, ShaderStages, util::BufferInitDescriptor};
 use super::{
     WindowView,
     redraw::{SETTLING_FRAMES, Settling, redraw},
+    views::{OtherView, first},
 };
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
-    panel::state::{Clipping, Session},
+    panel::state::{Clipping, PictureArea, Session},
     render::{
         entities::CurrentScene,
         overrides::Overrides,
         straight::{self, Straight},
         view::{Drawing, ViewSystems},
     },
-    scene::Display,
+    scene::{Display, variant::MAX_VARIANTS},
 };
 
 /// Frames in which an answer is waited for.
@@ -62,21 +64,12 @@ impl Plugin for ClippingPlugin {
             .replace("DOWN", &format!("{down}u"));
         let world = app.world_mut();
         let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(text, "clipping.wgsl"));
-        let bytes = 4 * (1 + across as usize * down as usize);
-        let buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::default());
-        let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
-        let question = Question { number: 0, open: false, limit: 1.0, shader, buffer };
-        world.insert_resource(question.clone());
         world.init_resource::<Settling>();
-        app.add_plugins((
-            ExtractResourcePlugin::<Question>::default(),
-            ExtractComponentPlugin::<WindowView>::default(),
-        ))
-        .add_systems(PostUpdate, ask.after(ViewSystems).after(redraw));
+        app.add_plugins(ExtractComponentPlugin::<Question>::default())
+            .add_systems(PostUpdate, ask.after(ViewSystems).after(redraw));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            // The pass is prepared before anything is handed over.
             render
-                .insert_resource(question)
+                .insert_resource(Counter(shader))
                 .add_systems(RenderStartup, prepare)
                 .add_systems(Core3d, count.in_set(Core3dSystems::PostProcess).after(tonemapping))
                 .add_systems(Straight, count.after(straight::draw));
@@ -87,24 +80,31 @@ impl Plugin for ClippingPlugin {
 /// While the picture moves, one in so many is asked about.
 const MOVING: u64 = 10;
 
-/// The question to the GPU.
-#[derive(Clone, Resource)]
+/// The shader that counts.
+#[derive(Resource)]
+struct Counter(Handle<Shader>);
+
+/// The question to the GPU about the picture of a view.
+#[derive(Clone, Component, ExtractComponent)]
 struct Question {
-    /// Counts the questions.
+    /// The view: 0 is the scene itself, 1 view B.
+    view: usize,
+    /// No two questions have the same.
     number: u32,
     /// There is no answer yet.
     open: bool,
+    /// Frames in which the answer is still waited for.
+    patience: u32,
     /// See [`limit`].
     limit: f32,
-    shader: Handle<Shader>,
     buffer: Handle<ShaderBuffer>,
 }
 
-impl ExtractResource for Question {
-    type Source = Self;
-
-    fn extract_resource(source: &Self) -> Self {
-        source.clone()
+impl Question {
+    fn about(view: usize, buffers: &mut Assets<ShaderBuffer>) -> Self {
+        let bytes = 4 * (1 + Clipping::GRID[0] * Clipping::GRID[1]);
+        let buffer = buffers.add(ShaderBuffer::with_size(bytes, RenderAssetUsages::default()));
+        Self { view, number: 0, open: false, patience: 0, limit: 1.0, buffer }
     }
 }
 
@@ -119,51 +119,81 @@ fn limit(display: &Display) -> f32 {
     }
 }
 
-/// Asks about the last picture after a change, and keeps frames coming until the answer is there.
+/// A view that the window shows.
+type Seen = Or<(With<WindowView>, With<OtherView>)>;
+
+/// Asks about the last picture of each view after a change, and keeps frames coming until the answers are there.
 fn ask(
     scene: Res<CurrentScene>,
-    views: Query<(&Drawing, Option<&Overrides>), With<WindowView>>,
-    mut question: ResMut<Question>,
-    mut patience: Local<u32>,
-    mut readback: Local<Option<Entity>>,
+    area: Option<Res<PictureArea>>,
+    mut views: Query<(Entity, &Drawing, Option<&Overrides>, Option<&OtherView>, Option<&mut Question>), Seen>,
+    mut session: ResMut<Session>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut last: Local<u32>,
+    mut readbacks: Local<HashMap<Entity, Entity>>,
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
-    // A picture that moves is never done.
-    let moves = |drawing: &Drawing| !question.open && drawing.drawn().is_multiple_of(MOVING);
-    let asks = |drawing: &Drawing| drawing.draws() && (drawing.is_done() || moves(drawing));
-    if let Some((_, overrides)) = views.iter().find(|(drawing, _)| asks(drawing)) {
-        *patience = PATIENCE;
-        question.number = question.number.wrapping_add(1);
-        question.open = true;
-        question.limit = limit(&overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0)));
-        if readback.is_none() {
-            let asked = Readback::buffer(question.buffer.clone());
-            *readback = Some(commands.spawn(asked).observe(answered).id());
+    let own = area.as_deref().map_or(0, first);
+    let known = &mut session.bypass_change_detection().facts.clipping;
+    let mut waits = HashMap::new();
+    let mut shown = [false; MAX_VARIANTS + 1];
+    for (entity, drawing, overrides, other, question) in &mut views {
+        let view = other.map_or(own, |other| other.0);
+        if let Some(shown) = shown.get_mut(view) {
+            *shown = true;
+        }
+        let Some(mut question) = question else {
+            commands.entity(entity).insert(Question::about(view, &mut buffers));
+            continue;
+        };
+        if question.view != view {
+            // Another view that shows the same is not drawn anew.
+            let same = known.get_mut(question.view).and_then(Option::take);
+            question.view = view;
+            if let Some(known) = known.get_mut(view) {
+                *known = same;
+            }
+        }
+        // A picture that moves is never done.
+        let moves = !question.open && drawing.drawn().is_multiple_of(MOVING);
+        if drawing.draws() && (drawing.is_done() || moves) {
+            *last = last.wrapping_add(1);
+            (question.number, question.open, question.patience) = (*last, true, PATIENCE);
+            question.limit = limit(&overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0)));
+        }
+        if question.open && question.patience > 0 {
+            question.patience -= 1;
+            requests.write(RequestRedraw);
+            let readback = readbacks.remove(&entity).unwrap_or_else(|| {
+                commands.spawn(Readback::buffer(question.buffer.clone())).observe(answered).id()
+            });
+            waits.insert(entity, readback);
+        } else if question.open {
+            question.open = false;
         }
     }
-    if question.open && *patience > 0 {
-        *patience -= 1;
-        requests.write(RequestRedraw);
-    } else if let Some(entity) = readback.take() {
-        question.open = false;
-        commands.entity(entity).despawn();
+    for (known, _) in known.iter_mut().zip(shown).filter(|(_, shown)| !shown) {
+        *known = None;
+    }
+    // Nobody waits for these any more.
+    for (_, readback) in std::mem::replace(&mut *readbacks, waits) {
+        commands.entity(readback).despawn();
     }
 }
 
 fn answered(
     answer: On<ReadbackComplete>,
-    mut question: ResMut<Question>,
+    mut questions: Query<&mut Question>,
     mut session: ResMut<Session>,
     mut settling: ResMut<Settling>,
 ) {
     let mut numbers = answer.data.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    if !question.open || numbers.next() != Some(question.number) {
-        return;
-    }
+    let Some(number) = numbers.next() else { return };
+    let Some(mut question) = questions.iter_mut().find(|q| q.open && q.number == number) else { return };
     question.open = false;
     let clipping = Clipping::new(numbers.collect());
-    let known = &mut session.bypass_change_detection().facts.clipping;
+    let Some(known) = session.bypass_change_detection().facts.clipping.get_mut(question.view) else { return };
     if *known != clipping {
         *known = clipping;
         settling.draw(SETTLING_FRAMES);
@@ -177,7 +207,7 @@ struct Pass {
     pipeline: CachedComputePipelineId,
 }
 
-fn prepare(question: Res<Question>, cache: Res<PipelineCache>, mut commands: Commands) {
+fn prepare(counter: Res<Counter>, cache: Res<PipelineCache>, mut commands: Commands) {
     let layout = BindGroupLayoutDescriptor::new(
         "clipping",
         &BindGroupLayoutEntries::sequential(
@@ -192,7 +222,7 @@ fn prepare(question: Res<Question>, cache: Res<PipelineCache>, mut commands: Com
     let pipeline = cache.queue_compute_pipeline(ComputePipelineDescriptor {
         label: Some("clipping".into()),
         layout: vec![layout.clone()],
-        shader: question.shader.clone(),
+        shader: counter.0.clone(),
         entry_point: Some("count".into()),
         ..ComputePipelineDescriptor::default()
     });
@@ -200,14 +230,13 @@ fn prepare(question: Res<Question>, cache: Res<PipelineCache>, mut commands: Com
 }
 
 fn count(
-    view: ViewQuery<(&ExtractedCamera, &ViewTarget), With<WindowView>>,
-    question: Res<Question>,
+    view: ViewQuery<(&ExtractedCamera, &ViewTarget, &Question)>,
     pass: Res<Pass>,
     cache: Res<PipelineCache>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     mut context: RenderContext,
 ) {
-    let (camera, target) = view.into_inner();
+    let (camera, target, question) = view.into_inner();
     let (Some(size), true) = (camera.physical_target_size, question.open) else { return };
     let (Some(pipeline), Some(answer)) =
         (cache.get_compute_pipeline(pass.pipeline), buffers.get(&question.buffer))

@@ -89,11 +89,13 @@ fn compare(
 ) {
     let comparison = session.document.comparison;
     let with = session.compared_with();
-    let both = (views.cells().len() > 1).then(|| views.find(0).zip(views.find(with))).flatten();
+    let comparable = views.cells().len() > 1 && session.incomparable().is_none();
+    let both = comparable.then(|| views.find(0).zip(views.find(with))).flatten();
     let Some((a, b)) = both else {
         if session.facts.comparison.is_some() {
             session.bypass_change_detection().facts.comparison = None;
         }
+        map.0 = None;
         return forget(&mut comparing, &mut commands);
     };
     let rest = a.drawing.rests() && b.drawing.rests();
@@ -190,13 +192,22 @@ impl Job {
             })
             .collect();
         let nothing = Answer { measured: None, largest: None, map: None };
-        let [a, b] = shown.as_slice() else { return nothing };
+        let Ok([a, b]) = <[Shown; 2]>::try_from(shown) else { return nothing };
+        let is_map = self.question.comparison.layout == Layout::Difference;
+        let a = if is_map { self.outlined(a) } else { a };
         let comparison = Comparison { with: self.question.with, ..self.question.comparison };
-        let Ok(pair) = Pair::new(a, b) else { return nothing };
+        let Ok(pair) = Pair::new(&a, &b) else { return nothing };
         let largest = pair.differences(&Comparison { sign: Default::default(), ..comparison }).ok();
         let largest = largest.and_then(|d| d.largest).map(|l| (l.difference.abs(), [l.x, l.y]));
-        let map = (comparison.layout == Layout::Difference).then(|| pair.map(&comparison).ok()).flatten();
+        let map = is_map.then(|| pair.map(&comparison).ok()).flatten();
         Answer { measured: pair.measure(), largest, map }
+    }
+
+    /// View A with the outlines of its objects.
+    fn outlined(&self, shown: Shown) -> Shown {
+        let Some((seen, _)) = self.scene.seen(0, &self.registry) else { return shown };
+        let observer = self.camera.fitting(self.question.size.to_array(), self.scene.view_angle());
+        shown.outlined(&Scene { observer, ..seen }, &self.registry)
     }
 
     /// The light of a view, from where the camera of the window stands.
@@ -205,11 +216,13 @@ impl Job {
         // What is covered shows in the cheapest term too.
         let terms =
             if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
-        Some(light(seen, self.camera, self.question.size, terms, &self.registry))
+        let size = self.question.size;
+        let camera = self.camera.fitting(size.to_array(), self.scene.view_angle());
+        Some(light(seen, camera, size, terms, &self.registry))
     }
 }
 
-/// The light of what a view shows, as the camera of the window sees it.
+/// The light of what a view shows, as a camera sees it.
 pub(super) fn light(
     seen: Scene,
     camera: Observer,
@@ -217,7 +230,7 @@ pub(super) fn light(
     terms: TermSelection,
     registry: &Registry,
 ) -> Picture {
-    let seen = Scene { observer: camera.fitting_width(size.to_array()), ..seen };
+    let seen = Scene { observer: camera, ..seen };
     let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
     reference::render(&seen, registry, &settings)
 }

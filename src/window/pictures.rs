@@ -215,7 +215,9 @@ impl Job {
         if self.shown.len() < 2 {
             comparison.layout = Layout::Single;
         }
-        let needs_light = comparison.layout == Layout::Difference && comparison.values == Compared::Light;
+        let observer = self.camera.fitting(self.size.to_array(), self.scene.view_angle());
+        let is_map = comparison.layout == Layout::Difference;
+        let needs_light = is_map && comparison.values == Compared::Light;
         let mut scenes = Vec::new();
         let mut pictures = Vec::new();
         for ((view, terms), bytes) in self.shown.iter().zip(read) {
@@ -223,8 +225,11 @@ impl Job {
             let codes = codes(bytes, self.size).ok_or_else(unread)?;
             let mut picture = Shown::of_codes(self.size.x, self.size.y, codes).map_err(|e| e.to_string())?;
             if needs_light {
-                let light = light(seen.clone(), self.camera, self.size, *terms, &self.registry);
+                let light = light(seen.clone(), observer, self.size, *terms, &self.registry);
                 picture = picture.with_light(light).map_err(|e| e.to_string())?;
+            }
+            if is_map && pictures.is_empty() {
+                picture = picture.outlined(&Scene { observer, ..seen.clone() }, &self.registry);
             }
             pictures.push(picture);
             scenes.push((*view, seen, *terms));

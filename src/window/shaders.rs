@@ -13,6 +13,7 @@ use bevy::{
 
 use super::{
     order::Loading,
+    redraw::{SETTLING_FRAMES, Settling},
     watching::{FileWatch, FilesChanged, complain, complain_in_colour, waker},
 };
 use crate::{
@@ -26,6 +27,7 @@ use crate::{
     render::{
         live::LiveShaders,
         schedule::{LabFrame, LabSystems},
+        swap::AwaitsShader,
         trial::{
             Bench,
             process::{Budget, TrialProcess},
@@ -42,9 +44,27 @@ pub struct ShaderFilesPlugin {
     pub trial_program: Option<PathBuf>,
 }
 
+/// Tells the panels if the picture is behind the scene, since a shader is not ready.
+fn feed_compiling(
+    waiting: Query<(), With<AwaitsShader>>,
+    mut session: ResMut<Session>,
+    settling: Option<ResMut<Settling>>,
+) {
+    let compiling = !waiting.is_empty();
+    let known = &mut session.bypass_change_detection().facts.compiling;
+    if std::mem::replace(known, compiling) != compiling
+        && let Some(mut settling) = settling
+    {
+        settling.draw(SETTLING_FRAMES);
+    }
+}
+
 impl Plugin for ShaderFilesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(LabFrame, (follow.in_set(Loading::Shaders), tell.in_set(LabSystems::Upload)));
+        app.add_systems(
+            LabFrame,
+            (follow.in_set(Loading::Shaders), (tell, feed_compiling).chain().in_set(LabSystems::Upload)),
+        );
     }
 
     fn finish(&self, app: &mut App) {

@@ -56,8 +56,8 @@ impl ShownChannels {
     }
 }
 
-/// The first cell is that of the view that the window always has.
-fn first(area: &PictureArea) -> usize {
+/// The number of the view that the window always has: that of the first cell.
+pub(super) fn first(area: &PictureArea) -> usize {
     area.cells.first().map_or(0, |cell| cell.view)
 }
 

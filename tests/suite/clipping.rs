@@ -17,7 +17,7 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     let field = (rect.area() / (across * down) as f32) as u32;
     let corner = |i: usize| i % across < across / 2 && i / across < down / 2;
     let counts = (0..across * down).map(|i| if corner(i) { field } else { 0 }).collect();
-    bench.session.facts.clipping = Clipping::new(counts);
+    bench.session.facts.clipping[0] = Clipping::new(counts);
     bench.settle();
     let folder = tempfile::tempdir().unwrap();
     let shown = |bench: &mut Bench| {
@@ -77,4 +77,16 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
     assert!(!sign("dim", 10.0, plain));
     assert!(sign("exposed", 10.0, r#"{ "exposure": 3 }"#));
     assert!(!sign("mapped", 60.0, r#"{ "tone_mapping": "reinhard" }"#));
+    // Of two views, the one that clips has the sign.
+    let views = |a: i32, b: i32| {
+        let variants =
+            format!(r#""variants": [{{ "exposure": {b} }}], "comparison": {{ "layout": "side_by_side" }}"#);
+        let file = format!("views_{a}_{b}");
+        sign(&file, 10.0, &format!(r#"{{ "exposure": {a} }}, {variants}"#));
+        let picture = Picture::read(&folder.path().join(format!("{file}.png")));
+        let warning = |p: [u8; 3]| p == [0xf0, 0xc0, 0x50];
+        [208..566, 574..936].map(|x| picture.count(x, 66..106, warning) > 100)
+    };
+    assert_eq!(views(0, 3), [false, true]);
+    assert_eq!(views(3, 0), [true, false]);
 }

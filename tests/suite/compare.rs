@@ -174,7 +174,7 @@ fn maps_show_sign_and_amplification() {
     let b = Shown::of_codes(2, 1, vec![151, 100, 100, 200, 175, 200]).expect("right");
     let pair = Pair::new(&a, &b).expect("of one size");
     let map = |sign, amplification| {
-        let comparison = Comparison { sign, amplification, ..Comparison::default() };
+        let comparison = Comparison { sign, amplification: Some(amplification), ..Comparison::default() };
         let map = pair.differences(&comparison).expect("known").colours(&comparison);
         [[map[0], map[1], map[2]], [map[3], map[4], map[5]]]
     };
@@ -218,7 +218,8 @@ fn composed(scene: &Scene, comparison: &Comparison, size: [u32; 2]) -> Vec<u8> {
         .iter()
         .map(|cell| {
             let settings = Settings { width: cell.width, height: cell.height, ..Settings::default() };
-            Shown::of_view(scene, cell.view, &registry, &settings).expect("there is such a view")
+            let shown = Shown::of_view(scene, cell.view, &registry, &settings).expect("there is such a view");
+            if comparison.layout == Layout::Difference { shown.outlined(scene, &registry) } else { shown }
         })
         .collect();
     compose(comparison, size, &shown).expect("sizes match")
@@ -238,7 +239,7 @@ fn layouts() -> Vec<(&'static str, usize, Comparison)> {
             3,
             Comparison { layout: Layout::Wipe, edge: Edge::Horizontal, split: 0.4, with: 3, ..plain },
         ),
-        ("difference", 1, Comparison { amplification: 2.0, ..difference }),
+        ("difference", 1, Comparison { amplification: Some(2.0), ..difference }),
         (
             "signed_light",
             3,
@@ -246,7 +247,7 @@ fn layouts() -> Vec<(&'static str, usize, Comparison)> {
                 sign: Sign::Signed,
                 channel: Channel::Luminance,
                 values: Compared::Light,
-                amplification: 4.0,
+                amplification: Some(4.0),
                 with: 2,
                 ..difference
             },

@@ -2,12 +2,15 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, vec2};
 use lights_camera_models::{
+    caption::header,
+    channel::DebugChannel,
     compare::fitting_amplification,
     document::{Edit, VariantField},
     optics::TermSelection,
-    panel::state::{Action, CompareCommand, Numbers, Session, ViewChange},
+    panel::marks::Lens,
+    panel::state::{Action, Clipping, CompareCommand, Numbers, Session, ViewChange},
     parameter::{Value, Values},
     scene::{
         Comparison, Scene, Variant,
@@ -51,8 +54,9 @@ fn a_window_shows_the_views_of_a_scene_in_every_layout() {
     let count = |picture: &Picture, x: &std::ops::Range<u32>, is: fn([u8; 3]) -> bool| {
         picture.count(x.clone(), 70..640, is)
     };
-    let picture =
-        window.until("both views", |p| count(p, &left, RED) > 3000 && count(p, &right, BLUE) > 3000);
+    window.until("both views", |p| count(p, &left, RED) > 3000 && count(p, &right, BLUE) > 3000);
+    // A screen may be looked at while half of a new picture is on it.
+    let picture = window.rest();
     assert_eq!((count(&picture, &left, BLUE), count(&picture, &right, RED)), (0, 0));
 
     fs::write(&file, scene("wipe", "")).expect("written");
@@ -320,6 +324,192 @@ fn the_amplification_is_fitted_to_the_largest_difference() {
     bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
     bench.session.facts.comparison = Some(Numbers { largest: Some(12.0), ..Numbers::default() });
     bench.settle();
-    click(&mut bench, "fit");
-    assert_eq!(bench.session.document.comparison.amplification, 20.0);
+    assert_eq!(bench.session.document.comparison.amplification, None, "nobody had to ask for it");
+    let said = |bench: &mut Bench| crate::layout::texts(bench).into_iter().any(|(text, _)| text == "20");
+    assert!(said(&mut bench), "it says the factor");
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, Some(20.0), "it stays from now on");
+    bench.session.facts.comparison = Some(Numbers { largest: Some(100.0), ..Numbers::default() });
+    bench.settle();
+    assert!(said(&mut bench));
+    click(&mut bench, "Amplify automatically");
+    assert!(!said(&mut bench));
+}
+
+#[test]
+fn each_view_has_its_badges_in_every_layout() {
+    let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+    for (layout, signs) in [
+        (Layout::Single, "B"),
+        (Layout::SideBySide, "AB"),
+        (Layout::Wipe, "AB"),
+        (Layout::Difference, "AB"),
+        (Layout::Blink, "A"),
+    ] {
+        let mut bench = bench();
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        let terms = VariantField::Terms(Some(TermSelection::Diffuse));
+        bench.apply(Action::Edit(Edit::Variant(0, terms)));
+        bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
+        bench.settle();
+        let is_sign = |s: &&crate::panels::Seen| s.label.contains(" · Clipped: ");
+        let mut all: Vec<_> = bench.tree.iter().filter(is_sign).cloned().collect();
+        all.sort_by_key(|sign| sign.label.clone());
+        let letters: String = all.iter().filter_map(|s| s.label.chars().next()).collect();
+        assert_eq!(letters, signs, "{layout:?}");
+        assert_eq!(bench.says("B · Only the diffuse term"), signs.contains('B'), "{layout:?}");
+        for (i, sign) in all.iter().enumerate() {
+            let cell = bench.area.cells.iter().find(|c| sign.label.starts_with(["A", "B"][c.view]));
+            assert!(cell.is_some_and(|c| c.rect.contains_rect(sign.rect)), "{layout:?}: {sign:?}");
+            assert!(all[..i].iter().all(|other| !other.rect.intersects(sign.rect)), "{layout:?}");
+        }
+        let share = |letter: &str| all.iter().find(|s| s.label.starts_with(letter)).map(|s| s.label.clone());
+        if signs == "AB" {
+            let [a, b] = ["A", "B"].map(|l| share(l).unwrap()[4..].to_owned());
+            assert_ne!(a, b, "each counts its own view");
+        }
+    }
+    // A click on the sign of another view is about that view.
+    let mut bench = bench();
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Diffuse)))));
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.settle();
+    click(&mut bench, "B · Only the diffuse term");
+    assert_eq!((bench.session.active(), bench.session.terms_of(1)), (1, TermSelection::All));
+}
+
+#[test]
+fn a_view_differs_only_in_what_differs_now() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Expose(1.0));
+    bench.settle();
+    let texts = |bench: &mut Bench| -> Vec<_> {
+        crate::layout::texts(bench).into_iter().map(|(text, _)| text).collect()
+    };
+    assert!(!texts(&mut bench).contains(&"also set in B, to what A has now".to_owned()));
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.settle();
+    let said = texts(&mut bench);
+    let at = |text: &str| said.iter().position(|t| t == text).unwrap_or_else(|| panic!("{text}: {said:?}"));
+    assert!(at("differs from A in") < at("exposure  1 EV"));
+    assert!(at("exposure  1 EV") < at("also set in B, to what A has now"));
+    assert!(at("also set in B, to what A has now") < at("reflection model  Phong"));
+    // Both are taken back as before.
+    click(&mut bench, "exposure: back to A");
+    assert!(texts(&mut bench).contains(&"as A".to_owned()));
+    click(&mut bench, "reflection model: back to A");
+    assert_eq!(bench.session.variant(), Some(&Variant::default()));
+}
+
+#[test]
+fn a_channel_is_not_compared_with_a_picture() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    bench.settle();
+    assert!(bench.says("RMSE 0.031"));
+    let why = "Not compared: A shows the picture, B shows N·V.";
+    for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+        bench.settle();
+        assert!(bench.says(why) && !bench.says("RMSE"), "{layout:?}");
+    }
+    let written = crate::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+    assert_eq!(written, 2, "in the bar, and in the place of the map");
+    // A channel is compared with itself.
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+    bench.settle();
+    assert!(bench.says("RMSE 0.031"));
+}
+
+#[test]
+fn legends_of_two_channels_do_not_overlap() {
+    for scale in [100, 150, 200] {
+        for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
+            let mut bench = bench();
+            bench.key(Key::B, CTRL);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+            for view in [0, 1] {
+                bench.apply(Action::Compare(CompareCommand::Activate(view)));
+                bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotL))));
+            }
+            bench.settle();
+            let legends: Vec<_> =
+                bench.tree.iter().filter(|s| s.label.starts_with("Channel: ")).map(|s| s.rect).collect();
+            let [a, b] = legends.as_slice() else { panic!("{layout:?}: {legends:?}") };
+            assert!(!a.intersects(*b), "{layout:?} at {scale} %: {a:?} and {b:?}");
+        }
+    }
+}
+
+#[test]
+fn beside_each_other_objects_keep_their_size() {
+    let radius = |bench: &Bench, cell: Rect| {
+        let lens = Lens::of(&bench.session, cell);
+        let middle = bench.session.document.objects[0].position;
+        let right = bench.session.facts.camera * glam::Vec3::X;
+        let at = lens.project(middle).unwrap();
+        lens.project(middle + right).unwrap().distance(at) / cell.size().min_elem()
+    };
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    let beside = radius(&bench, bench.area.cells[0].rect);
+    bench.size = vec2(2560.0, 900.0);
+    bench.settle();
+    let wide = radius(&bench, bench.area.cells[0].rect);
+    assert!((beside / wide - 1.0).abs() < 0.01, "of the smaller side: {beside} and {wide}");
+}
+
+#[test]
+fn a_presentation_of_two_views_says_both_and_their_difference_and_covers_nothing() {
+    for size in [vec2(1280.0, 720.0), vec2(1920.0, 1080.0)] {
+        for scale in [100, 150, 200] {
+            let mut bench = three();
+            bench.size = size;
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::Compare(CompareCommand::Activate(1)));
+            let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+            bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            bench.settle();
+            let said = crate::layout::texts(&mut bench);
+            let has = |text: &str| said.iter().any(|(t, _)| t == text);
+            assert!(has("A:") && has("B:") && has("B compared with A: RMSE 0.031"), "{scale} %: {said:?}");
+            let label = |text: &str| bench.tree.iter().any(|s| s.label.contains(text));
+            assert!(label("I_s = ") && label("I_d = "), "the equation of Phong, and that of Lambert");
+            for shape in bench.shapes() {
+                if let Shape::Text(text) = shape {
+                    assert!(!text.galley.elided, "{scale} %: “{}” is cut", text.galley.text());
+                }
+            }
+            let places = bench.area.cells.clone();
+            assert!(places.iter().all(|cell| cell.rect.height() > 0.2 * size.y * 100.0 / f32::from(scale)));
+        }
+    }
+}
+
+#[test]
+fn headings_of_compared_views_say_the_same_things() {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.objects[0].material.set("k_s", Value::Number(0.25));
+    let values = Values([("alpha".into(), Value::Integer(80))].into());
+    scene.variants = vec![
+        Variant { material: values, ..Variant::default() },
+        Variant { exposure: Some(1.0), ..Variant::default() },
+        Variant::default(),
+    ];
+    let registry = lights_camera_models::registry::Registry::builtin();
+    let said: Vec<_> = (0..4).map(|view| header(&scene, view, &registry)).collect();
+    assert_eq!(said, ["A · α 32, 0 EV", "B · α 80, 0 EV", "C · α 32, +1 EV", "D · as A"]);
 }

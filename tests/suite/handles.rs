@@ -1,6 +1,8 @@
 //! The handles of what is selected: a drag of one is a step of the history, and does not turn the camera.
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
+use bevy_egui::egui::{
+    Color32, Event, Key, Modifiers, PointerButton, Pos2, Shape, Vec2, epaint::ColorMode, pos2, vec2,
+};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
@@ -262,7 +264,7 @@ fn a_handle_is_not_the_picture_and_the_middle_is() {
     let middle = lens.project(position(&bench)).unwrap();
     let tip = handle(&bench, "move Sphere 1 along y");
     let points =
-        [(tip, false), (tip.lerp(middle, 0.4), false), (middle, true), (middle + vec2(30.0, 60.0), true)];
+        [(tip, false), (tip.lerp(middle, 0.2), false), (middle, true), (middle + vec2(30.0, 60.0), true)];
     for (at, picture) in points {
         bench.frame(vec![Event::PointerMoved(at)]);
         bench.frame(Vec::new());
@@ -310,6 +312,64 @@ fn what_is_explained_is_not_covered_by_handles() {
     bench.apply(Action::Select(Selection::Object(0)));
     bench.settle();
     assert!(bench.session.lesson.is_some() && count(&bench) == 0, "a lesson is about the picture");
+}
+
+/// The lines and discs of handles: those in the colours of the axes.
+fn painted(bench: &mut Bench) -> Vec<Pos2> {
+    let axes = [[0xff, 0x7a, 0x33], [0x2e, 0xd0, 0x9c], [0x5a, 0xa9, 0xf5]];
+    let is_axis = |c: Color32| axes.contains(&[c.r(), c.g(), c.b()]);
+    let of = |shape| match shape {
+        Shape::LineSegment { points, stroke } if is_axis(stroke.color) => points.to_vec(),
+        Shape::Path(path) if is_axis(path.fill) => path.points,
+        Shape::Path(path) => match path.stroke.color {
+            ColorMode::Solid(colour) if is_axis(colour) => path.points,
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    };
+    let all: Vec<_> = bench.shapes().into_iter().flat_map(of).collect();
+    all.into_iter().filter(|p| bench.area.rect.contains(*p)).collect()
+}
+
+#[test]
+fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
+    let mut bench = bench(scene());
+    assert_eq!(painted(&mut bench), [], "a window shows its picture first");
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    let middle = lens.project(position(&bench)).unwrap();
+    let near = middle + vec2(150.0, 20.0);
+    let seconds =
+        |bench: &mut Bench, count: usize| (0..30 * count).for_each(|_| drop(bench.frame(Vec::new())));
+    bench.frame(vec![Event::PointerMoved(near)]);
+    bench.settle();
+    bench.frame(vec![Event::PointerMoved(near + vec2(4.0, 0.0))]);
+    bench.settle();
+    let radius = 0.5 * bench.session.document.objects[0].size;
+    let right = bench.session.facts.camera * Vec3::X;
+    let radius = lens.project(position(&bench) + radius * right).unwrap().distance(middle);
+    for part in [HandleMode::Move, HandleMode::Turn, HandleMode::Size] {
+        bench.apply(mode(part));
+        bench.settle();
+        let points = painted(&mut bench);
+        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
+        assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
+    }
+    bench.apply(mode(HandleMode::Move));
+    bench.settle();
+    assert!(!painted(&mut bench).is_empty());
+    seconds(&mut bench, 3);
+    assert_eq!(painted(&mut bench), [], "the pointer rests");
+    // They are there for as long as the pointer is over one of them.
+    let tip = handle(&bench, "move Sphere 1 along x");
+    bench.frame(vec![Event::PointerMoved(tip)]);
+    seconds(&mut bench, 3);
+    assert!(!painted(&mut bench).is_empty());
+    bench.frame(vec![Event::PointerMoved(near)]);
+    bench.frame(vec![Event::PointerMoved(pos2(20.0, 400.0))]);
+    seconds(&mut bench, 1);
+    assert_eq!(painted(&mut bench), [], "the pointer has left the picture");
+    bench.key(Key::F3, Modifiers::NONE);
+    assert!(!painted(&mut bench).is_empty(), "what a key chooses is shown");
 }
 
 #[test]

@@ -327,6 +327,19 @@ fn an_error_in_a_field_covers_no_other_knob() {
 }
 
 #[test]
+fn the_caption_says_that_the_picture_is_behind_until_it_is_not() {
+    let mut bench = bench(100);
+    let says = |bench: &mut Bench| texts(bench).iter().any(|(text, _)| text == "compiling…");
+    assert!(!says(&mut bench));
+    bench.session.facts.compiling = true;
+    bench.settle();
+    assert!(says(&mut bench));
+    bench.session.facts.compiling = false;
+    bench.settle();
+    assert!(!says(&mut bench));
+}
+
+#[test]
 fn a_line_of_the_caption_that_goes_on_says_so() {
     let mut bench = bench(150);
     bench.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));

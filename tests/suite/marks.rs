@@ -268,7 +268,7 @@ fn marks_keep_clear_of_what_is_written() {
     for (far, said) in [(1.0, "Under what is written"), (1.6, "Outside the view")] {
         for file in ["many_lights.json", "gold_three_lights.json", "shapes_and_lights.json"] {
             let mut bench = example(file);
-            bench.session.facts.clipping = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
+            bench.session.facts.clipping[0] = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
             bench.settle();
             let lens = Lens::of(&bench.session, bench.area.rect);
             let plates = written(&mut bench);

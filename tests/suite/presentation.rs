@@ -471,7 +471,7 @@ fn a_presentation_of_many_models_shows_the_equation_of_none() {
 fn badges_of_a_presentation_are_as_large_as_the_rest() {
     let mut bench = bench((1280.0, 720.0), "phong");
     let all = Clipping::GRID[0] * Clipping::GRID[1];
-    bench.session.facts.clipping = Clipping::new(vec![50; all]);
+    bench.session.facts.clipping[0] = Clipping::new(vec![50; all]);
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.apply(Action::View(ViewChange::Presenting(true)));
     let capitals = capitals(&mut bench);
@@ -499,7 +499,7 @@ fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
         ("blinn_phong", (1280.0, 720.0), 200),
     ] {
         let mut bench = bench(size, model);
-        bench.session.facts.clipping = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
+        bench.session.facts.clipping[0] = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;

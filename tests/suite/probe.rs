@@ -16,9 +16,7 @@ use lights_camera_models::{
     reference::{self, Settings},
     reflection::{Declaration, ReflectionModel},
     registry::{Register, Registry},
-    scene::{
-        Light, Observer, Scene, comparison::Layout, examples::EXAMPLES, observer::vertical_field_of_view,
-    },
+    scene::{Light, Observer, Scene, comparison::Layout, examples::EXAMPLES},
     shader::Source,
     testing::random,
 };
@@ -102,7 +100,7 @@ fn has_vectors(bench: &mut Bench) -> bool {
 /// The codes of the picture of a session, as the CPU renderer draws it.
 fn picture(bench: &Bench, size: [u32; 2]) -> Vec<u8> {
     let mut seen = (*bench.session.document).clone();
-    let fov = vertical_field_of_view(seen.observer.field_of_view, size[0] as f32 / size[1] as f32, true);
+    let fov = seen.view_angle().vertical(size[0] as f32 / size[1] as f32);
     seen.observer = Observer {
         position: bench.session.facts.eye,
         direction: bench.session.facts.camera * Vec3::NEG_Z,

@@ -283,7 +283,7 @@ prop_compose! {
         named in any::<bool>(),
         with in 1..=MAX_VARIANTS,
         split in number(0.0, 1.0),
-        amplification in number(1.0, 100.0),
+        amplification in prop::option::of(number(1.0, 100.0)),
         layout in prop::sample::select(Layout::ALL),
         edge in prop::sample::select(Edge::ALL),
         sign in prop::sample::select(Sign::ALL),

@@ -16,7 +16,10 @@ use lights_camera_models::{
     panel::{
         picture,
         shader::consequence,
-        state::{Action, Effect, ModelCommand, ModelDraft, Session, Severity, ThemeChoice, ViewChange},
+        state::{
+            Action, CompareCommand, Effect, ModelCommand, ModelDraft, Session, Severity, ThemeChoice,
+            ViewChange,
+        },
         theme::Palette,
     },
     registry::{Folders, Registry},
@@ -54,6 +57,25 @@ fn broken_lambert() -> Trouble {
         "invalid field accessor `base_color`",
         &["Lambert"],
     )
+}
+
+#[test]
+fn the_plate_about_an_error_covers_a_quarter_of_the_picture_at_most() {
+    for scale in [100, 150, 200] {
+        for views in 0..3 {
+            let mut bench = bench_with(vec![broken_lambert(); 3]);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            (0..views).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+            bench.settle();
+            let cell = bench.area.cells.last().map_or(bench.area.rect, |cell| cell.rect);
+            let Some(plate) = bench.tree.iter().find(|s| s.label.starts_with("Showing ")) else {
+                assert!(cell.area() < 10_000.0, "{scale} %, {views} more views: {cell:?} has room for it");
+                continue;
+            };
+            let share = plate.rect.area() / cell.area();
+            assert!(share <= 0.25, "{scale} %, {views} more views: {share}");
+        }
+    }
 }
 
 fn folders() -> ShaderStatus {

@@ -94,7 +94,7 @@ impl Panel for Explain {
 /// The pixel, its code, and the buttons.
 fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut Vec<Action>) {
     let Explanation { pixel, size, .. } = explained.explanation;
-    let (pinned, fov) = (session.view.pinned.is_some(), session.document.observer.field_of_view);
+    let (pinned, fov) = (session.view.pinned.is_some(), session.document.view_angle());
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let code = explained.explanation.code();
@@ -140,6 +140,14 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
 fn remarks(explained: &Explained, session: &Session) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let mut all = Vec::new();
+    if session.facts.compiling {
+        all.push((
+            Severity::Info,
+            "Compiling: until the shader is ready, the picture shows what was there before. The numbers are those of the \
+             model that is chosen."
+                .to_owned(),
+        ));
+    }
     if !explained.ignored.is_empty() {
         let files: Vec<_> = explained.ignored.iter().map(String::as_str).collect();
         all.push((

@@ -16,7 +16,7 @@ use crate::{
     },
     reference::{Settings, ignored_edits},
     registry::Registry,
-    scene::{Observer, Scene},
+    scene::{Observer, Scene, observer::ViewAngle},
 };
 
 /// A click this near to what is pinned lets go of it, points.
@@ -124,8 +124,8 @@ fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
     Some(cell.map_or(area.rect, |cell| cell.rect)).filter(|rect| rect.is_finite() && rect.is_positive())
 }
 
-fn field_of_view(session: &Session) -> f32 {
-    session.document.observer.field_of_view
+fn field_of_view(session: &Session) -> ViewAngle {
+    session.document.view_angle()
 }
 
 /// The size of a picture in pixels, as the window draws it, and the place of its corner.
@@ -218,7 +218,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
         view: pin.view,
         pixel: pin.pixel(size, field_of_view(session)),
         size,
-        observer: session.facts.observer(field_of_view(session)),
+        observer: session.facts.observer(session.document.observer.field_of_view),
         terms: session.terms_of(pin.view),
         reloaded: session.shaders.last.clone(),
     };
@@ -238,7 +238,7 @@ impl Probe {
             self.scene = Some((revision, view, scene));
         }
         let (.., scene) = self.scene.as_mut()?;
-        scene.observer = question.observer.fitting_width(size);
+        scene.observer = question.observer.fitting(size, session.document.view_angle());
         let settings = Settings { width: size[0], height: size[1], samples: 1, terms: question.terms };
         let explanation = self.explainer.pixel(scene, registry, &settings, pixel).ok()?;
         let ignored = ignored_edits(registry, scene).into_iter().collect();

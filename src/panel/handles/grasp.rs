@@ -161,9 +161,11 @@ impl Grasp {
                 let way = Vec3::AXES[axis];
                 // Along the axis as it is seen: what the pointer does across it moves nothing.
                 let end = lens.project(self.at + lens.metres(self.at, 10.0) * way)?;
-                let seen = (end - lens.project(self.at)?).normalized();
-                let foot = self.pointer + seen * (pointer - self.pointer).dot(seen);
-                let by = along(lens.ray(foot), self.at, way)? - along(start, self.at, way)?;
+                let middle = lens.project(self.at)?;
+                let seen = (end - middle).normalized();
+                // The middle goes as far in the picture as the pointer, wherever on the arrow that is.
+                let foot = middle + seen * (pointer - self.pointer).dot(seen);
+                let by = along(lens.ray(foot), self.at, way)?;
                 let to = snapped(self.at[axis] + by, step);
                 let mut place = self.at;
                 place[axis] = room.nearest(Vec3::splat(to))[axis];
@@ -352,9 +354,9 @@ mod tests {
         for axis in 0..3 {
             let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Axis(axis));
             let way = Vec3::AXES[axis];
-            // To where the point that was grasped is after half a metre.
-            let t = along(lens.ray(grasp.pointer), grasp.at, way).expect("on the axis");
-            let to = lens.project(grasp.at + (t + 0.5) * way).expect("in view");
+            // As far as half a metre is in the picture.
+            let [from, after] = [0.0, 0.5].map(|t| lens.project(grasp.at + t * way).expect("in view"));
+            let to = grasp.pointer + (after - from);
             let Dragged::Position(p) = drag(&session, &grasp, to, false) else { panic!("it moves") };
             assert!((p - grasp.at - 0.5 * way).length() < 0.011, "{axis}: {p}");
             assert!((0..3).all(|other| other == axis || p[other] == grasp.at[other]), "{axis}: {p}");
@@ -433,7 +435,7 @@ mod tests {
         session.facts.camera = Quat::IDENTITY;
         session.facts.eye = Vec3::new(5.0, 5.0, 9.0);
         let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
-        let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(40.0, 0.0), false)
+        let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(80.0, 0.0), false)
         else {
             panic!()
         };

@@ -10,7 +10,8 @@ use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, W
 
 use super::{
     marks::{self, Lens},
-    state::{Action, Session},
+    notice,
+    state::{Action, HandleMode, Session},
 };
 use crate::{
     document::{Edit, LightField, ObjectField, Selection},
@@ -27,6 +28,10 @@ mod shape;
 
 /// In a smaller picture there is no room for them, points.
 const SMALLEST: f32 = 120.0;
+/// The pointer rests after this, seconds.
+const REST: f64 = 2.0;
+/// Handles fade in and out in this time, seconds.
+const FADE: f32 = 0.15;
 /// A press that moves the pointer less is no drag, points.
 const SLACK: f32 = 1.5;
 
@@ -81,7 +86,11 @@ pub(super) fn handles(
         _ if hold.is_some() => State::Dim,
         _ => State::Free,
     };
-    paint::handles(ui, lens, &all, state);
+    let in_use = hot.is_some() || hold.is_some();
+    let opacity = opacity(ui, view, rect, (target.part, session.view.handles), in_use);
+    if opacity > 0.0 {
+        paint::handles(ui, lens, &all, opacity, state);
+    }
     nodes(ui, view, rect, &all, session, registry);
     places.extend(all.iter().flat_map(|placed| {
         let side = Vec2::splat(2.0 * placed.half());
@@ -108,6 +117,47 @@ pub(super) fn handles(
         }
     }
     (actions, places)
+}
+
+/// The reason for which handles were shown last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Woken {
+    /// What they change, and how.
+    what: (Selection, HandleMode),
+    /// When, seconds.
+    at: f64,
+    /// Another part or another sort of handles was chosen: they are shown wherever the pointer is.
+    chosen: bool,
+    /// When the window is woken to let them fade, seconds.
+    wakes: f64,
+}
+
+/// The opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that the picture can be
+/// seen as it is.
+fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use: bool) -> f32 {
+    let (now, over, moved) = ui.input(|i| {
+        let over = i.pointer.latest_pos().is_some_and(|at| rect.contains(at));
+        (i.time, over, i.pointer.delta() != Vec2::ZERO || i.pointer.any_pressed())
+    });
+    let key = view.with("woken");
+    let known: Option<Woken> = ui.data(|data| data.get_temp(key));
+    // A window that has just been opened shows its picture.
+    let mut woken = known.unwrap_or(Woken { what, at: f64::NEG_INFINITY, chosen: false, wakes: 0.0 });
+    if woken.what != what {
+        woken = Woken { what, at: now, chosen: true, ..woken };
+    } else if over && moved || in_use {
+        woken = Woken { what, at: now, chosen: false, ..woken };
+    }
+    let left = woken.at + REST - now;
+    let shown = in_use || (left > 0.0 && (over || woken.chosen));
+    if shown && !in_use && woken.wakes <= now {
+        notice::wake(ui.ctx(), left + 0.05);
+        woken.wakes = now + left + 0.05;
+    }
+    if known != Some(woken) {
+        ui.data_mut(|data| data.insert_temp(key, woken));
+    }
+    ui.ctx().animate_bool_with_time(view.with("opacity"), shown, FADE)
 }
 
 /// Lets go of the handle once the button is up.

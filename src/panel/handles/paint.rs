@@ -48,14 +48,14 @@ fn colour_of(handle: Handle, state: State) -> Color32 {
     }
 }
 
-/// Paints the handles, each in its state: the one under the pointer over the others.
-pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], state: impl Fn(Handle) -> State) {
+/// Paints the handles, as opaque as told, each in its state: the one under the pointer over the others.
+pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: impl Fn(Handle) -> State) {
     let painter = ui.painter_at(lens.rect());
     for hot in [false, true] {
         let mut ink = Ink::new(lens);
         let mut letters: Vec<(Pos2, &str, Color32)> = Vec::new();
         for placed in all.iter().filter(|p| (state(p.handle) == State::Hot) == hot) {
-            let colour = colour_of(placed.handle, state(placed.handle));
+            let colour = colour_of(placed.handle, state(placed.handle)).gamma_multiply(opacity);
             let width = if hot { HOT } else { LINE };
             for line in &placed.far {
                 ink.stroke(line.clone(), 1.25, colour.gamma_multiply(0.35));

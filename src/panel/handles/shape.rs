@@ -13,7 +13,7 @@ use crate::{
         state::{HandleMode, Session},
     },
     registry::Registry,
-    scene::{Light, Object},
+    scene::{Light, Object, rotation::rotation},
 };
 
 /// Length of the arrows, points.
@@ -26,6 +26,8 @@ const GAP: f32 = 13.0;
 const SHORTEST: f32 = 30.0;
 /// Distance of the disc that moves sideways from the middle, points.
 const ASIDE: f32 = 34.0;
+/// The distance of the handle of the size from the middle, as a multiple of the largest half extent.
+const OUTWARD: f32 = 1.2;
 /// The nearest that the handle of the size comes to the middle, points.
 const NEAREST: f32 = 44.0;
 /// Distance of a letter from the end of its arrow, points.
@@ -34,6 +36,10 @@ pub(super) const LETTER: f32 = 13.0;
 pub(super) const DISC: f32 = 6.0;
 /// Distance within which a line is grasped, points.
 const REACH: f32 = 6.0;
+/// Distance of handles from the object that they belong to, points: they cover none of it.
+const CLEAR: f32 = 7.0;
+/// The shortest arrow beyond the object, as a part of its length.
+const STUB: f32 = 0.5;
 /// Lines of a ring.
 const SIDES: usize = 72;
 
@@ -73,8 +79,8 @@ pub(super) const LETTERS: [&str; 3] = ["x", "y", "z"];
 
 /// The part of the scene that the handles change.
 pub(super) enum Body<'a> {
-    /// An object, with the radius in metres at which the handle of its size is.
-    Object(&'a Object, f32),
+    /// An object, with half its extents as parts of its size.
+    Object(&'a Object, Vec3),
     /// A light.
     Light(&'a Light, &'a LightEntry),
 }
@@ -99,8 +105,7 @@ impl<'a> Target<'a> {
             Selection::Object(i) => {
                 let object = session.document.objects.get(i)?;
                 let half = registry.shape(&object.object_type)?.bounds(&object.shape).half;
-                let radius = 1.2 * object.size * half.max_element();
-                Some(Self { part, at: object.position, body: Body::Object(object, radius) })
+                Some(Self { part, at: object.position, body: Body::Object(object, half) })
             }
             Selection::Light(i) => {
                 let light = session.document.lights.get(i)?;
@@ -149,6 +154,18 @@ impl Placed {
         along.chain([self.end])
     }
 
+    /// Without the lines before the object.
+    fn beyond(mut self, middle: Pos2, object: Option<Extent>) -> Self {
+        let Some(object) = object else { return self };
+        for lines in [&mut self.lines, &mut self.far] {
+            let runs = lines
+                .iter()
+                .flat_map(|line| line.split(|p| p.distance(middle) < object.towards(*p - middle)));
+            *lines = runs.filter(|run| run.len() > 1).map(<[Pos2]>::to_vec).collect();
+        }
+        self
+    }
+
     /// The half side of the squares around its points.
     pub(super) fn half(&self) -> f32 {
         REACH.max(self.radius)
@@ -169,17 +186,22 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     };
     // In a small view they are small.
     let part = (0.0034 * lens.rect().size().min_elem()).min(1.0);
+    let clear = Extent::of(target, middle, part, lens);
     let mut all = Vec::new();
     match (&target.body, mode) {
         (Body::Object(..), HandleMode::Turn) => {
-            all.extend((0..3).map(|axis| ring(target.at, axis, part * RING, lens)));
+            let radius = clear.map_or(part * RING, |clear| (clear.most() + CLEAR).max(part * RING));
+            all.extend((0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(middle, clear)));
         }
-        (Body::Object(_, radius), HandleMode::Size) => {
-            all.extend(size(target.at, middle, *radius, lens));
+        (Body::Object(object, half), HandleMode::Size) => {
+            let radius = OUTWARD * object.size * half.max_element();
+            all.extend(size(target.at, middle, radius, clear, lens));
         }
-        (Body::Object(..), HandleMode::Move) => all.extend(arrows(target.at, middle, part * ARM, lens)),
+        (Body::Object(..), HandleMode::Move) => {
+            all.extend(arrows(target.at, middle, part * ARM, clear, lens));
+        }
         (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
-            all.extend(arrows(target.at, middle, part * ARM, lens));
+            all.extend(arrows(target.at, middle, part * ARM, None, lens));
         }
         (Body::Light(..), _) => {}
     }
@@ -204,8 +226,39 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     all
 }
 
+/// The extent of an object in the picture: half the axes of the ellipsoid that its bounds hold, points.
+#[derive(Clone, Copy, Debug)]
+struct Extent([Vec2; 3]);
+
+impl Extent {
+    /// That of the object of a target; none if it leaves no room in the picture for handles beside it.
+    fn of(target: &Target, middle: Pos2, part: f32, lens: &Lens) -> Option<Self> {
+        let Body::Object(object, half) = target.body else { return None };
+        let turned = rotation(object.rotation);
+        let axis = |i: usize| {
+            let end = lens.project(target.at + turned * (Vec3::AXES[i] * object.size * half[i]))?;
+            Some(end - middle)
+        };
+        let extent = Self([axis(0)?, axis(1)?, axis(2)?]);
+        let needed = STUB * part * ARM + 2.0 * LETTER;
+        (extent.most() + needed < 0.5 * lens.rect().size().min_elem()).then_some(extent)
+    }
+
+    /// The distance from the middle beyond which a handle covers nothing of it, in a direction of the picture.
+    fn towards(&self, way: Vec2) -> f32 {
+        let way = way.normalized();
+        self.0.iter().map(|axis| axis.dot(way).powi(2)).sum::<f32>().sqrt() + CLEAR
+    }
+
+    /// The same in whichever direction.
+    fn most(&self) -> f32 {
+        let ways = (0..16).map(|k| Vec2::angled(k as f32 / 16.0 * 0.5 * TAU));
+        ways.map(|way| self.towards(way)).fold(0.0, f32::max)
+    }
+}
+
 /// The arrows along the axes of the room, and the disc that moves in the plane of the picture.
-fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
+fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) -> Vec<Placed> {
     let length = lens.metres(at, arm);
     let mut all = Vec::new();
     for (axis, way) in Vec3::AXES.into_iter().enumerate() {
@@ -215,10 +268,18 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
         if along.length() < SHORTEST.min(0.5 * arm) {
             continue;
         }
-        // Towards the camera it would grow without end.
-        let tip = middle + along * (1.2 * arm / along.length()).min(1.0);
-        let line = vec![middle + along.normalized() * GAP.min(0.3 * arm), tip];
-        let end = tip + along.normalized() * LETTER;
+        let way = along.normalized();
+        let arrow = |clear: Option<f32>| {
+            let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
+            // Towards the camera it would grow without end.
+            let to = along.length().min(1.2 * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
+            (vec![middle + from * way, middle + to * way], middle + (to + LETTER) * way)
+        };
+        // Outside the view it could not be grasped.
+        let inside = lens.rect().shrink(LETTER);
+        let beyond =
+            Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
+        let (line, end) = beyond.unwrap_or_else(|| arrow(None));
         all.push(Placed {
             handle: Handle::Axis(axis),
             lines: vec![line],
@@ -238,7 +299,8 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
         handle: Handle::Plane,
         lines: Vec::new(),
         far: Vec::new(),
-        end: middle + corner * (ASIDE * arm / ARM).max(DISC + GAP),
+        end: middle
+            + corner * (ASIDE * arm / ARM).max(DISC + clear.map_or(GAP, |clear| clear.towards(corner))),
         radius: DISC,
         point: at,
     });
@@ -278,14 +340,15 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
 }
 
 /// The handle of the size, on the way to the upper right.
-fn size(at: Vec3, middle: Pos2, radius: f32, lens: &Lens) -> Option<Placed> {
+fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<Extent>, lens: &Lens) -> Option<Placed> {
     let way = vec2(1.0, -1.0).normalized();
+    let clear = clear.map_or(GAP, |clear| clear.towards(way));
     let edge = [lens.rect().right() - middle.x, middle.y - lens.rect().top()]
         .map(|room| (room - 20.0) / way.x.abs());
     let most = edge[0].min(edge[1]).max(GAP + DISC);
     let points = (radius / lens.metres(at, 1.0)).max(NEAREST).min(most);
     let end = middle + points * way;
-    let line = vec![middle + GAP * way, end];
+    let line = vec![middle + clear.min(points) * way, end];
     Some(Placed {
         handle: Handle::Size,
         lines: vec![line],

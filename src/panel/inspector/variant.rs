@@ -1,7 +1,7 @@
 //! What the active view of a comparison overrides: a list at the top, and marks beside the knobs.
 
 use bevy_egui::egui::{
-    Align, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+    Align, Color32, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::part::{Text, text_field};
@@ -14,7 +14,7 @@ use crate::{
     },
     reflection::usage::unused,
     registry::Registry,
-    scene::{Variant, limits::number, variant::LETTERS},
+    scene::{Scene, Variant, limits::number, variant::LETTERS},
     text::{listed, plural},
 };
 
@@ -37,7 +37,10 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
         VariantField::Material(name, _) => uses(session, name, registry),
         _ => true,
     };
-    let (rows, unused): (Vec<_>, Vec<_>) = all.into_iter().partition(|(.., field)| used(field));
+    let (used, unused): (Vec<_>, Vec<_>) = all.into_iter().partition(|(.., field)| used(field));
+    let merged = session.document.overrides(view).unwrap_or_default();
+    let (same, rows): (Vec<_>, Vec<_>) =
+        used.into_iter().partition(|(.., field)| is_as_a(session, &merged, field, registry));
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
         ui.label(theme::small(ui, if rows.is_empty() { "as A" } else { "differs from A in" }));
@@ -50,30 +53,19 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
             });
         });
     });
+    // What it has from the view that it is based on is that view's to change.
+    let mine = |field: &VariantField| own.iter().any(|(.., known)| known == field);
     for (name, value, field) in rows {
-        ui.horizontal(|ui| {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                // What it has from the view that it is based on is that view's to change.
-                let mine = own.iter().any(|(.., known)| *known == field);
-                let base = variant.based_on.as_deref().map_or("A".to_owned(), |base| format!("“{base}”"));
-                let help = format!("{name}: back to {base}");
-                if mine && icon::button(ui, Icon::Reset, &help).clicked() {
-                    actions.push(Action::Compare(CompareCommand::Reset(view, field)));
-                }
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    if mine {
-                        bar(ui, ui.max_rect(), &palette);
-                    }
-                    ui.add_space(8.0);
-                    let room = ui.available_width();
-                    let text = format!("{name}  {value}");
-                    let galley = theme::elided(ui, &text, TextStyle::Body, palette.text, room);
-                    let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
-                    ui.painter().galley(rect.min, galley, palette.text);
-                    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
-                });
-            });
-        });
+        let ink = [palette.text, palette.accent];
+        row(ui, (&name, &value), ink, mine(&field).then_some(field), (view, variant), actions);
+    }
+    if !same.is_empty() {
+        let text = format!("also set in {letter}, to what A has now");
+        ui.label(theme::small(ui, text)).on_hover_text("It stays as it is here when A changes.");
+        for (name, value, field) in same {
+            let ink = [palette.weak, palette.line];
+            row(ui, (&name, &value), ink, mine(&field).then_some(field), (view, variant), actions);
+        }
     }
     if !unused.is_empty() {
         let names: Vec<_> = unused.iter().map(|(name, ..)| name.as_str()).collect();
@@ -93,6 +85,68 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
     ui.add_space(4.0);
 }
 
+/// A line with something that the variant of a view sets, in the inks of the text and the mark; with a button that takes it
+/// back if it is the variant's own `field`.
+fn row(
+    ui: &mut Ui,
+    (name, value): (&str, &str),
+    [ink, mark]: [Color32; 2],
+    field: Option<VariantField>,
+    (view, variant): (usize, &Variant),
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let base = variant.based_on.as_deref().map_or("A".to_owned(), |base| format!("“{base}”"));
+            let help = format!("{name}: back to {base}");
+            let mine = field.is_some();
+            if let Some(field) = field
+                && icon::button(ui, Icon::Reset, &help).clicked()
+            {
+                actions.push(Action::Compare(CompareCommand::Reset(view, field)));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                if mine {
+                    bar(ui, ui.max_rect(), mark);
+                }
+                ui.add_space(8.0);
+                let room = ui.available_width();
+                let text = format!("{name}  {value}");
+                let galley = theme::elided(ui, &text, TextStyle::Body, ink, room);
+                let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+                ui.painter().galley(rect.min, galley, ink);
+                response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+            });
+        });
+    });
+}
+
+/// True if view A has what a variant sets: nothing to be seen differs in it.
+fn is_as_a(session: &Session, variant: &Variant, field: &VariantField, registry: &Registry) -> bool {
+    let scene: &Scene = &session.document;
+    let display = scene.display;
+    match field {
+        VariantField::Model(_) => {
+            scene.shown().all(|o| variant.reflection_model.as_deref() == Some(scene.model_of(o)))
+        }
+        VariantField::ShadingModel(_) => {
+            scene.shown().all(|o| variant.shading_model.as_deref() == Some(scene.shading_model_of(o)))
+        }
+        VariantField::Material(name, _) => registry
+            .material_parameter(name)
+            .is_some_and(|p| scene.shown().all(|o| o.material.get(p) == variant.material.get(p))),
+        VariantField::Terms(_) => variant.terms == Some(session.terms_of(0)),
+        VariantField::ToneMapping(_) => variant.tone_mapping == Some(display.tone_mapping),
+        VariantField::Exposure(_) => variant.exposure == Some(display.exposure),
+        VariantField::Encoding(_) => variant.encoding == Some(display.encoding),
+        VariantField::Tessellation(_) => scene.shown().all(|o| {
+            let shape = registry.shape(&o.object_type);
+            variant.tessellation == shape.map(|shape| shape.tessellation(o.tessellation))
+        }),
+        _ => false,
+    }
+}
+
 /// True if the model of a visible object of the active view has a parameter, and uses it.
 fn uses(session: &Session, name: &str, registry: &Registry) -> bool {
     session.scene().shown().any(|object| {
@@ -103,9 +157,9 @@ fn uses(session: &Session, name: &str, registry: &Registry) -> bool {
 }
 
 /// The mark of what is overridden.
-fn bar(ui: &Ui, rect: Rect, palette: &Palette) {
+fn bar(ui: &Ui, rect: Rect, ink: Color32) {
     let x = rect.left() + 1.5;
-    ui.painter().vline(x, rect.shrink2(vec2(0.0, 3.0)).y_range(), Stroke::new(3.0, palette.accent));
+    ui.painter().vline(x, rect.shrink2(vec2(0.0, 3.0)).y_range(), Stroke::new(3.0, ink));
 }
 
 /// Everything that a variant overrides: its name, its value, and the field that takes it back.
@@ -173,6 +227,6 @@ pub(super) fn marked<T>(
     if mark.clicked() {
         actions.push(Action::Compare(CompareCommand::Reset(session.active(), field)));
     }
-    mark.on_hover_cursor(CursorIcon::PointingHand).on_hover_text("Differs from A. Click: back to A");
+    mark.on_hover_cursor(CursorIcon::PointingHand).on_hover_text("Set in this view alone. Click: back to A");
     out
 }

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
 use glam::{Quat, Vec3};
 
-use crate::{panel::state::Session, scene::observer::vertical_field_of_view};
+use crate::panel::state::Session;
 
 /// Anything nearer to the camera is not drawn, metres.
 const NEAR: f32 = 0.05;
@@ -29,8 +29,7 @@ impl Lens {
     /// The camera of the window.
     #[must_use]
     pub fn of(session: &Session, rect: Rect) -> Self {
-        let degrees = session.document.observer.field_of_view;
-        let angle = vertical_field_of_view(degrees, rect.width() / rect.height().max(1.0), true);
+        let angle = session.document.view_angle().vertical(rect.width() / rect.height().max(1.0));
         Self {
             eye: session.facts.eye,
             to_camera: session.facts.camera.inverse(),

@@ -11,7 +11,7 @@ use crate::{
     registry::Registry,
     scene::{
         Comparison, Scene, Variant,
-        comparison::Layout,
+        comparison::{Compared, Layout},
         variant::{LETTERS, MAX_VARIANTS},
     },
 };
@@ -71,6 +71,23 @@ impl Session {
         match (self.document.comparison.layout, self.active()) {
             (Layout::SideBySide, view @ 1..) => view,
             _ => self.document.comparison.with,
+        }
+    }
+
+    /// The reason why there are no numbers and no map of the difference between the views that are compared, if there is one.
+    #[must_use]
+    pub fn incomparable(&self) -> Option<String> {
+        let with = self.compared_with();
+        let letter = LETTERS.get(with).copied().unwrap_or("B");
+        let name = |channel: Option<DebugChannel>| channel.map_or("the picture", DebugChannel::name);
+        match [0, with].map(|view| self.channel_of(view)) {
+            [a, b] if a != b => {
+                Some(format!("Not compared: A shows {}, {letter} shows {}.", name(a), name(b)))
+            }
+            [Some(channel), _] if self.document.comparison.values == Compared::Light => {
+                Some(format!("Not compared: {} is no light.", channel.name()))
+            }
+            _ => None,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use crate::scene::{Observer, observer::rotation};
+use crate::scene::{Observer, observer::rotation, variant::MAX_VARIANTS};
 
 /// Facts that the app feeds to the panels, as often as in every frame.
 ///
@@ -16,8 +16,10 @@ pub struct Facts {
     pub eye: Vec3,
     /// True if the camera has left the observer.
     pub camera_left: bool,
-    /// The clipped parts of the picture; `None` where nothing clips.
-    pub clipping: Option<Clipping>,
+    /// True while an object is still drawn as it was before, since its shader is not ready.
+    pub compiling: bool,
+    /// The clipped parts of the picture of each view, view A first; `None` where nothing clips.
+    pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
     /// The numbers of the comparison; `None` until they are known.
     pub comparison: Option<Numbers>,
     /// The export that runs.

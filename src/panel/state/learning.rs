@@ -171,7 +171,7 @@ impl Session {
                 return;
             };
             let pixel = [0, 1].map(|i| (place[i].clamp(0.0, 1.0) * PICTURE[i] as f32) as u32);
-            let fov = self.document.observer.field_of_view;
+            let fov = self.document.view_angle();
             self.view.pinned = Some(Pin::of_pixel(self.active(), pixel, PICTURE, fov));
         }
     }

@@ -1,7 +1,7 @@
 //! The pixel that is explained, once it is pinned.
 
 use super::Session;
-use crate::scene::observer::vertical_field_of_view;
+use crate::scene::observer::ViewAngle;
 
 /// Id of the panel that explains a pixel.
 pub const EXPLAIN_TAB: &str = "explain";
@@ -17,9 +17,9 @@ pub struct Pin {
 }
 
 /// The tangents of half the angles of view of a picture, across and up.
-fn half_angles(size: [u32; 2], field_of_view: f32) -> [f64; 2] {
+fn half_angles(size: [u32; 2], angle: ViewAngle) -> [f64; 2] {
     let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
-    let up = f64::from(0.5 * vertical_field_of_view(field_of_view, aspect as f32, true)).tan();
+    let up = f64::from(0.5 * angle.vertical(aspect as f32)).tan();
     [up * aspect, up]
 }
 
@@ -30,18 +30,18 @@ impl Pin {
         Self { view, at: [0.0, 0.0] }
     }
 
-    /// The centre of a pixel in a picture of that size, for an observer with that field of view in degrees.
+    /// The centre of a pixel in a picture of that size, for an observer with that field of view.
     #[must_use]
-    pub fn of_pixel(view: usize, pixel: [u32; 2], size: [u32; 2], field_of_view: f32) -> Self {
-        let [across, up] = half_angles(size, field_of_view);
+    pub fn of_pixel(view: usize, pixel: [u32; 2], size: [u32; 2], angle: ViewAngle) -> Self {
+        let [across, up] = half_angles(size, angle);
         let part = |i: usize| 2.0 * (f64::from(pixel[i]) + 0.5) / f64::from(size[i].max(1)) - 1.0;
         Self { view, at: [(part(0) * across) as f32, (-part(1) * up) as f32] }
     }
 
     /// The pixel in a picture of that size; the nearest one where it would be outside.
     #[must_use]
-    pub fn pixel(&self, size: [u32; 2], field_of_view: f32) -> [u32; 2] {
-        let [across, up] = half_angles(size, field_of_view);
+    pub fn pixel(&self, size: [u32; 2], angle: ViewAngle) -> [u32; 2] {
+        let [across, up] = half_angles(size, angle);
         let parts = [f64::from(self.at[0]) / across, -f64::from(self.at[1]) / up];
         let pixel = |i: usize| {
             let at = 0.5 * (parts[i] + 1.0) * f64::from(size[i]);
@@ -80,18 +80,21 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::observer::WIDE;
+
+    const ANGLE: ViewAngle = ViewAngle { degrees: 45.0, keeps: WIDE };
 
     #[test]
     fn a_line_of_sight_is_the_same_pixel_in_a_picture_of_any_size() {
         for size in [[1, 1], [728, 396], [1919, 1079], [300, 700], [16_384, 3]] {
             for pixel in [[0, 0], [size[0] / 2, size[1] / 3], [size[0] - 1, size[1] - 1]] {
-                assert_eq!(Pin::of_pixel(1, pixel, size, 45.0).pixel(size, 45.0), pixel);
+                assert_eq!(Pin::of_pixel(1, pixel, size, ANGLE).pixel(size, ANGLE), pixel);
             }
         }
         // A wide picture that loses half its height shows half as much to the sides.
-        let pin = Pin::of_pixel(0, [400, 100], [1600, 800], 45.0);
-        assert_eq!(pin.pixel([1600, 400], 45.0), [600, 50]);
-        assert_eq!(Pin { view: 0, at: [9.0, 9.0] }.pixel([8, 8], 45.0), [7, 0]);
-        assert_eq!(Pin { view: 0, at: [f32::NAN, 2.0] }.pixel([0, 0], 45.0), [0, 0]);
+        let pin = Pin::of_pixel(0, [400, 100], [1600, 800], ANGLE);
+        assert_eq!(pin.pixel([1600, 400], ANGLE), [600, 50]);
+        assert_eq!(Pin { view: 0, at: [9.0, 9.0] }.pixel([8, 8], ANGLE), [7, 0]);
+        assert_eq!(Pin { view: 0, at: [f32::NAN, 2.0] }.pixel([0, 0], ANGLE), [0, 0]);
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     files::printable,
     optics::TermSelection,
     registry::Registry,
-    scene::check::same_place,
+    scene::{Scene, check::same_place},
 };
 
 impl Session {
@@ -110,11 +110,16 @@ impl Session {
         self.known_terms.offered(self.scene(), registry)
     }
 
-    /// True if nothing of the picture has the term that is shown alone.
+    /// True if nothing of a view's picture has the term that is shown alone.
     #[must_use]
-    pub fn lacks_term(&self, registry: &Registry) -> bool {
-        let shown = self.terms();
-        shown != TermSelection::All && !self.known_terms.present(self.scene(), registry).contains(&shown)
+    pub fn lacks_term(&self, view: usize, registry: &Registry) -> bool {
+        let shown = self.terms_of(view);
+        if shown == TermSelection::All {
+            return false;
+        }
+        let present = |scene: &Scene| self.known_terms.present(scene, registry);
+        let seen = (view != self.active()).then(|| self.document.seen(view, registry)).flatten();
+        !seen.map_or_else(|| present(self.scene()), |(scene, _)| present(&scene)).contains(&shown)
     }
 
     /// The reason why the observer can't be where the camera is.

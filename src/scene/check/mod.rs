@@ -407,9 +407,9 @@ impl Check<'_> {
         let comparison = &scene.comparison;
         let path = |key: &'static str| Path::root().key("comparison").key(key);
         self.rule(split(comparison.split), || (path("split"), comparison.split));
-        self.rule(amplification(comparison.amplification), || {
-            (path("amplification"), comparison.amplification)
-        });
+        if let Some(factor) = comparison.amplification {
+            self.rule(amplification(factor), || (path("amplification"), factor));
+        }
         if comparison.with > all.len().max(1) {
             let letter = LETTERS.get(comparison.with).copied().unwrap_or("?");
             let rule = match all.len() {

@@ -110,8 +110,7 @@ impl Reader<'_> {
             comparison.with = LETTERS.iter().position(|known| *known == letter).unwrap_or(comparison.with);
         }
         comparison.split = self.number_field(&fields, "split", check::split).unwrap_or(comparison.split);
-        let factor = self.number_field(&fields, "amplification", check::amplification);
-        comparison.amplification = factor.unwrap_or(comparison.amplification);
+        comparison.amplification = self.number_field(&fields, "amplification", check::amplification);
         comparison
     }
 

@@ -25,11 +25,14 @@ use super::{
 use crate::{
     reflection::{ModelEntry, Term},
     registry::Registry,
-    scene::variant::LETTERS,
 };
 
+pub use footer::Footer;
+
+mod footer;
+
 /// The size of the caption, as a fraction of the height of the screen. The capitals of its font are 0.727 of it high.
-const CAPTION: f32 = 0.036;
+pub(super) const CAPTION: f32 = 0.036;
 /// The body size under which the smallest symbols of an equation have capitals of the same height: they are set 1.1
 /// times as large, in a font whose capitals are 0.66 of its size.
 const BODY: f32 = 0.035;
@@ -183,66 +186,6 @@ impl Stage {
         }
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(CAPTION * height));
         free.with_max_y(free.bottom().min(self.caption.top()))
-    }
-}
-
-/// What stands below the views of a comparison: the equation and the caption of the active one.
-#[derive(Clone, Debug)]
-pub struct Footer {
-    equation: Vec<Definition>,
-    block: Block,
-    parts: Vec<caption::Part>,
-    /// Its height, points.
-    pub height: f32,
-}
-
-impl Footer {
-    /// The most of the height that the equation takes; a larger one is left out.
-    const MOST: f32 = 0.3;
-
-    /// The footer of a screen.
-    #[must_use]
-    pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
-        let equation = equation_shown(session, registry);
-        let mut parts = caption::parts(session, registry);
-        let letter = LETTERS.get(session.active()).copied().unwrap_or_default();
-        parts.insert(0, caption::Part::new(0, format!("{letter}:")));
-        let mut hasher = DefaultHasher::new();
-        format!("{equation:?} {parts:?} {whole:?}").hash(&mut hasher);
-        kept(ui, "footer of the presentation", hasher.finish(), |ui| {
-            Self::laid_out(ui, whole, equation, parts)
-        })
-    }
-
-    fn laid_out(ui: &mut Ui, whole: Rect, mut equation: Vec<Definition>, parts: Vec<caption::Part>) -> Self {
-        let padding = padding(whole);
-        let most = whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
-        let mut ui = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
-        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
-        let blocks = (1..=4).map(|columns| Block::of(&ui, &equation, columns, most, true));
-        let order = |a: &Block, b: &Block| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
-        let mut block = blocks.min_by(order).unwrap_or_default();
-        if block.size.y > Self::MOST * whole.height() {
-            (equation, block) = (Vec::new(), Block::default());
-        }
-        let gap = if equation.is_empty() { 0.0 } else { block.size.y + padding.y };
-        Self { equation, block, parts, height: words.size.y + gap + 2.0 * padding.y }
-    }
-
-    /// Paints it at the lower end of the screen.
-    pub(super) fn paint(&self, ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) {
-        let palette = Palette::here(ui);
-        let (height, padding) = (whole.height(), padding(whole));
-        let place = whole.with_min_y(whole.bottom() - self.height);
-        ui.painter().rect_filled(place, 0.0, palette.panel);
-        let at = place.min + padding;
-        columns(ui, &self.block, &self.equation, model_of(session, registry), at, height);
-        let width = whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
-        let gap = if self.equation.is_empty() { 0.0 } else { self.block.size.y + padding.y };
-        words.paint(ui, at + vec2(0.0, gap), palette.text);
-        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui).0, session);
     }
 }
 
