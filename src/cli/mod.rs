@@ -77,7 +77,7 @@ impl Cli {
     fn loads_driver(&self) -> bool {
         match &self.command {
             None | Some(Command::View(_)) => true,
-            Some(Command::Render(arguments)) => arguments.loads_driver(),
+            Some(Command::Render(arguments)) => arguments.own.loads_driver(),
             Some(Command::Evaluate(arguments) | Command::Albedo(arguments)) => arguments.loads_driver(),
             Some(Command::Models(arguments)) => arguments.loads_driver(),
             Some(_) => false,
