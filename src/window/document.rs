@@ -112,7 +112,6 @@ impl Plugin for DocumentPlugin {
                         .in_set(LabSystems::Load)
                         .run_if(resource_changed::<Session>.or_else(resource_changed::<Registry>)),
                     take_over.in_set(LabSystems::Edit).after(absorb),
-                    report_missing_shapes.in_set(LabSystems::Upload),
                 ),
             );
     }
@@ -216,29 +215,23 @@ fn publish(
     channels.set_if_neq(ShownChannels { by_view, light });
 }
 
-/// Reports shapes for which there is no room on the GPU, once.
-fn report_missing_shapes(
-    meshes: Res<ShapeMeshes>,
-    mut session: ResMut<Session>,
-    mut reported: Local<Option<String>>,
-) {
-    let problem = meshes.problem();
-    if *reported == problem {
-        return;
-    }
-    if let Some(problem) = &problem {
-        session.say(Severity::Error, sentence(problem));
-    }
-    *reported = problem;
-}
-
-/// Submits changes of the entities to the document; those that it refuses go back.
+/// Submits changes of the entities to the document; those that it refuses go back. Reports shapes for which there is no
+/// room on the GPU, once.
 fn take_over(
+    meshes: Res<ShapeMeshes>,
+    mut reported: Local<Option<String>>,
     mut scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
     registry: Res<Registry>,
     mut session: ResMut<Session>,
 ) {
+    let problem = meshes.problem();
+    if *reported != problem {
+        if let Some(problem) = &problem {
+            session.say(Severity::Error, sentence(problem));
+        }
+        *reported = problem;
+    }
     for refused in entities.refused() {
         session.say(Severity::Warning, refused.clone());
     }

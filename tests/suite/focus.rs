@@ -246,7 +246,7 @@ fn menus_open_with_the_focus_on_their_first_entry_and_arrows_change_them() {
     assert!(focused(&bench).is_some_and(|r| r.height() < 40.0));
     bench.key(Key::ArrowLeft, Modifiers::NONE);
     bench.key(Key::ArrowLeft, Modifiers::NONE);
-    assert!(name(&bench).starts_with("Keys and mouse"), "{}", name(&bench));
+    assert!(name(&bench).starts_with("Manual"), "{}", name(&bench));
 }
 
 #[test]
