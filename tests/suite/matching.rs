@@ -88,11 +88,11 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     // Nothing is replaced unasked, and nothing is searched before that is known.
     let run = lcm_in(at, &["match", "a.json", "-o", "b.json"], b"");
     refused(&run, 4, "b.json already exists; it was not overwritten; --overwrite replaces it");
-    let arguments = ["match", "a.json", "--on", "highlight", "-o", "a.json", "--overwrite", "-q"];
+    let arguments = ["match", "a.json", "--on", "highlight", "-o", "b.json", "--overwrite", "-q"];
     assert_eq!(lcm_in(at, &arguments, b"").status, Some(0));
-    assert_eq!(material(&at.join("a.json")).0["alpha"], Value::Integer(alpha));
+    assert_eq!(material(&at.join("b.json")).0["alpha"], Value::Integer(alpha));
     // Now it is as near as it gets.
-    let run = lcm_in(at, &["match", "a.json", "--on", "highlight"], b"");
+    let run = lcm_in(at, &["match", "b.json", "--on", "highlight"], b"");
     assert!(
         run.out.starts_with("view B stays as it is: no other values come nearer to view A\n"),
         "{}",
