@@ -8,6 +8,7 @@ use super::{
     Options, Outcome, outputs, progress,
     render::Size,
     scenes::Source,
+    views,
     workshop::{Workshop, drawable},
 };
 use crate::{
@@ -37,6 +38,9 @@ pub(super) struct Arguments {
     /// The object for forms that hold one: its name, or its place in the list from 0
     #[arg(long, value_name = "NAME|INDEX")]
     object: Option<String>,
+    /// The view to export: A, B, C or D, or the name of a variant; without it view A, and all views of a program
+    #[arg(long, value_name = "VIEW")]
+    view: Option<String>,
     /// Size of pictures and windows in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
@@ -52,7 +56,20 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         return Err(Failure::Usage(format!("there is no form {}", quoted(&arguments.form))));
     };
     let source = Source::of(arguments.scene.as_deref(), workshop);
-    let scene = source.open(workshop, options)?;
+    let whole = source.open(workshop, options)?;
+    let view = match &arguments.view {
+        Some(name) => {
+            views::find(&whole, name).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?
+        }
+        None => 0,
+    };
+    let one = (form.of_view || arguments.view.is_some())
+        .then(|| export::one_view(&whole, view, &source.stem(), &workshop.registry))
+        .flatten();
+    let (scene, mut about_view) = one.map_or((whole, Vec::new()), |one| (one.scene, one.notes));
+    if let Some(first) = about_view.first_mut() {
+        first.push_str("; --view chooses another");
+    }
     let place = arguments.output.clone().unwrap_or_else(|| form.default_path(&source.stem()));
     let read = inputs(source.path(), [&scene], &workshop.registry);
     let before = may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
@@ -81,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     bar.finish_and_clear();
     let export = made.map_err(|error| refused(&error, form, &source))?;
     write(&export, &place, &before).map_err(unwritten)?;
-    export.notes.iter().for_each(|note| options.tell(note));
+    about_view.iter().chain(&export.notes).for_each(|note| options.tell(note));
     options.tell(format_args!("wrote {}", place.display()));
     Ok(())
 }

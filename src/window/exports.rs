@@ -7,7 +7,7 @@ use bevy::ecs::prelude::*;
 use super::background::Background;
 use crate::{
     export::{
-        ExportError, Form, Progress, Request, form,
+        ExportError, Form, Progress, Request, form, one_view,
         write::{WriteError, inputs, may_write, write},
     },
     files::{self, Before},
@@ -39,6 +39,8 @@ struct Job {
     path: PathBuf,
     /// What was there when the user chose the place.
     before: Before,
+    /// The view that is exported, where there are several.
+    about_view: Vec<String>,
 }
 
 impl Exports {
@@ -64,9 +66,17 @@ impl Exports {
             Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
             Err(error) => return session.say(Severity::Error, format!("{error}.")),
         };
+        // The view that is being edited, for forms that hold one.
+        let one = form
+            .of_view
+            .then(|| one_view(&session.document, session.active(), &session.stem(), registry))
+            .flatten();
+        let (scene, about_view) =
+            one.map_or_else(|| ((*session.document).clone(), Vec::new()), |one| (one.scene, one.notes));
         let job = Job {
             form,
-            scene: (*session.document).clone(),
+            scene,
+            about_view,
             registry: registry.clone(),
             stem: session.stem(),
             object: object(session).unwrap_or_default(),
@@ -117,7 +127,7 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 }
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
-    let Job { form, scene, registry, stem, object, path, before } = job;
+    let Job { form, scene, registry, stem, object, path, before, about_view } = job;
     let request = Request { scene, registry, stem, size: SIZE, object: *object };
     let made = (form.make)(&request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
@@ -128,7 +138,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
     write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
-    Ok(export.notes)
+    Ok(about_view.iter().cloned().chain(export.notes).collect())
 }
 
 /// Shows a folder in the file manager.

@@ -265,6 +265,26 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
     assert_eq!(seen, 2 * cases.len());
 }
 
+/// Its vertices are more than a call of a function has arguments.
+#[test]
+fn a_page_of_the_finest_sphere_shows_it() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut text: Value =
+        serde_json::from_str(&fs::read_to_string(shipped("default.json")).expect("readable")).expect("JSON");
+    text["objects"][0]["tessellation"] = json!(256);
+    let fine = folder.path().join("fine.json");
+    fs::write(&fine, text.to_string()).expect("written");
+    let page_file = folder.path().join("page.html");
+    fs::write(&page_file, page(&scene(&fine)).expect("a page")).expect("written");
+    let expected = rendered(&fine, folder.path(), &[]);
+    browser.open(&page_file, &format!("renderer=webgl&picture={WIDTH}x{HEIGHT}&samples=1"));
+    let (shown, _) = browser.look();
+    let off = difference(&shown, &expected);
+    assert!(off.mean < MEAN && off.beyond < BEYOND, "{off:?}");
+}
+
 #[test]
 fn a_page_reacts_to_fingers_keys_and_taps() {
     let Some(browser) = Browser::start() else { return };

@@ -407,7 +407,7 @@ const EXTENSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/extension
 fn the_crate_of_the_example_swings_its_spotlight_and_leaves_the_scene_as_it_is() {
     let mut app = app(LabPlugins::default().scene(EXTENSION).size(64, 36).headless().build(), |app| {
         extension::types(app);
-        app.add_systems(Update, extension::swing);
+        app.insert_resource(extension::Pace(0.8)).add_systems(Update, extension::swing);
     });
     (0..10).for_each(|_| app.update());
     assert_eq!(count::<Drawn>(&mut app), 2, "its objects are drawn");

@@ -154,9 +154,23 @@ impl Window<'_> {
         }
     }
 
+    /// The screen once nothing moves in it: handles fade a while after the window opened.
+    fn at_rest(&mut self) -> Picture {
+        let (begin, mut since) = (Instant::now(), Instant::now());
+        let mut last = self.desk.screen.look();
+        while since.elapsed() < Duration::from_secs(3) && begin.elapsed() < LONG {
+            thread::sleep(Duration::from_millis(100));
+            let now = self.desk.screen.look();
+            if picture_of(&now) != picture_of(&last) {
+                (last, since) = (now, Instant::now());
+            }
+        }
+        last
+    }
+
     /// Chooses a model by its key, which is an unsaved change, and waits until the picture shows it, no longer.
     fn change(&mut self, key: Key) {
-        let before = self.desk.screen.look();
+        let before = self.at_rest();
         self.desk.press(&[key]);
         self.until("another model", |p| picture_of(p) != picture_of(&before));
     }

@@ -18,24 +18,33 @@ pub fn types(to: &mut impl Register) {
         .add_shader_folder(concat!(env!("CARGO_MANIFEST_DIR"), "/src"));
 }
 
+/// The pace at which spotlights swing, rad/s.
+#[derive(Resource)]
+pub struct Pace(pub f32);
+
+/// A spotlight that swings since this second.
+#[derive(Component)]
+pub struct Swinging(f32);
+
 /// Swings every spotlight. `Animated` keeps the motion out of the scene: it is shown and not stored.
 pub fn swing(
-    mut spots: Query<(Entity, &mut Transform, Has<Animated>), With<Spot>>,
-    time: Res<Time>,
+    mut spots: Query<(Entity, &mut Transform, Option<&Swinging>), With<Spot>>,
+    (time, pace): (Res<Time>, Res<Pace>),
     mut commands: Commands,
 ) {
-    for (spot, mut place, animated) in &mut spots {
-        if animated {
-            place.rotate_x(0.8 * time.elapsed_secs().cos() * time.delta_secs());
+    let now = time.elapsed_secs();
+    for (spot, mut place, swinging) in &mut spots {
+        if let Some(Swinging(since)) = swinging {
+            place.rotate_x(pace.0 * (now - since).cos() * time.delta_secs());
         } else {
-            commands.entity(spot).insert(Animated);
+            commands.entity(spot).insert((Animated, Swinging(now)));
         }
     }
 }
 
 /// More in the window.
 pub fn window(app: &mut App) {
-    app.add_panel(meter::Meter::default()).add_systems(Update, swing);
+    app.add_panel(meter::Meter::default()).insert_resource(Pace(0.8)).add_systems(Update, swing);
 }
 
 fn main() -> std::process::ExitCode {

@@ -64,7 +64,7 @@ impl Svg {
 
 /// A text without the characters that mean something in XML, nor those that it must not contain.
 fn escaped(text: &str) -> String {
-    let plain = text.replace(|c: char| c.is_control(), " ");
+    let plain = text.replace(|c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'), " ");
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

@@ -25,6 +25,7 @@ pub const HTML: Form = Form {
     summary: "a page that shows the scene in a browser, with its knobs, in one file for students to open",
     makes: Makes::File("html"),
     of_object: false,
+    of_view: true,
     make,
 };
 
@@ -71,20 +72,29 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         ],
     );
     if page.len() > LIMIT {
-        return Err(ExportError::refused(too_large(page.len(), scene.len(), meshes.len())));
+        let words = 2 * escaped(name).len() + escaped(description).len();
+        return Err(ExportError::refused(too_large(page.len(), words, scene.len(), meshes.len())));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
 
-fn too_large(page: usize, scene: usize, meshes: usize) -> String {
+/// The message about a page of so many bytes; `words` are those of the scene's name and description. It advises what
+/// makes the largest part smaller.
+fn too_large(page: usize, words: usize, scene: usize, meshes: usize) -> String {
     let kb = |bytes: usize| bytes.div_ceil(1000);
+    let advice = if words > scene.max(meshes) {
+        "shorten the name or the description of the scene"
+    } else {
+        "lower tessellations, or fewer different reflection models, make it smaller"
+    };
     format!(
-        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values; lower \
-         tessellations, or fewer different reflection models, make it smaller",
+        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values, {} kB its name and \
+         description; {advice}",
         kb(page),
         kb(LIMIT),
         kb(meshes),
-        kb(scene)
+        kb(scene),
+        kb(words)
     )
 }
 
@@ -139,9 +149,27 @@ mod tests {
     }
 
     #[test]
+    fn no_list_of_a_mesh_becomes_the_arguments_of_a_call() {
+        // A browser takes some ten thousand arguments; the page would end before its first picture.
+        let script = SCRIPT.concat();
+        for call in ["Math.max(...", "Math.min(...", "String.fromCharCode(...", ".apply("] {
+            assert!(!script.contains(call), "{call}");
+        }
+    }
+
+    #[test]
     fn a_page_that_is_too_large_is_refused_with_its_sizes() {
-        let said = too_large(512_345, 90_000, 380_000);
+        let said = too_large(512_345, 100, 90_000, 380_000);
         assert!(said.contains("513 kB") && said.contains("300 kB is the limit"), "{said}");
         assert!(said.contains("380 kB are meshes") && said.contains("90 kB shaders"), "{said}");
+        assert!(said.ends_with("make it smaller"), "{said}");
+        // A long name is not the fault of the meshes.
+        let said = too_large(512_345, 400_000, 20_000, 30_000);
+        assert!(
+            said.ends_with(
+                "400 kB its name and description; shorten the name or the description of the scene"
+            ),
+            "{said}"
+        );
     }
 }

@@ -39,7 +39,8 @@ class Mesh {
       return Array.from({ length: count }, (_, place) => (corner += places[place][i]));
     });
     this.tangents = header.tangents ? vectors(header.polygons, 1).map(unit) : null;
-    this.radius = Math.max(...this.positions.map(length), 0);
+    // One by one: a call takes some ten thousand arguments at most, and a mesh has more vertices.
+    this.radius = this.positions.reduce((most, p) => Math.max(most, length(p)), 0);
   }
 
   // The triangles of a polygon, as places in its list of corners.

@@ -157,7 +157,7 @@ class WebGl {
   async tryDrawing(scene, width, height) {
     const { gl } = this;
     const most = gl.getParameter(gl.MAX_UNIFORM_BLOCK_SIZE);
-    const largest = Math.max(...scene.drawings.flatMap(({ uniforms }) => uniforms.map(({ size }) => size)));
+    const largest = scene.drawings.flatMap(({ uniforms }) => uniforms).reduce((most, { size }) => Math.max(most, size), 0);
     if (largest > most) throw new Error(`the lights take ${largest} bytes, and this browser takes ${most}`);
     this.draw(scene, width, height);
     return true;
