@@ -8,11 +8,12 @@ use super::{
     Options, Outcome, outputs, progress,
     render::Size,
     scenes::Source,
+    views,
     workshop::{Workshop, drawable},
 };
 use crate::{
     export::{
-        self, ExportError, FORMS, Form, Progress, Request,
+        self, ExportError, FORMS, Form, Progress, Request, view,
         write::{WriteError, inputs, may_write, write},
     },
     failure::Failure,
@@ -37,6 +38,9 @@ pub(super) struct Arguments {
     /// The object for forms that hold one: its name, or its place in the list from 0
     #[arg(long, value_name = "NAME|INDEX")]
     object: Option<String>,
+    /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs all views
+    #[arg(long, value_name = "VIEW")]
+    view: Option<String>,
     /// Size of pictures and windows in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
@@ -56,6 +60,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let place = arguments.output.clone().unwrap_or_else(|| form.default_path(&source.stem()));
     let read = inputs(source.path(), [&scene], &workshop.registry);
     let before = may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
+    let view = arguments.view.as_ref().map(|name| views::find(&scene, name)).transpose();
+    let view = view.map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
+    let (scene, of_view) = view::exported(form, &scene, view, &source.stem(), &workshop.registry);
     drawable(&workshop.registry, &scene)?;
     let object = match &arguments.object {
         Some(name) if form.of_object => {
@@ -81,6 +88,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     bar.finish_and_clear();
     let export = made.map_err(|error| refused(&error, form, &source))?;
     write(&export, &place, &before).map_err(unwritten)?;
+    of_view.iter().for_each(|note| options.tell(note));
     export.notes.iter().for_each(|note| options.tell(note));
     options.tell(format_args!("wrote {}", place.display()));
     Ok(())

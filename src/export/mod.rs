@@ -22,6 +22,7 @@ mod refusals;
 pub mod shader;
 pub mod shaders;
 pub mod translate;
+pub mod view;
 pub mod write;
 
 /// All forms, in the order of lists: the one list.

@@ -14,6 +14,7 @@ use super::{Export, ExportError, Form, Makes, Progress, Request};
 mod blocks;
 mod data;
 mod equation;
+mod limits;
 mod mesh;
 mod programs;
 mod texts;
@@ -71,20 +72,28 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         ],
     );
     if page.len() > LIMIT {
-        return Err(ExportError::refused(too_large(page.len(), scene.len(), meshes.len())));
+        let words = 3 * escaped(name).len() + escaped(description).len();
+        return Err(ExportError::refused(too_large(page.len(), [scene.len(), meshes.len(), words])));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
 
-fn too_large(page: usize, scene: usize, meshes: usize) -> String {
+/// The sizes of the page, of its shaders and values, of its meshes, and of the name and the description of the scene.
+fn too_large(page: usize, [scene, meshes, words]: [usize; 3]) -> String {
     let kb = |bytes: usize| bytes.div_ceil(1000);
+    let remedy = if words > scene.max(meshes) {
+        "a shorter name or description makes it smaller"
+    } else {
+        "lower tessellations, or fewer different reflection models, make it smaller"
+    };
     format!(
-        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values; lower \
-         tessellations, or fewer different reflection models, make it smaller",
+        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values, {} kB the name \
+         and the description of the scene; {remedy}",
         kb(page),
         kb(LIMIT),
         kb(meshes),
-        kb(scene)
+        kb(scene),
+        kb(words)
     )
 }
 
@@ -140,8 +149,11 @@ mod tests {
 
     #[test]
     fn a_page_that_is_too_large_is_refused_with_its_sizes() {
-        let said = too_large(512_345, 90_000, 380_000);
+        let said = too_large(512_345, [90_000, 380_000, 100]);
         assert!(said.contains("513 kB") && said.contains("300 kB is the limit"), "{said}");
         assert!(said.contains("380 kB are meshes") && said.contains("90 kB shaders"), "{said}");
+        assert!(said.contains("lower tessellations"), "{said}");
+        let said = too_large(512_345, [90_000, 10_000, 400_000]);
+        assert!(said.contains("a shorter name or description") && !said.contains("lower"), "{said}");
     }
 }

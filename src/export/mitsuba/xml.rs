@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use glam::Vec3;
 
-use crate::files::printable;
+use crate::{files::printable, text::xml::comment};
 
 /// An element: a plugin or one of its properties, with elements and comments in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl Xml {
 
 /// A text that does not end a comment.
 fn harmless(text: &str) -> String {
-    printable(text).replace("--", "- -")
+    comment(&printable(text))
 }
 
 /// A number that is read back exactly.
