@@ -7,7 +7,7 @@ use bevy::ecs::prelude::*;
 use super::background::Background;
 use crate::{
     export::{
-        ExportError, Form, Progress, Request, form,
+        ExportError, Form, Progress, Request, form, view,
         write::{WriteError, inputs, may_write, write},
     },
     files::{self, Before},
@@ -118,7 +118,8 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
     let Job { form, scene, registry, stem, object, path, before } = job;
-    let request = Request { scene, registry, stem, size: SIZE, object: *object };
+    let (scene, of_view) = view::exported(form, scene, None, stem, registry);
+    let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object };
     let made = (form.make)(&request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
         Ok(export)
@@ -128,7 +129,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
     write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
-    Ok(export.notes)
+    Ok(of_view.into_iter().chain(export.notes).collect())
 }
 
 /// Shows a folder in the file manager.
