@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     export::{
-        self, ExportError, FORMS, Form, Progress, Request,
+        self, ExportError, FORMS, Form, Progress, Request, view,
         write::{WriteError, inputs, may_write, write},
     },
     failure::Failure,
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     /// The object for forms that hold one: its name, or its place in the list from 0
     #[arg(long, value_name = "NAME|INDEX")]
     object: Option<String>,
-    /// The view to export: A, B, C or D, or the name of a variant; without it view A, and all views of a program
+    /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs all views
     #[arg(long, value_name = "VIEW")]
     view: Option<String>,
     /// Size of pictures and windows in pixels
@@ -56,23 +56,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         return Err(Failure::Usage(format!("there is no form {}", quoted(&arguments.form))));
     };
     let source = Source::of(arguments.scene.as_deref(), workshop);
-    let whole = source.open(workshop, options)?;
-    let view = match &arguments.view {
-        Some(name) => {
-            views::find(&whole, name).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?
-        }
-        None => 0,
-    };
-    let one = (form.of_view || arguments.view.is_some())
-        .then(|| export::one_view(&whole, view, &source.stem(), &workshop.registry))
-        .flatten();
-    let (scene, mut about_view) = one.map_or((whole, Vec::new()), |one| (one.scene, one.notes));
-    if let Some(first) = about_view.first_mut() {
-        first.push_str("; --view chooses another");
-    }
+    let scene = source.open(workshop, options)?;
     let place = arguments.output.clone().unwrap_or_else(|| form.default_path(&source.stem()));
     let read = inputs(source.path(), [&scene], &workshop.registry);
     let before = may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
+    let view = arguments.view.as_ref().map(|name| views::find(&scene, name)).transpose();
+    let view = view.map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
+    let (scene, of_view) = view::exported(form, &scene, view, &source.stem(), &workshop.registry);
     drawable(&workshop.registry, &scene)?;
     let object = match &arguments.object {
         Some(name) if form.of_object => {
@@ -98,7 +88,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     bar.finish_and_clear();
     let export = made.map_err(|error| refused(&error, form, &source))?;
     write(&export, &place, &before).map_err(unwritten)?;
-    about_view.iter().chain(&export.notes).for_each(|note| options.tell(note));
+    of_view.iter().for_each(|note| options.tell(note));
+    export.notes.iter().for_each(|note| options.tell(note));
     options.tell(format_args!("wrote {}", place.display()));
     Ok(())
 }

@@ -124,6 +124,7 @@ pub fn manifest(module: &Module, lit: &Lit, drawn: &Drawn, files: Map<String, Js
         .collect();
     json!({
         "scene": lit.request.scene.name,
+        "description": lit.request.scene.description,
         "object": object.name.clone().unwrap_or_else(|| object.object_type.clone()),
         "reflection_model": program.model.declaration.id,
         "shading_model": program.shading.declaration.id,

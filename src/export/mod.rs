@@ -7,13 +7,7 @@
 use std::path::PathBuf;
 
 pub use crate::progress::Progress;
-use crate::{
-    optics::TermSelection,
-    progress::Cancelled,
-    registry::Registry,
-    scene::{Scene, variant::LETTERS},
-    text::{listed, quoted},
-};
+use crate::{progress::Cancelled, registry::Registry, scene::Scene};
 
 mod bevy;
 mod executable;
@@ -28,6 +22,7 @@ mod refusals;
 pub mod shader;
 pub mod shaders;
 pub mod translate;
+pub mod view;
 pub mod write;
 
 /// All forms, in the order of lists: the one list.
@@ -56,8 +51,6 @@ pub struct Form {
     pub makes: Makes,
     /// True if it holds one object of the scene, and so needs the choice of one.
     pub of_object: bool,
-    /// True if it holds one view of the scene; else it holds all, as the scene's file does.
-    pub of_view: bool,
     /// Makes the files.
     pub make: fn(&Request, &Progress) -> Result<Export, ExportError>,
 }
@@ -167,34 +160,6 @@ impl Form {
     }
 }
 
-/// What a form holds that can hold one view of a scene with several.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OneView {
-    /// The scene as the view shows it. Its name says which view that is; without a name of its own it has the `stem`.
-    pub scene: Scene,
-    /// A sentence about the view and the others, and one about terms that the view hides and the export shows.
-    pub notes: Vec<String>,
-}
-
-/// One view of a scene; `None` if the scene has no other, or not this one.
-#[must_use]
-pub fn one_view(scene: &Scene, view: usize, stem: &str, registry: &Registry) -> Option<OneView> {
-    let (seen, terms) = scene.seen(view, registry).filter(|_| !scene.variants.is_empty())?;
-    let label = |view: usize| match (LETTERS.get(view), scene.view_name(view)) {
-        (Some(letter), name) if view > 0 && name != *letter => format!("{letter} ({})", quoted(name)),
-        (letter, _) => letter.copied().unwrap_or("?").to_owned(),
-    };
-    let name = scene.name.as_deref().unwrap_or(stem);
-    let others: Vec<_> = (0..=scene.variants.len()).filter(|other| *other != view).map(label).collect();
-    let mut notes =
-        vec![format!("it holds view {} of the scene, not {}", label(view), listed(&others, "or"))];
-    if terms != TermSelection::All {
-        notes.push(format!("view {} hides terms of its models; the export shows all", label(view)));
-    }
-    let scene = Scene { name: Some(format!("{name}, view {}", label(view))), ..seen.alone() };
-    Some(OneView { scene, notes })
-}
-
 /// The path of an object in messages: `objects[2] ("Gold")`.
 #[must_use]
 pub fn object_path(scene: &Scene, index: usize) -> String {
@@ -209,7 +174,7 @@ pub fn light_path(scene: &Scene, index: usize) -> String {
 
 fn path(list: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) => format!("{list}[{index}] ({})", quoted(name)),
+        Some(name) => format!("{list}[{index}] ({})", crate::text::quoted(name)),
         None => format!("{list}[{index}]"),
     }
 }

@@ -34,6 +34,9 @@ pub enum WriteError {
     /// It is a file of another kind.
     #[error("{} is a file of another kind than the export; it was not overwritten", .0.display())]
     OtherFile(PathBuf),
+    /// Its name is longer than file systems take.
+    #[error("{} cannot be written: its name has {} bytes, and {NAME} is the limit", .0.display(), .1)]
+    Name(PathBuf, usize),
     /// It is read by this command, or holds what is.
     #[error(transparent)]
     Input(#[from] Refused),
@@ -44,6 +47,9 @@ pub enum WriteError {
     #[error("{} could not be written: {}", .0.display(), .1)]
     System(PathBuf, FileError),
 }
+
+/// Most bytes of the name of a file, on all usual file systems.
+const NAME: usize = 255;
 
 /// Everything that a command or the window reads: the files of scenes and what they name, those of models and shaders,
 /// and this program. No result may replace one: see [`files::spare`].
@@ -71,6 +77,9 @@ pub fn may_write(
     overwrite: bool,
     inputs: &[PathBuf],
 ) -> Result<Before, WriteError> {
+    if let Some(bytes) = place.file_name().map(|name| name.len()).filter(|bytes| *bytes > NAME) {
+        return Err(WriteError::Name(place.to_owned(), bytes));
+    }
     let before = Before::of(place);
     if fs::symlink_metadata(place).is_err() {
         return Ok(before);

@@ -7,6 +7,7 @@ pub mod mathematics;
 pub mod path;
 pub mod place;
 mod words;
+pub mod xml;
 
 pub use list::items;
 pub use words::{

@@ -7,7 +7,7 @@ use bevy::ecs::prelude::*;
 use super::background::Background;
 use crate::{
     export::{
-        ExportError, Form, Progress, Request, form, one_view,
+        ExportError, Form, Progress, Request, form, view,
         write::{WriteError, inputs, may_write, write},
     },
     files::{self, Before},
@@ -36,11 +36,11 @@ struct Job {
     registry: Registry,
     stem: String,
     object: usize,
+    /// The view that is being edited.
+    view: usize,
     path: PathBuf,
     /// What was there when the user chose the place.
     before: Before,
-    /// The view that is exported, where there are several.
-    about_view: Vec<String>,
 }
 
 impl Exports {
@@ -66,20 +66,13 @@ impl Exports {
             Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
             Err(error) => return session.say(Severity::Error, format!("{error}.")),
         };
-        // The view that is being edited, for forms that hold one.
-        let one = form
-            .of_view
-            .then(|| one_view(&session.document, session.active(), &session.stem(), registry))
-            .flatten();
-        let (scene, about_view) =
-            one.map_or_else(|| ((*session.document).clone(), Vec::new()), |one| (one.scene, one.notes));
         let job = Job {
             form,
-            scene,
-            about_view,
+            scene: (*session.document).clone(),
             registry: registry.clone(),
             stem: session.stem(),
             object: object(session).unwrap_or_default(),
+            view: session.active(),
             path,
             before,
         };
@@ -127,8 +120,10 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 }
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
-    let Job { form, scene, registry, stem, object, path, before, about_view } = job;
-    let request = Request { scene, registry, stem, size: SIZE, object: *object };
+    let Job { form, scene, registry, stem, object, view, path, before } = job;
+    let view = view::holds_one(form).then_some(*view);
+    let (scene, of_view) = view::exported(form, scene, view, stem, registry);
+    let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object };
     let made = (form.make)(&request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
         Ok(export)
@@ -138,7 +133,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
     write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
-    Ok(about_view.iter().cloned().chain(export.notes).collect())
+    Ok(of_view.into_iter().chain(export.notes).collect())
 }
 
 /// Shows a folder in the file manager.

@@ -100,10 +100,15 @@ impl Browser {
     pub fn open(&self, file: &Path, fragment: &str) {
         // A change of the fragment alone would not load it again.
         self.ask("POST", "/url", &json!({ "url": "about:blank" }));
-        self.ask("POST", "/url", &json!({ "url": format!("file://{}#{fragment}", file.display()) }));
+        self.visit(&format!("{}#{fragment}", file.display()));
         self.settle();
         let failure = self.run("return document.getElementById('failure').textContent");
         assert_eq!(failure, "", "{}", file.display());
+    }
+
+    /// Opens a file, with a fragment of its address.
+    pub fn visit(&self, address: &str) {
+        self.ask("POST", "/url", &json!({ "url": format!("file://{address}") }));
     }
 
     /// Waits until the picture shows everything that was set, or the page said that it cannot.

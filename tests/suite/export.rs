@@ -322,7 +322,6 @@ fn a_form_that_makes_one_file_replaces_one_file() {
         summary: "a file",
         makes: Makes::File("txt"),
         of_object: false,
-        of_view: true,
         make: |_, _| Ok(Export::file("new")),
     };
     let folder = tempfile::tempdir().expect("a folder");
@@ -433,4 +432,72 @@ fn a_scene_whose_objects_are_hidden_is_refused_as_a_project() {
     assert_eq!(run.status, Some(1));
     assert!(run.err.contains("every object is hidden; make one visible"), "{}", run.err);
     assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn an_export_of_a_scene_with_views_says_which_one_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene: serde_json::Value =
+        serde_json::from_str(&save::to_json(&Scene::default(), None, &Registry::builtin())).expect("JSON");
+    scene["name"] = "Room".into();
+    scene["variants"] = serde_json::json!([{ "name": "Half", "exposure": 1.0, "shading_model": "flat" }]);
+    fs::write(folder.path().join("room.json"), scene.to_string()).expect("written");
+    let all = [("mitsuba", "scene.xml"), ("bevy", "src/main.rs"), ("wgsl", "manifest.json"), ("html", "")];
+    for (form, file) in all {
+        for (view, one, other) in [
+            ("A", "view A", "view B (Half)"),
+            ("b", "view B (Half)", "view A"),
+            ("Half", "view B (Half)", "view A"),
+        ] {
+            let mut arguments = vec!["room.json", "--as", form, "-o", "out", "--overwrite"];
+            if view != "A" {
+                arguments.extend(["--view", view]);
+            }
+            let run = export(folder.path(), &arguments);
+            assert_eq!(run.status, Some(0), "{form} {view}: {}", run.err);
+            let back = if view == "A" { "B" } else { "A" };
+            let said =
+                format!("This is {one} of a scene that compares it with {other}; lcm export --view {back}");
+            assert!(run.err.contains(&said), "{form}: {}", run.err);
+            let text = fs::read_to_string(folder.path().join("out").join(file).components().as_path())
+                .expect("readable");
+            let plain = text.split_whitespace().filter(|w| *w != "//!").collect::<Vec<_>>().join(" ");
+            assert!(plain.contains(&format!("Room, {one}")), "{form} {view}");
+            let how = if form == "mitsuba" { "- -view" } else { "--view" };
+            assert!(plain.contains(&format!("{how} {back}")), "{form} {view}: how to get the other");
+        }
+        let _ = fs::remove_dir_all(folder.path().join("out"));
+        let _ = fs::remove_file(folder.path().join("out"));
+    }
+    refused(
+        &export(folder.path(), &["room.json", "--as", "html", "--view", "Hal"]),
+        1,
+        "there is no view \"Hal\"; it must be A or B (Half)",
+    );
+}
+
+#[test]
+fn a_name_that_is_too_long_is_refused_for_its_length() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = format!("{}.html", "n".repeat(251));
+    let run = export(folder.path(), &["--as", "html", "-o", &name]);
+    refused(&run, 4, "its name has 256 bytes, and 255 is the limit");
+    assert!(!run.err.contains("mesh"), "{}", run.err);
+    let run = export(folder.path(), &["--as", "html", "-o", &name[1..]]);
+    assert_eq!(run.status, Some(0), "{}", run.err);
+}
+
+#[test]
+fn names_with_characters_that_xml_forbids_make_well_formed_xml() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = Scene::default();
+    let hostile: String = (0..0x20u8).map(char::from).chain("\u{fffe}\u{ffff}--->".chars()).collect();
+    scene.name = Some(format!("a{hostile}b"));
+    write_scene(&folder.path().join("room.json"), &scene);
+    let run = export(folder.path(), &["room.json", "--as", "mitsuba", "-o", "out"]);
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let text = fs::read_to_string(folder.path().join("out/scene.xml")).expect("readable");
+    let bad = |c: char| c < ' ' && c != '\n' && c != '\t' || matches!(c, '\u{fffe}' | '\u{ffff}');
+    assert!(!text.contains(bad), "{text}");
+    assert!(text.contains("\\u{fffe}\\u{ffff}- - ->b"), "{text}");
 }

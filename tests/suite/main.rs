@@ -26,7 +26,6 @@ mod explain;
 mod export;
 mod export_bevy;
 mod export_shaders;
-mod export_views;
 mod export_window;
 mod extension;
 mod features;

@@ -8,6 +8,7 @@ use super::pen::{Anchor, Ink, Pen};
 use crate::{
     lettering::Lettering,
     render::capture::png::{About, encode},
+    text::xml,
 };
 
 /// Where the figure stands, which decides the colours of text and grid.
@@ -64,8 +65,7 @@ impl Svg {
 
 /// A text without the characters that mean something in XML, nor those that it must not contain.
 fn escaped(text: &str) -> String {
-    let plain = text.replace(|c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'), " ");
-    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    xml::escaped(&text.replace(char::is_whitespace, " "))
 }
 
 /// A length with as many digits as can be seen.

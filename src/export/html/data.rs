@@ -7,7 +7,7 @@ use serde_json::{Map, Value as Json, json};
 use super::{
     blocks::Blocks,
     equation::{equation, symbol},
-    mesh,
+    limits, mesh,
     programs::program,
     texts::Texts,
 };
@@ -83,7 +83,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
 
     progress.step(0.8, "packing its meshes")?;
     let tangents = lit.programs.iter().any(|p| p.model.declaration.anisotropic);
-    let (meshes, mesh_of, bytes) = meshes(lit, tangents);
+    let (meshes, mesh_of, bytes) = meshes(lit, tangents)?;
     let objects: Vec<_> = lit
         .objects
         .iter()
@@ -144,30 +144,34 @@ fn shaded(scene: &Scene, shading: &ShadingEntry) -> Scene {
 }
 
 /// The meshes, that of each object, and the bytes of all.
-fn meshes(lit: &Lit, tangents: bool) -> (Vec<Json>, Vec<usize>, Vec<u8>) {
+fn meshes(lit: &Lit, tangents: bool) -> Result<(Vec<Json>, Vec<usize>, Vec<u8>), ExportError> {
     let Request { scene, registry, .. } = lit.request;
     let (mut all, mut of_objects, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
-    let mut known = HashMap::new();
+    let mut known: HashMap<_, usize> = HashMap::new();
     for drawn in &lit.objects {
         let object = &scene.objects[drawn.index];
         // Known, or the scene could not have been taken apart.
         let Some(shape) = registry.shape(&object.object_type) else { continue };
-        let index = *known.entry(shape.key(&object.shape, object.tessellation)).or_insert_with(|| {
-            let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
-            let packed = mesh::pack(&polygons, tangents);
-            all.push(json!({
-                "vertices": packed.vertices,
-                "polygons": packed.polygons,
-                "step": packed.step,
-                "tangents": packed.tangents,
-                "at": bytes.len(),
-            }));
-            bytes.extend(packed.bytes);
-            all.len() - 1
-        });
-        of_objects.push(index);
+        let key = shape.key(&object.shape, object.tessellation);
+        if let Some(index) = known.get(&key) {
+            of_objects.push(*index);
+            continue;
+        }
+        let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+        limits::mesh(&polygons)?;
+        let packed = mesh::pack(&polygons, tangents);
+        known.insert(key, all.len());
+        of_objects.push(all.len());
+        all.push(json!({
+            "vertices": packed.vertices,
+            "polygons": packed.polygons,
+            "step": packed.step,
+            "tangents": packed.tangents,
+            "at": bytes.len(),
+        }));
+        bytes.extend(packed.bytes);
     }
-    (all, of_objects, bytes)
+    Ok((all, of_objects, bytes))
 }
 
 fn model(entry: &ModelEntry, uniform: bool, programs: &[Json]) -> Json {

@@ -3,7 +3,7 @@
 use naga::{AddressSpace, ShaderStage, back::glsl::Version};
 use serde_json::{Value as Json, json};
 
-use super::{blocks::Blocks, texts::Texts};
+use super::{blocks::Blocks, limits, texts::Texts};
 use crate::export::{
     ExportError,
     lit::{Drawn, Lit, Program},
@@ -45,6 +45,7 @@ pub fn program(
             "block": (!own).then(|| blocks.add(&bytes)),
         }));
     }
+    limits::listed(&all)?;
     let mut stages = Vec::new();
     for entry in ENTRY_POINTS {
         stages.push(stage(&glsl(&checked, &info, WEBGL, entry)?, texts));

@@ -44,7 +44,6 @@ pub const FORM: Form = Form {
     summary: "a folder with a scene for Mitsuba 3: mitsuba -m scalar_rgb FOLDER/scene.xml",
     makes: Makes::Folder,
     of_object: false,
-    of_view: true,
     make,
 };
 
@@ -101,6 +100,10 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         "{title}, by Lights, Camera, Models! {}, for Mitsuba 3: mitsuba -m scalar_rgb scene.xml writes scene.exr, in linear light.",
         env!("CARGO_PKG_VERSION")
     );
+    let about = match &scene.description {
+        Some(description) => format!("{about} {description}"),
+        None => about,
+    };
     files.insert(0, File::new("scene.xml", file.file(&about)));
     Ok(Export { files, notes: notes.into_iter().collect() })
 }

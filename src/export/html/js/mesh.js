@@ -39,7 +39,7 @@ class Mesh {
       return Array.from({ length: count }, (_, place) => (corner += places[place][i]));
     });
     this.tangents = header.tangents ? vectors(header.polygons, 1).map(unit) : null;
-    // One by one: a call takes some ten thousand arguments at most, and a mesh has more vertices.
+    // Not by arguments of a function: a browser takes about 100 000 of them.
     this.radius = this.positions.reduce((most, p) => Math.max(most, length(p)), 0);
   }
 
@@ -84,27 +84,45 @@ class Mesh {
     return this.kept;
   }
 
+  // The places of the corners of all triangles in the list of vertices; `first` counts the corners of polygons before.
+  indices(placed) {
+    const count = this.polygons.reduce((sum, polygon) => sum + Mesh.triangles(polygon).length, 0);
+    const indices = new Uint32Array(count);
+    let at = 0;
+    let first = 0;
+    for (const polygon of this.polygons) {
+      for (const i of Mesh.triangles(polygon)) indices[at++] = placed(polygon, i, first);
+      first += polygon.length;
+    }
+    return indices;
+  }
+
   // Vertices that polygons share: position, normal, tangent.
   get shared() {
     const { normals, tangents } = this.smooth;
-    const vertices = this.positions.flatMap((p, i) => [...p, ...normals[i], ...tangents[i]]);
-    const indices = this.polygons.flatMap((polygon) => Mesh.triangles(polygon).map((i) => polygon[i]));
-    return { vertices: new Float32Array(vertices), indices: new Uint32Array(indices), attributes: 3 };
+    const vertices = new Float32Array(9 * this.positions.length);
+    this.positions.forEach((p, i) => {
+      [p, normals[i], tangents[i]].forEach((vector, k) => vertices.set(vector, 9 * i + 3 * k));
+    });
+    return { vertices, indices: this.indices((polygon, i) => polygon[i]), attributes: 3 };
   }
 
   // Vertices that know their polygon: also its normal, tangent and centre.
   get faces() {
     const { normals, tangents, faceNormals } = this.smooth;
-    const vertices = [];
-    const indices = [];
-    let first = 0;
+    const corners = this.polygons.reduce((sum, polygon) => sum + polygon.length, 0);
+    const vertices = new Float32Array(18 * corners);
+    let at = 0;
     this.polygons.forEach((polygon, p) => {
-      const own = [...faceNormals[p], ...(this.tangents ? this.tangents[p] : [0, 0, 0]), ...this.centre(polygon)];
-      for (const i of polygon) vertices.push(...this.positions[i], ...normals[i], ...tangents[i], ...own);
-      for (const i of Mesh.triangles(polygon)) indices.push(first + i);
-      first += polygon.length;
+      const own = [faceNormals[p], this.tangents ? this.tangents[p] : [0, 0, 0], this.centre(polygon)];
+      for (const i of polygon) {
+        for (const vector of [this.positions[i], normals[i], tangents[i], ...own]) {
+          vertices.set(vector, at);
+          at += 3;
+        }
+      }
     });
-    return { vertices: new Float32Array(vertices), indices: new Uint32Array(indices), attributes: 6 };
+    return { vertices, indices: this.indices((polygon, i, first) => first + i), attributes: 6 };
   }
 }
 

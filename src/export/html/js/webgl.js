@@ -157,9 +157,16 @@ class WebGl {
   async tryDrawing(scene, width, height) {
     const { gl } = this;
     const most = gl.getParameter(gl.MAX_UNIFORM_BLOCK_SIZE);
-    const largest = scene.drawings.flatMap(({ uniforms }) => uniforms).reduce((most, { size }) => Math.max(most, size), 0);
-    if (largest > most) throw new Error(`the lights take ${largest} bytes, and this browser takes ${most}`);
+    for (const { uniforms } of scene.drawings) {
+      for (const { size } of uniforms) {
+        if (size > most) throw new Error(`the lights take ${size} bytes, and this browser takes ${most}`);
+      }
+    }
+    while (gl.getError() !== gl.NO_ERROR && !gl.isContextLost());
     this.draw(scene, width, height);
+    const error = gl.getError();
+    if (error === gl.OUT_OF_MEMORY) throw new Error('its graphics memory is too small for the meshes');
+    if (error !== gl.NO_ERROR && !gl.isContextLost()) throw new Error(`WebGL 2 reports error ${error}`);
     return true;
   }
 

@@ -158,13 +158,15 @@ class WebGpu {
     this.device.queue.submit([encoder.finish()]);
   }
 
-  // Draws within a scope that catches errors; true if there was none.
+  // Draws within scopes that catch errors; throws the first of them.
   async tryDrawing(scene, width, height) {
     this.device.pushErrorScope('validation');
+    this.device.pushErrorScope('out-of-memory');
     this.draw(scene, width, height);
-    const error = await this.device.popErrorScope();
-    if (error) console.warn(error.message);
-    return error === null;
+    const [memory, other] = await Promise.all([this.device.popErrorScope(), this.device.popErrorScope()]);
+    if (memory) throw new Error('its graphics memory is too small for the meshes');
+    if (other) throw new Error(other.message);
+    return true;
   }
 
   // Three rows of 16 albedos.
