@@ -83,7 +83,7 @@ fn inverse_square(to_light: vec3<f32>) -> f32 {
     return 1.0 / max(dot(to_light, to_light), MINIMUM_DISTANCE_SQUARED);
 }
 
-// The sine of an angle from 0 to π/2, by its series to x¹³: exact to 1e-7 with every driver. Their own sin and cos may be
+// The sine of an angle from 0 to π/2, by its series to x¹³: within 3e-7 with every driver. Their own sin and cos may be
 // off by 2⁻¹¹ (WGSL, Accuracy of expressions), which moves the edge of a narrow cone by several pixels.
 fn exact_sin(x: f32) -> f32 {
     let s = x * x;
