@@ -83,30 +83,11 @@ fn inverse_square(to_light: vec3<f32>) -> f32 {
     return 1.0 / max(dot(to_light, to_light), MINIMUM_DISTANCE_SQUARED);
 }
 
-// The sine of an angle from 0 to π/2, by its series to x¹³: within 3e-7 with every driver. Their own sin and cos may be
-// off by 2⁻¹¹ (WGSL, Accuracy of expressions), which moves the edge of a narrow cone by several pixels.
-fn exact_sin(x: f32) -> f32 {
-    let s = x * x;
-    let tail = 1.0 - s / 72.0 * (1.0 - s / 110.0 * (1.0 - s / 156.0));
-    return x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * tail)));
-}
-
-// The cosine of an angle from 0° to 90°: 1 − 2 sin²(x/2), which keeps the digits of small angles.
-fn cos_degrees(angle: f32) -> f32 {
-    let half = exact_sin(radians(0.5 * angle));
-    return 1.0 - 2.0 * half * half;
-}
-
-// The tangent of an angle from 0° to below 90°.
-fn tan_degrees(angle: f32) -> f32 {
-    return exact_sin(radians(angle)) / cos_degrees(angle);
-}
-
 // The profile of a spotlight: 1 inside, 0 outside, Hermite's cubic of the cosine between.
 // cone_angle: half angle in degrees; penumbra: the fraction of it over which the light fades.
 fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
-    let cos_outer = cos_degrees(cone_angle);
-    let cos_inner = cos_degrees(cone_angle * (1.0 - penumbra));
+    let cos_outer = cos(radians(cone_angle));
+    let cos_inner = cos(radians(cone_angle * (1.0 - penumbra)));
     if cos_inner - cos_outer < 1e-6 {
         return select(0.0, 1.0, cos_angle >= cos_outer);
     }
