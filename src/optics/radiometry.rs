@@ -25,7 +25,7 @@ pub fn inverse_square(to_light: Vec3) -> f32 {
 pub fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
     let cos_outer = cone_angle.to_radians().cos();
     let cos_inner = (cone_angle * (1.0 - penumbra)).to_radians().cos();
-    if cos_inner - cos_outer < 1e-6 {
+    if cos_inner <= cos_outer {
         return if cos_angle >= cos_outer { 1.0 } else { 0.0 };
     }
     let t = ((cos_angle - cos_outer) / (cos_inner - cos_outer)).clamp(0.0, 1.0);

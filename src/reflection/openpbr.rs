@@ -22,6 +22,9 @@ use crate::{
     shader::wgsl,
 };
 
+/// The smallest cosine that is told from 0.
+const GRAZING: f32 = 1e-9;
+
 const fn fraction(name: &'static str, default: f32) -> Parameter {
     Parameter::number(name, 0.0..=1.0, default)
 }
@@ -529,10 +532,11 @@ impl ReflectionModel for OpenPbr {
     // The body is diffuse, everything else specular.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
-        // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
-        if l.z.min(v.z) < 1e-9 {
+        if l.z.min(v.z) <= 0.0 {
             return Terms::default();
         }
+        // At more grazing angles the quotients would leave the range of f32.
+        let (l, v) = (l.with_z(l.z.max(GRAZING)), v.with_z(v.z.max(GRAZING)));
         let p = &self.prepared;
         let cos_d = 0.5 * (l + v).length();
         let (of_l, of_v, mean) = (self.boundaries.at(l.z), self.boundaries.at(v.z), self.boundaries.mean());

@@ -74,6 +74,7 @@ mod plot;
 mod plots;
 mod plugins;
 mod pointer;
+mod precision;
 mod presentation;
 mod probe;
 mod reference_renderer;

@@ -72,7 +72,7 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     if cos_i <= 0.0 || dot(frame.n, v) <= 0.0 {
         return Terms(vec3(0.0), vec3(0.0), vec3(0.0));
     }
-    let rough = hapke_roughen(l, v, frame.n, tan(radians(m.mean_slope)));
+    let rough = hapke_roughen(l, v, frame.n, tan_degrees(m.mean_slope));
     let apart = length(l - v);
     let together = length(l + v);
     let phase = 0.5 * (1.0 + m.backscatter) * hapke_lobe(m.grain_asymmetry, apart)

@@ -6,6 +6,9 @@ fn openpbr_facets(h: vec3<f32>, l: vec3<f32>, v: vec3<f32>, alpha: vec2<f32>) ->
     return ggx(h, alpha) * separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha));
 }
 
+// The smallest cosine that is told from 0.
+const OPENPBR_GRAZING: f32 = 1e-9;
+
 // The fraction of light that passes the coat once.
 fn openpbr_through(mu: f32, m: Parameters) -> vec3<f32> {
     let inside = sqrt(max(1.0 - (1.0 - mu * mu) / (m.coat_ior * m.coat_ior), 1e-4));
@@ -13,11 +16,14 @@ fn openpbr_through(mu: f32, m: Parameters) -> vec3<f32> {
 }
 
 fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
-    let l = to_local(frame, light);
-    let v = to_local(frame, view);
-    if min(l.z, v.z) < 1e-9 {
+    var l = to_local(frame, light);
+    var v = to_local(frame, view);
+    if min(l.z, v.z) <= 0.0 {
         return Terms(vec3(0.0), vec3(0.0), vec3(0.0));
     }
+    // At more grazing angles the quotients would leave the range of f32.
+    l.z = max(l.z, OPENPBR_GRAZING);
+    v.z = max(v.z, OPENPBR_GRAZING);
     let h = half_vector(l, v);
     let cos_d = 0.5 * length(l + v);
     // n_a, n_b, the ratio at the boundary, the share of the film.
