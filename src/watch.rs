@@ -8,6 +8,7 @@
 //! remembered with the state of its files, so that nothing is lost in folders that appear, vanish and come back, behind
 //! links that lead elsewhere, or when the system drops events.
 
+use crate::files::Shown as _;
 use std::{
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
@@ -423,7 +424,7 @@ impl Worker {
                 }
                 Err(error) if is_absent(&error) => self.aftershock = Some(Instant::now() + AFTERSHOCK),
                 Err(error) => {
-                    problem = Some(format!("{}: {}", folder.display(), reason(&error)));
+                    problem = Some(format!("{}: {}", folder.shown(), reason(&error)));
                 }
             }
         }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Subcommand;
 
 use super::{Options, Outcome, complain, outputs, print_paths};
+use crate::files::Shown as _;
 use crate::{failure::Failure, library::assets, registry::Registry};
 
 #[derive(Subcommand, Debug)]
@@ -23,13 +24,13 @@ pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> O
     let exported = assets::export(folder, registry).map_err(|e| Failure::Write(e.to_string()))?;
     print_paths(exported.written.iter().map(PathBuf::as_path))?;
     for path in &exported.kept {
-        complain(format_args!("{} differs from the built-in file and was kept", path.display()));
+        complain(format_args!("{} differs from the built-in file and was kept", path.shown()));
     }
     options.tell(format_args!(
         "wrote {} files, {} already existed; run lcm view --assets {} and edit them",
         exported.written.len(),
         exported.same + exported.kept.len(),
-        folder.display()
+        folder.shown()
     ));
     Ok(())
 }

@@ -102,6 +102,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                     counts.push(counted(loaded.scene.variants.len(), "variant"));
                 }
                 let _ = writeln!(listed, "{}: valid: {}", source.name(), counts.join(", "));
+                for said in loaded.scene.beyond_the_range_of_views(&workshop.registry) {
+                    let _ = writeln!(listed, "{}: {said}", source.name());
+                }
             }
             Err((said, found)) => {
                 invalid += 1;
@@ -111,7 +114,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                 }
             }
         }
-        reports.push(Report { file: source.name(), valid: problems.is_empty(), problems });
+        reports.push(Report { file: source.plain_name(), valid: problems.is_empty(), problems });
     }
     if arguments.json {
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();

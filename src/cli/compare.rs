@@ -15,6 +15,7 @@ use super::{
     views::{Choice, find},
     workshop::{Workshop, drawable},
 };
+use crate::files::Shown as _;
 use crate::{
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     export::write::inputs,
@@ -212,7 +213,7 @@ impl View<'_> {
         match self.input {
             Input::Picture(name, _) => Side { file: name.clone(), view: None, name: None },
             Input::Scene(source, scene) => Side {
-                file: source.name(),
+                file: source.plain_name(),
                 view: LETTERS.get(self.view).copied(),
                 name: match self.view.checked_sub(1) {
                     None => scene.name.clone(),
@@ -349,7 +350,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     // The numbers matter even if the picture cannot be written.
     if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {
         write(output, size, &rgb8, &about(&read, comparison, registry))?;
-        options.tell(format_args!("wrote {}", output.display()));
+        options.tell(format_args!("wrote {}", output.shown()));
     }
     // Limits matter even if nobody reads the numbers.
     if broken.is_empty() { printed } else { Err(Failure::Invalid(broken.join("\n"))) }
@@ -368,7 +369,7 @@ fn write(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -
     outputs::tidy_beside(output);
     png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
         io::ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::Write(format!("{} could not be written: {e}", output.display())),
+        _ => Failure::Write(format!("{} could not be written: {e}", output.shown())),
     })
 }
 

@@ -8,6 +8,7 @@ use super::{
     print, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
+use crate::files::Shown as _;
 use crate::{
     custom,
     failure::Failure,
@@ -66,9 +67,9 @@ fn write(id: &str, text: &str, options: Options, places: &Places, known: &Regist
     let path: PathBuf = folder.join(format!("{id}.{}", custom::EXTENSION));
     write_new(&path, text).map_err(|e| match e.kind() {
         io::ErrorKind::AlreadyExists => {
-            Failure::Write(format!("{} already exists and was kept", path.display()))
+            Failure::Write(format!("{} already exists and was kept", path.shown()))
         }
-        _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
+        _ => Failure::Write(format!("{} could not be written: {e}", path.shown())),
     })?;
     print_paths([path.as_path()])?;
     let flags = places.flags();

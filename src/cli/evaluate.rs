@@ -207,8 +207,16 @@ impl Answers {
 /// The model with a given id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
     check::reflection_model(registry, id)
-        .map_err(|rule| Failure::Usage(format!("MODEL is {}, but {rule}", quoted(id))))?;
+        .map_err(|rule| unknown(registry, id, format!("MODEL is {}, but {rule}", quoted(id))))?;
     registry.model(id).ok_or_else(|| Failure::Usage(format!("there is no model {}", quoted(id))))
+}
+
+/// The failure of a command that names a model which is not known: a mistake in its file is none of the command line.
+pub(super) fn unknown(registry: &Registry, id: &str, what: String) -> Failure {
+    match registry.broken_model(id) {
+        Some(_) => Failure::Invalid(format!("error: {what}")),
+        None => Failure::Usage(what),
+    }
 }
 
 impl Settings {

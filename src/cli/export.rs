@@ -11,6 +11,7 @@ use super::{
     views,
     workshop::{Workshop, drawable},
 };
+use crate::files::Shown as _;
 use crate::{
     export::{
         self, ExportError, FORMS, Form, Progress, Request, view,
@@ -90,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     write(&export, &place, &before).map_err(unwritten)?;
     of_view.iter().for_each(|note| options.tell(note));
     export.notes.iter().for_each(|note| options.tell(note));
-    options.tell(format_args!("wrote {}", place.display()));
+    options.tell(format_args!("wrote {}", place.shown()));
     Ok(())
 }
 

@@ -9,6 +9,7 @@ use clap::Subcommand;
 use serde::Serialize;
 
 use super::{Options, Outcome, Reach, complain, print, print_text};
+use crate::files::Shown as _;
 use crate::{
     failure::Failure,
     lesson::{Lesson, Problem, shipped::LESSONS},
@@ -59,8 +60,8 @@ struct Report {
 }
 
 /// The file in which the problems of a path are.
-fn file_of(path: &Path) -> String {
-    if path.is_dir() { path.join("lesson.md") } else { path.to_owned() }.display().to_string()
+fn file_of(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join("lesson.md") } else { path.to_owned() }
 }
 
 pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> Outcome {
@@ -91,16 +92,17 @@ fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -
             Ok(lesson) => {
                 let tasks = lesson.steps.iter().filter(|step| step.task.is_some()).count();
                 let (steps, tasks) = (plural(lesson.steps.len(), "step"), plural(tasks, "task"));
-                let _ = writeln!(listed, "{}: valid: {steps}, {tasks}", path.display());
+                let _ = writeln!(listed, "{}: valid: {steps}, {tasks}", path.shown());
             }
             Err(found) => problems = found,
         }
         let file = file_of(path);
         if !json {
             for problem in &problems {
-                complain(problem.annotated(&file));
+                complain(problem.annotated(&file.shown().to_string()));
             }
         }
+        let file = file.to_string_lossy().into_owned();
         reports.push(Report { file, valid: problems.is_empty(), problems });
     }
     if json {
@@ -128,7 +130,7 @@ fn show(file: &Path, registry: &Registry) -> Outcome {
     match Lesson::read(file, registry) {
         Ok(lesson) => print_text(&lesson.to_text()),
         Err(problems) => {
-            let name = file_of(file);
+            let name = file_of(file).shown().to_string();
             let lines: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
             Err(Failure::Invalid(lines.join("\n")))
         }

@@ -11,6 +11,7 @@ use super::{
     views::find,
     workshop::{Workshop, drawable},
 };
+use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
@@ -124,7 +125,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             scene.variants[view - 1].material.set(*name, value.clone());
         }
         write(file, &scene, registry, expected)?;
-        options.tell(format_args!("wrote {}", file.display()));
+        options.tell(format_args!("wrote {}", file.shown()));
     }
     Ok(())
 }

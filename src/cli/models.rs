@@ -1,6 +1,7 @@
 //! `lcm models`: the reflection models, shading models, light types and object types.
 
 use super::{Options, Outcome, custom, print, print_text, workshop::Places};
+use crate::files::Shown as _;
 use crate::{
     failure::Failure,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
@@ -268,7 +269,7 @@ fn table(registry: &Registry) -> String {
             d.laws.list().map(|(name, kept)| if kept { name.to_owned() } else { format!("not {name}") });
         let _ = writeln!(text, "  {:ids$}  {}", "", laws.join(", "));
         if let Some(file) = registry.custom_file(d.id) {
-            let _ = writeln!(text, "  {:ids$}  {}", "", file.display());
+            let _ = writeln!(text, "  {:ids$}  {}", "", file.shown());
         }
         parameters(&mut text, ids, m.parameters);
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Options, Outcome};
+use crate::files::Shown as _;
 use crate::{
     failure::Failure,
     registry::Registry,
@@ -15,6 +16,6 @@ use crate::{
 pub(super) fn run(file: &Path, options: Options, registry: &Registry) -> Outcome {
     save::write(file, &Scene::default(), registry, Expected::Nothing)
         .map_err(|error| Failure::Write(error.to_string()))?;
-    options.tell(format_args!("wrote {}", file.display()));
+    options.tell(format_args!("wrote {}", file.shown()));
     Ok(())
 }

@@ -8,6 +8,7 @@ use std::{
 use png::{ColorType, Decoder, Transformations};
 
 use super::render::MAX_SIDE;
+use crate::files::Shown as _;
 use crate::{compare::Shown, failure::Failure, files, scene::load::MAX_PICTURE_BYTES};
 
 /// True if a path leads to a picture: its content begins as one, or its name says so.
@@ -18,7 +19,7 @@ pub(super) fn is_picture(path: &Path) -> bool {
 
 /// Reads a PNG file: its colours with eight bits, as they are.
 pub(super) fn read(path: &Path) -> Result<Shown, Failure> {
-    let name = path.display();
+    let name = path.shown();
     let bytes = files::read_input(path, MAX_PICTURE_BYTES)
         .map_err(|error| Failure::Invalid(format!("{name} could not be read: {error}")))?;
     decode(&bytes).map_err(|what| Failure::Invalid(format!("{name}: {what}")))

@@ -13,6 +13,7 @@ use super::{
     outputs, print, progress,
     workshop::{Workshop, valid},
 };
+use crate::files::Shown as _;
 use crate::{
     curves::{Channel, CurveError, Detail, Format, Kind, Setup, Sheet, Subject, curve, slice, subjects_with},
     export::write::inputs,
@@ -92,9 +93,10 @@ fn wanted(word: &str) -> Vec<Wanted<'_>> {
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
-    let format = arguments.output.as_deref().map(|file| {
-        Format::of(file).map_err(|rule| Failure::Usage(format!("-o {}: {rule}", file.display())))
-    });
+    let format = arguments
+        .output
+        .as_deref()
+        .map(|file| Format::of(file).map_err(|rule| Failure::Usage(format!("-o {}: {rule}", file.shown()))));
     let format = format.transpose()?;
     let setup = Setup::new(arguments.kind, arguments.theta_i, arguments.phi_i).map_err(|error| {
         let option = match error {
@@ -124,7 +126,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     };
     write(file, &format.bytes(&sheet)?)?;
     sheet.notes().iter().for_each(complain);
-    options.tell(format_args!("wrote {}", file.display()));
+    options.tell(format_args!("wrote {}", file.shown()));
     Ok(())
 }
 
@@ -210,7 +212,7 @@ fn sheet(
 /// Writes a file whole or not at all.
 fn write(file: &Path, bytes: &[u8]) -> Outcome {
     let failed =
-        |error: files::FileError| Failure::Write(format!("{} could not be written: {error}", file.display()));
+        |error: files::FileError| Failure::Write(format!("{} could not be written: {error}", file.shown()));
     outputs::tidy_beside(file);
     let mut output = Output::open(file).map_err(failed)?;
     output.write_all(bytes).map_err(|error| failed(error.into()))?;

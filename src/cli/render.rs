@@ -17,6 +17,7 @@ use super::{
     views::{self, Part, Plan},
     workshop::{Workshop, drawable, invalid, not_on_cpu},
 };
+use crate::files::Shown as _;
 use crate::{
     caption,
     channel::{DebugChannel, Setting},
@@ -240,7 +241,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let mut problems = Vec::new();
     for source in &sources {
         match source.open(workshop, options) {
-            Ok(scene) => scenes.push(changes.apply(scene)),
+            Ok(scene) => {
+                let mut scene = changes.apply(scene);
+                let mut beyond = scene.bring_into_range(&workshop.registry);
+                beyond.extend(scene.beyond_the_range_of_views(&workshop.registry));
+                beyond.iter().for_each(|said| options.tell(format_args!("{}: {said}", source.name())));
+                scenes.push(scene);
+            }
             Err(Failure::Invalid(problem)) => problems.push(problem),
             Err(other) => return Err(other),
         }
@@ -306,7 +313,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|e| {
-                Failure::Write(format!("the folder {} could not be created: {e}", folder.display()))
+                Failure::Write(format!("the folder {} could not be created: {e}", folder.shown()))
             })?;
         }
         let job = Job {
@@ -326,9 +333,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         remarks.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", source.name())));
         bar.inc(1);
         if bar.is_hidden() {
-            options.tell(format_args!("wrote {}", file.display()));
+            options.tell(format_args!("wrote {}", file.shown()));
         } else {
-            bar.println(printable(&format!("wrote {}", file.display())));
+            bar.println(printable(&format!("wrote {}", file.shown())));
         }
     }
     bar.finish_and_clear();
@@ -413,7 +420,7 @@ impl Painter {
         let (rgb8, [width, height]) = captioned(job, registry, rgb8);
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
-            _ => Failure::Write(format!("{} could not be written: {e}", job.file.display())),
+            _ => Failure::Write(format!("{} could not be written: {e}", job.file.shown())),
         })?;
         Ok(remarks)
     }
@@ -428,7 +435,7 @@ impl Painter {
         let key = (width, height, job.samples);
         let failed = |e: GpuError| match e {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
-            e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
+            e => Failure::NoRenderer(format!("{}: {e}", job.file.shown())),
         };
         // Nothing stops an endless loop on a GPU.
         for object in part.scene.objects.iter().take(MOST_TRIED) {
@@ -588,7 +595,9 @@ impl Changes {
             Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
         };
         if let Some(id) = &arguments.reflection {
-            check::reflection_model(registry, id).map_err(|rule| usage("reflection", id, rule))?;
+            check::reflection_model(registry, id).map_err(|rule| {
+                super::evaluate::unknown(registry, id, format!("--reflection is {}, but {rule}", quoted(id)))
+            })?;
         }
         if let Some(id) = &arguments.shading {
             check::shading_model(registry, id).map_err(|rule| usage("shading", id, rule))?;
@@ -643,7 +652,7 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
             (Output::File, _) => {
                 return Err(Failure::Usage(format!(
                     "-o {} is one file, but there are {} scenes; name a folder",
-                    path.display(),
+                    path.shown(),
                     sources.len()
                 )));
             }
@@ -658,7 +667,7 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
             return Err(Failure::Usage(format!(
                 "{other} and {} would both be written to {}; render them one by one with -o FILE",
                 source.name(),
-                file.display()
+                file.shown()
             )));
         }
         files.push(file);
@@ -668,7 +677,7 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
 
 /// Fails unless `-o` is one picture beside the numbers on standard output.
 pub(super) fn one_picture(path: &Path) -> Outcome {
-    let usage = |why: &str| Failure::Usage(format!("-o {}: {why}", path.display()));
+    let usage = |why: &str| Failure::Usage(format!("-o {}: {why}", path.shown()));
     let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
     if stdout.iter().any(|name| path == Path::new(name)) {
         return Err(usage("standard output is for the numbers; name a PNG file"));
@@ -693,7 +702,7 @@ fn kind(path: &Path) -> Result<Output, Failure> {
         Ok(Kind::Folder) => return Ok(Output::Folder),
         Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),
         Ok(Kind::Socket | Kind::Unknown) => {
-            return Err(Failure::Write(format!("-o {} is neither a file nor a folder", path.display())));
+            return Err(Failure::Write(format!("-o {} is neither a file nor a folder", path.shown())));
         }
         Ok(Kind::File) if is_descriptor(path) => return Ok(Output::File),
         Ok(Kind::File) | Err(_) => {}
@@ -706,14 +715,13 @@ fn kind(path: &Path) -> Result<Output, Failure> {
             let png = path.with_extension("png");
             Err(Failure::Usage(format!(
                 "-o {}: only PNG files can be written; did you mean {}?",
-                path.display(),
-                png.display()
+                path.shown(),
+                png.shown()
             )))
         }
-        _ if path.is_file() => Err(Failure::Write(format!(
-            "-o {} is not a PNG file; name a PNG file or a folder",
-            path.display()
-        ))),
+        _ if path.is_file() => {
+            Err(Failure::Write(format!("-o {} is not a PNG file; name a PNG file or a folder", path.shown())))
+        }
         _ => Ok(Output::Folder),
     }
 }

@@ -13,6 +13,7 @@ use super::{
     Options, ask, progress,
     workshop::{Workshop, files_inside},
 };
+use crate::files::Shown as _;
 use crate::{
     export::payload::{Payload, unpacking},
     failure::Failure,
@@ -84,7 +85,15 @@ impl Source {
             Self::Default => "the default scene".to_owned(),
             Self::Inside(_) => INSIDE.to_owned(),
             Self::Stdin => load::STDIN.to_owned(),
-            Self::File(path) => path.display().to_string(),
+            Self::File(path) => path.shown().to_string(),
+        }
+    }
+
+    /// The name for programs.
+    pub(super) fn plain_name(&self) -> String {
+        match self {
+            Self::File(path) => path.to_string_lossy().into_owned(),
+            _ => self.name(),
         }
     }
 
@@ -105,7 +114,7 @@ impl Source {
             Self::File(path) => {
                 let bytes = load::input_bytes(path, &workshop.registry)?;
                 let options = workshop.options;
-                watched(options, || workshop.load(&bytes, &path.display().to_string(), defaults))
+                watched(options, || workshop.load(&bytes, &path.shown().to_string(), defaults))
             }
         }
     }

@@ -9,6 +9,7 @@ use std::{
 use clap::Args;
 
 use super::{Options, Outcome, outputs, progress};
+use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
@@ -80,27 +81,27 @@ fn report(arguments: &Arguments, options: Options, registry: &Registry) -> Outco
     if !had_report && free(folder, false).is_err() {
         return Err(Failure::Write(format!(
             "somebody else wrote to {} meanwhile; theirs was kept, and this report was not written",
-            folder.display()
+            folder.shown()
         )));
     }
     study.write(folder).map_err(|error| unwritten(folder, &error.into()))?;
     options.tell(format_args!(
         "wrote {} ({:.0} s)",
-        folder.join("index.html").display(),
+        folder.join("index.html").shown(),
         start.elapsed().as_secs_f64()
     ));
     Ok(())
 }
 
 fn unwritten(folder: &Path, error: &FileError) -> Failure {
-    Failure::Write(format!("{} could not be written: {error}", folder.display()))
+    Failure::Write(format!("{} could not be written: {error}", folder.shown()))
 }
 
 /// Refuses a folder with files in it: a report is replaced only at the user's request, anything else never.
 fn free(folder: &Path, overwrite: bool) -> Outcome {
     // A problem of a folder that cannot be read shows on writing.
     let Ok(mut entries) = fs::read_dir(folder) else { return Ok(()) };
-    let name = folder.display();
+    let name = folder.shown();
     match (entries.next(), study::is_report(folder)) {
         (None, _) => Ok(()),
         (_, true) if overwrite => Ok(()),

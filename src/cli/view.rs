@@ -6,6 +6,7 @@ use bevy::app::App;
 use clap::{Args, CommandFactory as _};
 
 use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
+use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
@@ -44,7 +45,7 @@ pub(super) struct Arguments {
 impl Arguments {
     /// The first argument given, for messages.
     pub(super) fn given(&self) -> Option<String> {
-        let scene = self.scene.as_ref().map(|s| s.display().to_string());
+        let scene = self.scene.as_ref().map(|s| s.shown().to_string());
         scene
             .or_else(|| self.exit_after.map(|_| "--exit-after".to_owned()))
             .or_else(|| self.capture.as_ref().map(|_| "--capture".to_owned()))
@@ -157,7 +158,7 @@ fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Fai
     if let Some(i) = shipped {
         return Ok(LessonSource::Shipped(i));
     }
-    let name = lesson.display().to_string();
+    let name = lesson.shown().to_string();
     if !lesson.exists() {
         let known: Vec<_> = LESSONS.iter().map(|lesson| lesson.id.as_str()).collect();
         let near = did_you_mean(&name, known.iter().map(|id| (*id, *id)));

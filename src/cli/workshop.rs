@@ -9,6 +9,7 @@ use std::{
 use clap::Args;
 
 use super::{Options, Outcome, complain};
+use crate::files::Shown as _;
 use crate::{
     custom::folder::{self, Reading},
     export::payload::{Payload, PayloadError},
@@ -82,7 +83,7 @@ impl Workshop {
             Reading::Known | Reading::Missing => false,
             Reading::Read => {
                 let file = self.registry.custom_file(id).unwrap_or(Path::new(id));
-                self.options.detail(format_args!("read {}", file.display()));
+                self.options.detail(format_args!("read {}", file.shown()));
                 true
             }
             Reading::Broken(_) if self.for_window => false,
@@ -91,7 +92,7 @@ impl Workshop {
                 self.registry.remove_model(id);
                 // The problems are reported by now; their place is as good as a name.
                 if let Some((path, first)) = problems.first() {
-                    let place = format!("{}:{}:{}", path.display(), first.line, first.column);
+                    let place = format!("{}:{}:{}", path.shown(), first.line, first.column);
                     self.registry.mark_broken(id, place);
                 }
                 true
@@ -219,7 +220,7 @@ impl Places {
     /// Reads the shaders, for a registry that knows all but custom models; one that cannot be read is an error. Custom models are read when they are needed.
     pub(super) fn open(&self, options: Options, known: Registry) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
-            return Err(Failure::Usage(format!("there is no folder {} for --models", named.display())));
+            return Err(Failure::Usage(format!("there is no folder {} for --models", named.shown())));
         }
         self.open_for_writing(options, known)
     }
@@ -290,7 +291,7 @@ pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
         .map(|(path, problem)| {
             // A model may be broken because of a file that it shares with others.
             let own = path.ends_with(problem.file.rsplit('/').next().unwrap_or_default());
-            annotated(problem, &if own { path.display().to_string() } else { problem.file.clone() })
+            annotated(problem, &if own { path.shown().to_string() } else { problem.file.clone() })
         })
         .collect();
     each.dedup();
@@ -321,7 +322,7 @@ pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failur
 
 /// The file on disk from which a source was read, for messages.
 pub(super) fn on_disk(registry: &Registry, file: &str) -> String {
-    registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.display().to_string())
+    registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.shown().to_string())
 }
 
 /// Fails if the shader of a model is invalid, as the files on disk have it, or other crates compiled it in. What ships

@@ -14,6 +14,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, read, source_path};
+use crate::files::Shown as _;
 use crate::{
     registry::{CustomModel, MODELS, Registry},
     shader::{
@@ -128,8 +129,8 @@ fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
         // It may be in a file that the model imports.
         let other = (problem.file != source_path(id)).then_some(&problem.file);
-        let file = other.map_or(path.display().to_string(), |source| {
-            registry.path_on_disk(source).map_or(source.clone(), |path| path.display().to_string())
+        let file = other.map_or(path.shown().to_string(), |source| {
+            registry.path_on_disk(source).map_or(source.clone(), |path| path.shown().to_string())
         });
         let place = format!("{file}:{}:{}", problem.line, problem.column);
         registry.mark_broken(id, format!("{place}: {}", problem.message));

@@ -110,7 +110,24 @@ impl Reader<'_> {
             kind: kind?,
             used_when: self.used_when(&fields),
         };
+        self.same_unit_elsewhere(named, &parameter);
         (self.mistakes.len() == before).then_some(parameter)
+    }
+
+    /// A material keeps its numbers when the model is exchanged, so they mean the same everywhere.
+    fn same_unit_elsewhere(&mut self, named: Cursor, parameter: &Parameter) {
+        let users = self.registry.material_users().filter(|(id, _)| *id != self.id);
+        let other = users.flat_map(|(id, all)| all.iter().map(move |p| (id, p))).find_map(|(id, p)| {
+            let same_type = std::mem::discriminant(&p.kind) == std::mem::discriminant(&parameter.kind);
+            let (own, theirs) = parameter.clash(p).filter(|_| p.name == parameter.name && same_type)?;
+            Some((id, own, theirs))
+        });
+        if let Some((id, own, theirs)) = other {
+            let rule = format!(
+                "it is {own} here and {theirs} in {id}, and parameters are shared by name; use that unit or another name"
+            );
+            self.wrong(named, &rule);
+        }
     }
 
     /// Parameters are shared by name, so the same name has the same type everywhere.

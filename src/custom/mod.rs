@@ -22,6 +22,7 @@
 
 use std::path::Path;
 
+use crate::files::Shown as _;
 use crate::{
     reflection::{Ambient, Declaration, Family},
     registry::{Registry, check::wgsl, compose::compose},
@@ -165,7 +166,7 @@ fn declared(
 /// The id of a file, if valid.
 fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String> {
     let id = id_of(path)
-        .ok_or_else(|| format!("the file name is {}, but it must be ID.{EXTENSION}", path.display()))?;
+        .ok_or_else(|| format!("the file name is {}, but it must be ID.{EXTENSION}", path.shown()))?;
     text::identifier(id).map_err(|rule| format!("the file name is the id of the model: {id} {rule}"))?;
     if registry.model(id).is_some() && registry.custom_file(id).is_none() {
         return Err(format!("{id} is the id of a built-in model; give the file another name"));

@@ -5,6 +5,7 @@ use super::{
     payload::{About, Payload, program_with},
     refusals::Refusals,
 };
+use crate::files::Shown as _;
 use crate::{
     files,
     parameter::{Parameter, Value, Values},
@@ -82,7 +83,7 @@ fn carry<'a>(
         let Some(Value::File(file)) = values.0.get(parameter.name) else { continue };
         let Some(path) = file.path() else { continue };
         let bytes = files::read(path, file.max_bytes()).map_err(|error| {
-            format!("{} is {}, which could not be read: {error}", parameter.name, path.display())
+            format!("{} is {}, which could not be read: {error}", parameter.name, path.shown())
         })?;
         let name = path.file_name().map_or_else(|| "file".into(), |name| name.to_string_lossy());
         let known = files.iter().find(|(place, there)| *there == bytes && place.ends_with(&*name));

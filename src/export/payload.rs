@@ -14,6 +14,7 @@ use std::{
 use memchr::memmem;
 use serde::{Deserialize, Serialize};
 
+use crate::files::Shown as _;
 use crate::files::{self, FileError};
 
 /// The name with which the place begins.
@@ -70,7 +71,7 @@ pub enum PayloadError {
     #[error("the file of this program could not be read: {0}")]
     Unreadable(#[from] FileError),
     /// Its files cannot be unpacked.
-    #[error("the files inside this program could not be unpacked to {}: {error}", .within.display())]
+    #[error("the files inside this program could not be unpacked to {}: {error}", .within.shown())]
     Packed {
         /// The folder for those of all programs.
         within: PathBuf,
@@ -78,7 +79,7 @@ pub enum PayloadError {
         error: FileError,
     },
     /// A file that was unpacked is gone.
-    #[error("{} has no {file}, which this program unpacked there; {}", .folder.display(), unpacking(.folder))]
+    #[error("{} has no {file}, which this program unpacked there; {}", .folder.shown(), unpacking(.folder))]
     Incomplete {
         /// The folder of this program's files.
         folder: PathBuf,
@@ -93,7 +94,7 @@ pub enum PayloadError {
 /// The remedy for damaged files in the folder of a program.
 #[must_use]
 pub fn unpacking(folder: &Path) -> String {
-    format!("delete the folder {}, and it is unpacked anew", folder.display())
+    format!("delete the folder {}, and it is unpacked anew", folder.shown())
 }
 
 /// The scene file's path within the content.

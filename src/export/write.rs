@@ -7,6 +7,7 @@ use std::{
 };
 
 use super::{Export, File, Form, Makes};
+use crate::files::Shown as _;
 use crate::{
     files::{self, Before, Draft, FileError, FolderDraft, Refused},
     registry::Registry,
@@ -17,34 +18,34 @@ use crate::{
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// There is something already.
-    #[error("{} exists; it was not overwritten", .0.display())]
+    #[error("{} exists; it was not overwritten", .0.shown())]
     Exists(PathBuf),
     /// It is of another kind than the export.
-    #[error("{} {}; it was not overwritten", .0.display(), .1)]
+    #[error("{} {}; it was not overwritten", .0.shown(), .1)]
     OtherKind(PathBuf, &'static str),
     /// It is the folder in which this program runs, or around it.
-    #[error("{} is the folder in which this program runs, or around it; name a new folder in it", .0.display())]
+    #[error("{} is the folder in which this program runs, or around it; name a new folder in it", .0.shown())]
     Here(PathBuf),
     /// It is a folder of something else.
-    #[error("{} has no {}, so it is no export of this form; it was not overwritten", .0.display(), .1)]
+    #[error("{} has no {}, so it is no export of this form; it was not overwritten", .0.shown(), .1)]
     Foreign(PathBuf, String),
     /// It holds something that no export of this form has.
-    #[error("{} has {}, which is of no export of this form; it was not overwritten", .0.display(), .1.display())]
+    #[error("{} has {}, which is of no export of this form; it was not overwritten", .0.shown(), .1.shown())]
     Stranger(PathBuf, PathBuf),
     /// It is a file of another kind.
-    #[error("{} is a file of another kind than the export; it was not overwritten", .0.display())]
+    #[error("{} is a file of another kind than the export; it was not overwritten", .0.shown())]
     OtherFile(PathBuf),
     /// Its name is longer than file systems take.
-    #[error("{} cannot be written: its name has {} bytes, and {NAME} is the limit", .0.display(), .1)]
+    #[error("{} cannot be written: its name has {} bytes, and {NAME} is the limit", .0.shown(), .1)]
     Name(PathBuf, usize),
     /// It is read by this command, or holds what is.
     #[error(transparent)]
     Input(#[from] Refused),
     /// Somebody else wrote there since it was examined.
-    #[error("somebody else wrote {} while this export was made; theirs was kept, and this one was not written", .0.display())]
+    #[error("somebody else wrote {} while this export was made; theirs was kept, and this one was not written", .0.shown())]
     Taken(PathBuf),
     /// The system refuses.
-    #[error("{} could not be written: {}", .0.display(), .1)]
+    #[error("{} could not be written: {}", .0.shown(), .1)]
     System(PathBuf, FileError),
 }
 

@@ -9,6 +9,7 @@ use std::{
 
 use tempfile::TempDir;
 
+use super::shown::Shown as _;
 use super::{
     FileError,
     before::{Before, Turn},
@@ -134,7 +135,7 @@ impl FolderDraft {
 pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let new: Vec<_> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
     if let Some(file) = folder.ancestors().find(|path| path.exists()).filter(|path| !path.is_dir()) {
-        let message = format!("{} is not a folder", file.display());
+        let message = format!("{} is not a folder", file.shown());
         return Err(io::Error::new(io::ErrorKind::NotADirectory, message).into());
     }
     // Known until the end, in case this process is ended meanwhile.

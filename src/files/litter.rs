@@ -7,6 +7,7 @@ use std::{
     time::{Duration, UNIX_EPOCH},
 };
 
+use super::shown::Shown as _;
 use super::{
     FileError,
     draft::{fill, open_to_overwrite},
@@ -44,10 +45,10 @@ pub struct Unfinished {
 
 impl std::fmt::Display for Unfinished {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let copy = self.copy.display();
+        let copy = self.copy.shown();
         match &self.file {
             Some(file) => {
-                write!(f, "{} may be incomplete: saving it was interrupted", file.display())?;
+                write!(f, "{} may be incomplete: saving it was interrupted", file.shown())?;
                 write!(f, ". Its whole content is in {copy}; use that, or delete it.")
             }
             None => {

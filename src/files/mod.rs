@@ -22,7 +22,7 @@
 //!
 //! To report:
 //! - [`words()`]: a failure of the system without its number.
-//! - [`printable`]: a text without the characters that a terminal would act on.
+//! - [`printable`]: a text without the characters that a terminal would act on; [`Shown`]: a path on one line.
 //!
 //! # How a file is replaced
 //!
@@ -66,7 +66,7 @@ pub use inside::inside;
 pub use litter::{Unfinished, tidy};
 pub use living::give_up;
 pub use output::{Output, PNG, Refused, Signature, may_overwrite, spare};
-pub use shown::printable;
+pub use shown::{OnOneLine, Shown, printable};
 pub use stamp::Stamp;
 pub use words::words;
 
@@ -137,7 +137,7 @@ pub enum FileError {
     #[error("it is larger than {}", size(*.0))]
     TooLarge(u64),
     /// It was only partly overwritten; the new content is complete in another file.
-    #[error("{}; it is incomplete now; its complete new content is in {}", words(.error), .copy.display())]
+    #[error("{}; it is incomplete now; its complete new content is in {}", words(.error), .copy.shown())]
     Unfinished {
         /// The file that holds the whole content.
         copy: PathBuf,
@@ -148,7 +148,7 @@ pub enum FileError {
     #[error("somebody else wrote there meanwhile")]
     Taken,
     /// It is not in the folder in which it must be.
-    #[error("it is outside the folder {}", .0.display())]
+    #[error("it is outside the folder {}", .0.shown())]
     Outside(PathBuf),
     /// A failure of the operating system.
     #[error("{}", words(.0))]

@@ -8,6 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use super::shown::Shown as _;
 use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
 
 /// The longest wait for a reader of a named pipe.
@@ -39,7 +40,7 @@ pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n
 #[derive(Debug, thiserror::Error)]
 pub enum Refused {
     /// It is one of the inputs, or a folder that holds one.
-    #[error("{} {}; it was not overwritten", .output.display(), overlap(.output, .input))]
+    #[error("{} {}; it was not overwritten", .output.shown(), overlap(.output, .input))]
     Input {
         /// The output.
         output: PathBuf,
@@ -47,7 +48,7 @@ pub enum Refused {
         input: PathBuf,
     },
     /// There is a file of another format.
-    #[error("{} exists and is not {what}; it was not overwritten", .output.display())]
+    #[error("{} exists and is not {what}; it was not overwritten", .output.shown())]
     Foreign {
         /// The output.
         output: PathBuf,
@@ -55,7 +56,7 @@ pub enum Refused {
         what: &'static str,
     },
     /// The existing file cannot be examined.
-    #[error("{} exists and could not be examined ({error}); it was not overwritten", .output.display())]
+    #[error("{} exists and could not be examined ({error}); it was not overwritten", .output.shown())]
     Unknown {
         /// The output.
         output: PathBuf,
@@ -69,9 +70,9 @@ fn overlap(output: &Path, input: &Path) -> String {
     if matches!((path::absolute(output), path::absolute(input)), (Ok(output), Ok(input)) if output == input) {
         "is read by this command".to_owned()
     } else if output.is_dir() {
-        format!("holds {}, which is read by this command", input.display())
+        format!("holds {}, which is read by this command", input.shown())
     } else {
-        format!("is the same file as {}, which is read by this command", input.display())
+        format!("is the same file as {}, which is read by this command", input.shown())
     }
 }
 

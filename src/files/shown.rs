@@ -1,6 +1,10 @@
 //! Texts made safe to show.
 
-use std::borrow::Cow;
+use std::{
+    borrow::Cow,
+    fmt::{self, Write as _},
+    path::Path,
+};
 
 /// A text without the characters that a terminal would act on instead of showing them: control characters other than
 /// line ends and tabs, and those that change the direction of writing, are written as escapes such as `\u{1b}`. File
@@ -21,6 +25,35 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// Paths in messages.
+pub trait Shown {
+    /// The path on one line: a file whose name holds line ends forges no lines of a message.
+    fn shown(&self) -> OnOneLine<'_>;
+}
+
+impl Shown for Path {
+    fn shown(&self) -> OnOneLine<'_> {
+        OnOneLine(self)
+    }
+}
+
+/// A path, written on one line.
+#[derive(Clone, Copy, Debug)]
+pub struct OnOneLine<'a>(&'a Path);
+
+impl fmt::Display for OnOneLine<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.to_string_lossy().chars() {
+            if is_unfit(c) || matches!(c, '\n' | '\t' | '\u{2028}' | '\u{2029}') {
+                write!(f, "{}", c.escape_default())?;
+            } else {
+                f.write_char(c)?;
+            }
+        }
+        Ok(())
+    }
+}
+
 fn is_unfit(c: char) -> bool {
     c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
@@ -28,6 +61,12 @@ fn is_unfit(c: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_path_takes_one_line() {
+        let path = Path::new("scenes/a\nerror: b\t\u{2028}c\u{1b}[31m größe.json");
+        assert_eq!(path.shown().to_string(), r"scenes/a\nerror: b\t\u{2028}c\u{1b}[31m größe.json");
+    }
 
     #[test]
     fn what_a_terminal_obeys_is_written_as_an_escape() {

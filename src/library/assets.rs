@@ -8,6 +8,7 @@ use std::{
 
 use thiserror::Error;
 
+use crate::files::Shown as _;
 pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
@@ -32,7 +33,7 @@ pub const EXAMPLES: &[(&str, &str)] = &[
 #[derive(Debug, Error)]
 pub enum AssetError {
     /// It has no shaders.
-    #[error("--assets is {}, but {rule}", .folder.display())]
+    #[error("--assets is {}, but {rule}", .folder.shown())]
     NoShaders {
         /// The folder.
         folder: PathBuf,
@@ -40,10 +41,10 @@ pub enum AssetError {
         rule: String,
     },
     /// It is a file.
-    #[error("--models is {}, but it must be a folder", .0.display())]
+    #[error("--models is {}, but it must be a folder", .0.shown())]
     NotAFolder(PathBuf),
     /// It, or something in it, could not be written.
-    #[error("{} could not be written: {error}", .path.display())]
+    #[error("{} could not be written: {error}", .path.shown())]
     Write {
         /// The file or folder.
         path: PathBuf,
@@ -125,10 +126,10 @@ fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
     }
     let inside = folder.join("assets");
     let hint = if inside.join("shaders").is_dir() {
-        format!("; did you mean {}?", inside.display())
+        format!("; did you mean {}?", inside.shown())
     } else if folder.file_name().is_some_and(|n| n == "shaders") && folder.is_dir() {
         let above = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        format!("; did you mean {}?", above.display())
+        format!("; did you mean {}?", above.shown())
     } else if !folder.exists() {
         "; there is no such folder: `lcm assets export FOLDER` makes one".to_owned()
     } else {
@@ -276,7 +277,7 @@ pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = files::folder_of(path);
     // A file in the place of the folder must not look as if the file itself were there.
     fs::create_dir_all(folder)
-        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
+        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.shown())))?;
     Ok(files::create(path, text.as_bytes())?)
 }
 
@@ -327,7 +328,7 @@ mod tests {
                 .map(|e| e.to_string())
                 .unwrap_or_default()
         };
-        let meant = format!("did you mean {}?", root.join("assets").display());
+        let meant = format!("did you mean {}?", root.join("assets").shown());
         assert!(said(Some(root), None).contains(&meant));
         assert!(said(Some(&root.join("assets/shaders")), None).contains(&meant));
         assert!(said(Some(&root.join("none")), None).contains("there is no such folder"));

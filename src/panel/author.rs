@@ -14,6 +14,7 @@ use super::{
     },
     theme::{self, Palette},
 };
+use crate::files::Shown as _;
 use crate::{custom::source_path, library::status::Trouble, registry::Registry};
 
 /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it,
@@ -65,7 +66,7 @@ pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Actio
         let open = ui
             .add_enabled(file.is_some(), Button::new("Open in editor"))
             .on_disabled_hover_text(BUILT_IN)
-            .on_hover_text(file.map_or_else(String::new, |f| f.display().to_string()));
+            .on_hover_text(file.map_or_else(String::new, |f| f.shown().to_string()));
         if open.clicked() {
             actions.push(Action::Model(ModelCommand::EditShown));
         }
@@ -190,7 +191,7 @@ fn said_of(ui: &mut Ui, session: &Session, checked: &Result<String, NameProblem>
     match checked {
         Ok(id) => {
             let path = session.shaders.folders.file_of(&source_path(id));
-            let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
+            let path = path.map_or_else(|| source_path(id), |p| p.shown().to_string());
             ui.label(
                 RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),
             );

@@ -5,6 +5,7 @@ use super::{
     progress, reload, settings,
     state::{Effect, LessonSource, Question, Session, Severity},
 };
+use crate::files::Shown as _;
 use crate::{lesson::Lesson, registry::Registry};
 
 /// Carries out an effect that needs files. Returns the effects that follow, among them the one given
@@ -32,7 +33,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 session.say_about(
                     &path,
                     Severity::Error,
-                    format!("{} was not opened; {} is still shown.", path.display(), session.title()),
+                    format!("{} was not opened; {} is still shown.", path.shown(), session.title()),
                 );
                 Vec::new()
             }

@@ -32,7 +32,12 @@ pub fn follow_registry(session: impl DerefMut<Target = Session>, registry: &Regi
 
 /// The same where the last step gave objects another model: what follows from it belongs to that step.
 pub fn follow_model(session: &mut Session, registry: &Registry) {
-    follow(session, registry, true);
+    follow(&mut *session, registry, true);
+    for said in session.document.beyond_the_range_of_views(registry) {
+        if session.messages.iter().all(|known| known.text != said) {
+            session.say(Severity::Info, said);
+        }
+    }
 }
 
 fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, within_step: bool) {

@@ -3,6 +3,7 @@
 use std::{io, path::Path};
 
 use super::state::{Progress, Session, Severity};
+use crate::files::Shown as _;
 use crate::{
     files::{self, FileError, tidy},
     library::assets::data_folder,
@@ -20,7 +21,7 @@ pub fn load(folder: &Path) -> (Progress, Option<String>) {
     let unreadable = |why: &dyn std::fmt::Display| {
         format!(
             "What you have done of the lessons cannot be read from {} ({why}); the lessons begin anew.",
-            path.display()
+            path.shown()
         )
     };
     let bytes = match files::read(&path, MAX_BYTES) {
@@ -52,9 +53,8 @@ pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String
         text.push('\n');
         files::write(&path, text.as_bytes())
     };
-    write().map_err(|e| {
-        format!("What you have done of the lessons cannot be written to {}: {e}.", path.display())
-    })
+    write()
+        .map_err(|e| format!("What you have done of the lessons cannot be written to {}: {e}.", path.shown()))
 }
 
 /// Reads what was done in earlier sessions into the state; says so when it cannot be read.

@@ -8,6 +8,7 @@ use super::{
     state::{Action, Answer, Offer, Question, Session},
     theme::{self, Palette},
 };
+use crate::files::Shown as _;
 
 /// Shows the open question. Enter gives the first answer, which loses nothing; Escape the last.
 pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
@@ -71,14 +72,14 @@ fn words(session: &Session, question: &Question) -> Words {
             let what = if parts.len() == 1 { "a part" } else { "parts" };
             (
                 "Use the defaults?",
-                format!("{} lacks {what} that every scene has. Shall the defaults be used?", path.display()),
+                format!("{} lacks {what} that every scene has. Shall the defaults be used?", path.shown()),
                 parts.iter().map(|p| (p.name.clone(), format!("default: {}", p.default))).collect(),
                 vec![("Use the defaults", Answer::UseDefaults), ("Do not open", Answer::Cancel)],
             )
         }
         Question::EmptyFile { path } => (
             "Load the default scene?",
-            format!("{} is empty.", path.display()),
+            format!("{} is empty.", path.shown()),
             Vec::new(),
             vec![("Load the default scene", Answer::UseDefaults), ("Cancel", Answer::Cancel)],
         ),
@@ -86,7 +87,7 @@ fn words(session: &Session, question: &Question) -> Words {
             "The file has changed",
             format!(
                 "{} was changed by another program since it was read. Replace it with what is on screen, or reload it and lose what is on screen?",
-                path.display()
+                path.shown()
             ),
             Vec::new(),
             vec![
@@ -97,19 +98,19 @@ fn words(session: &Session, question: &Question) -> Words {
         ),
         Question::ReplaceExport { path, .. } => (
             "Replace it?",
-            format!("{} exists. Replace it with the export?", path.display()),
+            format!("{} exists. Replace it with the export?", path.shown()),
             Vec::new(),
             vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
         ),
         Question::ReplaceScene { path } => (
             "Replace it?",
-            format!("{} exists. Replace it with a copy of this scene?", path.display()),
+            format!("{} exists. Replace it with a copy of this scene?", path.shown()),
             Vec::new(),
             vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
         ),
         Question::ReplacePicture { path, .. } => (
             "Replace it?",
-            format!("{} exists. Replace it with the new picture?", path.display()),
+            format!("{} exists. Replace it with the new picture?", path.shown()),
             Vec::new(),
             vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
         ),
@@ -117,7 +118,7 @@ fn words(session: &Session, question: &Question) -> Words {
             "Reload from disk?",
             format!(
                 "{} was changed by another program, and there are changes here that are not saved. Reload it and lose your changes, or keep them? If you keep them, saving overwrites the file.",
-                path.display()
+                path.shown()
             ),
             Vec::new(),
             vec![
@@ -137,7 +138,7 @@ fn recovery(session: &Session, offer: &Offer) -> Words {
     if let Err(problem) = scene {
         text += " The recovery copy can't be read.";
         // Behind the name of the file come line and column.
-        let at = problem.strip_prefix(&format!("{}:", file.display()));
+        let at = problem.strip_prefix(&format!("{}:", file.shown()));
         let problem = at.map_or_else(|| problem.clone(), |at| format!("line {at}"));
         details.push(("Problem".to_owned(), problem));
         details.push(("Copy".to_owned(), file.display().to_string()));
@@ -148,7 +149,7 @@ fn recovery(session: &Session, offer: &Offer) -> Words {
     if shown.is_some() && shown != *at {
         text += &format!(" Recovering them closes “{}”.", session.title());
     }
-    let place = at.as_ref().map_or_else(|| "never saved".to_owned(), |at| at.display().to_string());
+    let place = at.as_ref().map_or_else(|| "never saved".to_owned(), |at| at.shown().to_string());
     details.push(("File".to_owned(), place));
     let answers = vec![("Recover", Answer::Recover), ("Discard", Answer::Discard), ("Later", Answer::Cancel)];
     ("Recover unsaved changes?", text, details, answers)

@@ -10,6 +10,7 @@ use super::{
     state::{Effect, MissingPart, Question, Session, Severity},
 };
 use crate::document::Selection;
+use crate::files::Shown as _;
 use crate::{
     registry::Registry,
     scene::{Scene, load::Stamp},
@@ -28,7 +29,7 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
         session.disk.deferred = true;
         return Vec::new();
     }
-    let name = path.display();
+    let name = path.shown();
     match files.look(&path, registry) {
         Looked::Same => {
             session.disk.suspect = None;
@@ -92,7 +93,7 @@ fn take(
     }
     session.reloaded(scene, defaulted, registry);
     if news {
-        session.say_of_disk(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
+        session.say_of_disk(Severity::Info, format!("{} was reloaded: it changed on disk.", path.shown()));
     }
     Vec::new()
 }
@@ -120,7 +121,7 @@ fn doubt(
         // Saving writes the file anew, if there is still none.
         files.expect(&path, None);
         let text =
-            format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
+            format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.shown());
         session.set_disk_badge(
             Severity::Warning,
             &path,
@@ -140,7 +141,7 @@ fn doubt(
         Severity::Warning,
         format!(
             "{} no longer holds the scene that is shown, which is kept: it is unsaved now.",
-            path.display()
+            path.shown()
         ),
     );
     // The latest stands on top: the first problem.

@@ -8,6 +8,7 @@ use std::{
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::state::{RECENT_FILES, Session, Severity, ThemeChoice, View, nearest_scale};
+use crate::files::Shown as _;
 use crate::files::{self, FileError, tidy};
 
 /// The environment variable that names another folder for the settings.
@@ -113,7 +114,7 @@ pub fn load(folder: &Path) -> (Settings, Option<String>) {
 }
 
 fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
-    format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.display())
+    format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.shown())
 }
 
 /// Writes the settings to a folder, all or nothing.
@@ -128,7 +129,7 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
         text.push('\n');
         files::write(&path, text.as_bytes())
     };
-    write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.display()))
+    write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.shown()))
 }
 
 /// Reads the settings of the last session into the state; says so when they cannot be read.

@@ -20,6 +20,7 @@ use super::{
     welcome,
 };
 use crate::document::Selection;
+use crate::files::Shown as _;
 use crate::{optics::TermSelection, registry::Registry};
 
 /// See the module.
@@ -145,7 +146,7 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         if let Some(description) = &session.document.description {
             ui.label(maths::prose(ui, description, egui::TextStyle::Body));
         }
-        let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
+        let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.shown().to_string());
         let said = match session.lesson {
             Some(_) => format!("a scene of the lesson; “{own}” {state}, and comes back when you leave"),
             None => format!("{file}; {state}"),
@@ -210,8 +211,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 for path in &session.recent_files {
                     let name = path
                         .file_name()
-                        .map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
-                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                        .map_or_else(|| path.shown().to_string(), |n| n.to_string_lossy().into_owned());
+                    if ui.button(name).on_hover_text(path.shown().to_string()).clicked() {
                         actions.push(Action::Open(path.clone()));
                         ui.close();
                     }

@@ -6,6 +6,7 @@ use super::{
     file::{FileFormat, NamedFile},
     value::Value,
 };
+use crate::text::with_article;
 
 /// The declaration of one parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,6 +109,18 @@ impl ParameterKind {
 }
 
 impl Parameter {
+    /// The difference that keeps two declarations from being one parameter of materials, in this one and in the other: the
+    /// type or the unit. Ranges and defaults may differ.
+    #[must_use]
+    pub fn clash(&self, other: &Self) -> Option<(String, String)> {
+        if std::mem::discriminant(&self.kind) != std::mem::discriminant(&other.kind) {
+            return Some((with_article(self.kind.name()), with_article(other.kind.name())));
+        }
+        let unit =
+            |p: &Self| if p.unit.is_empty() { "without a unit".to_owned() } else { format!("in {}", p.unit) };
+        (self.unit != other.unit).then(|| (unit(self), unit(other)))
+    }
+
     /// The same parameter, used only if another parameter of the model has one of these choices and is itself used.
     /// Otherwise its knob is disabled and says why.
     #[must_use]

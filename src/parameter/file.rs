@@ -18,6 +18,7 @@ use serde::{Serialize, Serializer};
 
 use super::outside;
 use crate::files;
+use crate::files::Shown as _;
 
 /// The files that a parameter may name, and how they are read.
 pub struct FileFormat {
@@ -309,10 +310,10 @@ impl Content {
         let read = match &self.source {
             Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
             Ok(path) => {
-                self.bytes(path).map_err(|error| format!("{}: {error}", path.display())).and_then(|bytes| {
+                self.bytes(path).map_err(|error| format!("{}: {error}", path.shown())).and_then(|bytes| {
                     (self.format.read)(&bytes).map_err(|FileProblem { line, message }| {
                         let line = line.map_or(String::new(), |line| format!(":{line}"));
-                        format!("{}{line}: {message}", path.display())
+                        format!("{}{line}: {message}", path.shown())
                     })
                 })
             }

@@ -8,6 +8,7 @@ use std::{
 };
 
 use super::About;
+use crate::files::Shown as _;
 use crate::{
     files,
     library::assets,
@@ -205,7 +206,7 @@ impl Left {
     /// Every problem, one sentence each, with the name of the file.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, Vec<String>> {
         let file = self.journal.file();
-        let name = file.display().to_string();
+        let name = file.shown().to_string();
         let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
         // The files that it names are beside the file of the document, not beside the copy.
         let folder = self.about.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
@@ -293,7 +294,7 @@ mod tests {
             drop(journal);
             let left = store.left().pop().expect("offered");
             let problems = left.scene(&registry).expect_err("broken");
-            assert!(problems[0].contains(&left.journal.file().display().to_string()), "{problems:?}");
+            assert!(problems[0].contains(&left.journal.file().shown().to_string()), "{problems:?}");
             assert_eq!(fs::read_to_string(left.journal.file()).expect("there"), broken);
             left.journal.remove();
         }

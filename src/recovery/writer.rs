@@ -12,6 +12,7 @@ use std::{
 };
 
 use super::{About, Journal, Store};
+use crate::files::Shown as _;
 use crate::{
     document::{Document, Revision},
     registry::Registry,
@@ -95,7 +96,7 @@ impl Settled {
             Self::Nothing => None,
             Self::Kept { title, file } => Some(format!(
                 "the unsaved changes of “{title}” are kept in {}; the window offers them at its next start",
-                file.display()
+                file.shown()
             )),
             Self::Lost { title, why } => Some(format!(
                 "the unsaved changes of “{title}” are lost, no recovery copy could be written: {why}"

@@ -17,7 +17,7 @@ use crate::{
         Source,
         compose::{
             ALBEDO, CHANNELS, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING,
-            Sources, WRAPPER, parameter_struct,
+            SHADING_ALONE, Sources, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -229,6 +229,47 @@ fn incident(light: Light, {taken}p: vec3<f32>) -> Incident {{
 }}
 "
         ),
+    );
+    c.composed
+}
+
+/// The source of a shading model alone, with the function `pixel_alone` that calls its `shade_pixel` within a plane triangle,
+/// whose edges to the right and downwards on the screen are given. The light at a point is a formula of its place, normal
+/// and tangent, and derivatives are those of the place.
+#[must_use]
+pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
+    let mut c = Composer::new(sources);
+    OPTICS.iter().chain([&SHADING]).for_each(|s| c.source(s));
+    c.push(
+        SHADING_ALONE,
+        &format!(
+            "struct Row {{ shading: array<vec4<u32>, {}> }}
+@group(0) @binding(0) var<storage, read> parameter_table: array<Row>;
+var<private> object_row: u32;
+var<private> to_the_right: vec3<f32>;
+var<private> downwards: vec3<f32>;
+fn dpdx(place: vec3<f32>) -> vec3<f32> {{
+    return to_the_right;
+}}
+fn dpdy(place: vec3<f32>) -> vec3<f32> {{
+    return downwards;
+}}
+fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {{
+    return 0.5 + 0.25 * normal + 0.125 * tangent.yzx + 0.03125 * position.zxy;
+}}
+",
+            shading::PARAMETER_WORDS / 4
+        ),
+    );
+    push_shading(&mut c, shading);
+    c.push(
+        SHADING_ALONE,
+        "fn pixel_alone(passed: Varying, right: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
+    to_the_right = right;
+    downwards = down;
+    return shade_pixel(passed);
+}
+",
     );
     c.composed
 }

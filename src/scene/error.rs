@@ -8,6 +8,7 @@ use super::{
     formats::{self, UnknownExtension},
     load::{MAX_FILE_BYTES, Missing},
 };
+use crate::files::Shown as _;
 pub use crate::text::{
     path::{Path, Segment},
     place::Place,
@@ -215,7 +216,7 @@ impl LoadError {
     /// The error for a file that could not be read.
     #[must_use]
     pub fn from_file(path: &FilePath, error: FileError, registry: &Registry) -> Self {
-        let name = path.display().to_string();
+        let name = path.shown().to_string();
         match error {
             FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path, registry), name },
             FileError::Kind(kind) => Self::NoFile { name, kind },
@@ -277,7 +278,7 @@ fn similar_file(path: &FilePath) -> Option<String> {
         .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness > 0.85)
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(format!(". Did you mean {}?", path.with_file_name(nearest.1).display()))
+    Some(format!(". Did you mean {}?", path.with_file_name(nearest.1).shown()))
 }
 
 /// "; it holds a.json, b.json".

@@ -14,6 +14,7 @@ use super::{
     error::{LoadError, Path, Place, Problem},
     formats::{self, Source},
 };
+use crate::files::Shown as _;
 use crate::{
     files::{self, FileError},
     registry::Registry,
@@ -102,7 +103,7 @@ pub struct Loaded {
 /// [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
     let folder = path.parent().unwrap_or(FilePath::new(""));
-    in_folder(&bytes(path, registry)?, (&path.display().to_string(), folder), registry, defaults)
+    in_folder(&bytes(path, registry)?, (&path.shown().to_string(), folder), registry, defaults)
 }
 
 /// What reading a file gives. A picture may be larger than other files: the scene is a small part of it.

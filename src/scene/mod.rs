@@ -27,6 +27,7 @@ pub mod error;
 pub mod examples;
 mod format;
 pub mod formats;
+mod kept;
 mod layout;
 pub mod limits;
 pub mod load;

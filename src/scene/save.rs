@@ -16,6 +16,7 @@ use super::{
     layout::{ShortNumbers, pretty},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
 };
+use crate::files::Shown as _;
 use crate::{
     files::{self, Draft, FileError, Kind},
     registry::Registry,
@@ -36,7 +37,7 @@ pub enum Expected {
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// The scene breaks rules, so it could not be read again.
-    #[error("{} was not written: the scene has problems:\n{}", .path.display(), lines(.problems))]
+    #[error("{} was not written: the scene has problems:\n{}", .path.shown(), lines(.problems))]
     Invalid {
         /// The file.
         path: PathBuf,
@@ -44,7 +45,7 @@ pub enum SaveError {
         problems: Vec<Problem>,
     },
     /// Its extension belongs to no format.
-    #[error("{} was not written: {unknown}", .path.display())]
+    #[error("{} was not written: {unknown}", .path.shown())]
     UnknownExtension {
         /// The file.
         path: PathBuf,
@@ -52,7 +53,7 @@ pub enum SaveError {
         unknown: UnknownExtension,
     },
     /// Its format can only be read.
-    #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.display(), as_json(.path).display())]
+    #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     CannotWrite {
         /// The file.
         path: PathBuf,
@@ -60,7 +61,7 @@ pub enum SaveError {
         format: &'static str,
     },
     /// Its format cannot hold all of the scene.
-    #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.display(), as_json(.path).display())]
+    #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     Lossy {
         /// The file.
         path: PathBuf,
@@ -68,37 +69,37 @@ pub enum SaveError {
         why: String,
     },
     /// A new file was requested, but one exists.
-    #[error("{} already exists; it was not overwritten", .path.display())]
+    #[error("{} already exists; it was not overwritten", .path.shown())]
     Exists {
         /// The file.
         path: PathBuf,
     },
     /// Another program wrote the file since it was read.
-    #[error("{} changed on disk since it was read; it was not overwritten", .path.display())]
+    #[error("{} changed on disk since it was read; it was not overwritten", .path.shown())]
     Changed {
         /// The file.
         path: PathBuf,
     },
     /// The file was deleted or moved since it was read.
-    #[error("{} is no longer there; it was deleted or moved since it was read", .path.display())]
+    #[error("{} is no longer there; it was deleted or moved since it was read", .path.shown())]
     Gone {
         /// The file.
         path: PathBuf,
     },
     /// The file is protected.
-    #[error("{} is read-only; it was not overwritten", .path.display())]
+    #[error("{} is read-only; it was not overwritten", .path.shown())]
     ReadOnly {
         /// The file.
         path: PathBuf,
     },
     /// The path leads to a folder.
-    #[error("{} is a folder; choose a file name", .path.display())]
+    #[error("{} is a folder; choose a file name", .path.shown())]
     Folder {
         /// The folder.
         path: PathBuf,
     },
     /// The path leads to something other than a file or folder.
-    #[error("{} was not written: it is {kind}, not a regular file", .path.display())]
+    #[error("{} was not written: it is {kind}, not a regular file", .path.shown())]
     NoFile {
         /// The path given.
         path: PathBuf,
@@ -106,7 +107,7 @@ pub enum SaveError {
         kind: Kind,
     },
     /// The folder of the file does not exist.
-    #[error("{} was not written: there is no folder {}", .path.display(), .folder.display())]
+    #[error("{} was not written: there is no folder {}", .path.shown(), .folder.shown())]
     NoFolder {
         /// The file.
         path: PathBuf,
@@ -114,7 +115,7 @@ pub enum SaveError {
         folder: PathBuf,
     },
     /// A failure of the operating system: no permission, no space.
-    #[error("{} was not written: {source}", .path.display())]
+    #[error("{} was not written: {source}", .path.shown())]
     Io {
         /// The file.
         path: PathBuf,
@@ -199,7 +200,7 @@ fn comes_back(
     (path, folder): (&Path, &Path),
     registry: &Registry,
 ) -> Result<(), String> {
-    let name = path.display().to_string();
+    let name = path.shown().to_string();
     let back = load::in_folder(bytes, (&name, folder), registry, Defaults::Refuse)
         .map_err(|error| format!("what was written could not be read again: {error}"))?;
     if back.scene == *scene {

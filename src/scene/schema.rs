@@ -220,7 +220,9 @@ fn objects(list: &mut Json, registry: &Registry) {
             |s: &ShadingEntry| s.parameter(p.name).map(|_| format!("{} shading", s.declaration.name));
         let shadings = registry.shading_models().iter().filter_map(shading);
         let names: Vec<_> = registry.models().iter().filter_map(user).chain(shadings).collect();
-        let help = format!("{} Used by: {}.", p.help, names.join(", "));
+        let ranges = ranges(p, registry, &mut field);
+        let defaults = defaults(p, registry, &mut field);
+        let help = format!("{} Used by: {}.{ranges}{defaults}", p.help, names.join(", "));
         field["description"] = help.into();
         parameters.insert(p.name.to_owned(), field);
     }
@@ -244,11 +246,76 @@ fn objects(list: &mut Json, registry: &Registry) {
             "then": { "properties": properties },
         })
     });
-    object["allOf"] = types.collect::<Vec<_>>().into();
+    let differ = |p: &&Parameter| users_of(p, registry).any(|(_, other)| other.rule() != p.rule());
+    let models = registry.models().iter().filter_map(|m| {
+        let own: Map<_, _> =
+            m.parameters.iter().filter(differ).map(|p| (p.name.to_owned(), parameter(p))).collect();
+        let id = m.declaration.id;
+        (!own.is_empty()).then(|| {
+            json!({
+                "if": { "properties": { "reflection_model": { "const": id } }, "required": ["reflection_model"] },
+                "then": { "properties": { "material": { "properties": own } } },
+            })
+        })
+    });
+    object["allOf"] = types.chain(models).collect::<Vec<_>>().into();
     object["defaultSnippets"] = json!([{
         "label": "sphere",
         "body": { "type": "sphere", "position": [5, 5, 5], "size": 2, "material": { "base_colour": [255, 255, 255] } },
     }]);
+}
+
+/// The declarations of a parameter of materials, with the models that share it.
+fn users_of<'a>(
+    p: &Parameter,
+    registry: &'a Registry,
+) -> impl Iterator<Item = (&'static str, &'static Parameter)> + 'a {
+    let name = p.name;
+    registry.material_users().filter_map(move |(id, all)| Some((id, all.iter().find(|q| q.name == name)?)))
+}
+
+/// Values by the models that have them, in words, if there are several.
+fn differing(all: Vec<(String, Vec<&str>)>) -> Option<String> {
+    let each: Vec<_> = all.iter().map(|(value, users)| format!("{value} in {}", users.join(", "))).collect();
+    (each.len() > 1).then(|| each.join("; "))
+}
+
+/// The ids of each value.
+fn by_value(all: impl Iterator<Item = (&'static str, String)>) -> Vec<(String, Vec<&'static str>)> {
+    let mut found: Vec<(String, Vec<_>)> = Vec::new();
+    for (id, value) in all {
+        match found.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, users)) => users.push(id),
+            None => found.push((value, vec![id])),
+        }
+    }
+    found
+}
+
+/// The ranges of a parameter in words where models differ about it, and all of them in its field then. `check` knows which
+/// model an object has, and holds it against that.
+fn ranges(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
+    let all = by_value(users_of(p, registry).map(|(id, own)| (id, own.rule())));
+    let firsts: Vec<_> = all.iter().filter_map(|(_, users)| users.first().copied()).collect();
+    let Some(said) = differing(all) else { return String::new() };
+    let alternatives = users_of(p, registry).filter(|(id, _)| firsts.contains(id)).map(|(_, own)| {
+        let mut one = parameter(own);
+        let words = ["title", "description", "default"];
+        words.iter().for_each(|key| drop(one.as_object_mut().and_then(|map| map.remove(*key))));
+        one
+    });
+    *field = json!({ "anyOf": alternatives.collect::<Vec<_>>(), "title": field["title"], "default": field["default"] });
+    format!(" It is {said}.")
+}
+
+/// The defaults of a parameter in words where models differ about it, and none in its field then.
+fn defaults(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
+    let all = by_value(users_of(p, registry).map(|(id, own)| (id, own.default_value().to_string())));
+    let Some(said) = differing(all) else { return String::new() };
+    if let Some(map) = field.as_object_mut() {
+        map.remove("default");
+    }
+    format!(" By default {said}.")
 }
 
 /// A unit of intensity, in words.

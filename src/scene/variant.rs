@@ -52,9 +52,19 @@ impl Variant {
         }
     }
 
-    /// The scene as the variant shows it. The terms are no part of it.
+    /// The scene as the variant shows it: numbers that another model does not take are the nearest that it takes. The terms
+    /// are no part of it.
     #[must_use]
     pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
+        let mut shown = self.laid_over(scene, registry);
+        if self.reflection_model.is_some() || self.shading_model.is_some() {
+            shown.bring_into_range(registry);
+        }
+        shown
+    }
+
+    /// The same with every number as it is written.
+    pub(super) fn laid_over(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = Scene { display: self.display(scene.display), ..scene.clone() };
         if let Some(id) = &self.reflection_model {
             shown.reflection_model.clone_from(id);

@@ -42,6 +42,9 @@ pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 /// The generated part of the source of a light type alone, with the numbers of its files.
 pub const LIGHT_ALONE: &str = "(light type)";
 
+/// The generated parts of the source of a shading model alone.
+pub const SHADING_ALONE: &str = "(shading model)";
+
 /// The texts of sources: edited copies by path, otherwise the built-in ones. Cloning is cheap: clones share the texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {

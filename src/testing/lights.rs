@@ -12,8 +12,8 @@ use crate::{
     light::{Incident, LightEntry, LightRecord},
     optics::colour::Encoding,
     parameter::Values,
-    registry::compose::{FILE_TABLE, compose_light},
-    shader::{check::validate, compose::Sources, interpret::Program},
+    registry::{check, compose::FILE_TABLE},
+    shader::{compose::Sources, interpret::Program},
 };
 
 /// The largest relative difference between the languages attributed to rounding.
@@ -81,7 +81,7 @@ fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
 /// # Errors
 /// The first difference.
 pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
-    let module = validate(&compose_light(sources, light)).map_err(|problem| problem.to_string())?;
+    let module = check::wgsl::light(sources, light).map_err(|problem| problem.to_string())?;
     let function = format!("incident_{}", light.declaration.id);
     let program =
         Program::with_table(&module, "incident", FILE_TABLE).map_err(|e| format!("{function}: {e}"))?;

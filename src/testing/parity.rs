@@ -11,9 +11,9 @@ use crate::{
     optics::{Frame, Terms, colour::Encoding},
     parameter::{self, ParameterKind, Value, Values},
     reflection::{Ambient, ModelEntry},
-    registry::compose::compose_evaluation,
+    registry::check,
     render::capture::evaluate::evaluate,
-    shader::{check::validate, compose::Sources, interpret::Program},
+    shader::{compose::Sources, interpret::Program},
 };
 
 /// The largest difference attributed to rounding, relative where the response is not dark.
@@ -35,7 +35,7 @@ pub fn all(model: &ModelEntry, sources: &Sources) -> Outcome {
 }
 
 fn module(model: &ModelEntry, sources: &Sources) -> Result<Module, String> {
-    validate(&compose_evaluation(sources, model)).map_err(|problem| problem.to_string())
+    check::wgsl::model(sources, model).map_err(|problem| problem.to_string())
 }
 
 fn program(module: &Module, function: &str) -> Result<Program, String> {
@@ -43,7 +43,7 @@ fn program(module: &Module, function: &str) -> Result<Program, String> {
 }
 
 /// Bytes as words.
-fn words(bytes: &[u8]) -> Vec<u32> {
+pub(super) fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 

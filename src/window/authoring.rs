@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::files::Shown as _;
 pub use crate::library::assets::write_new;
 use crate::{
     custom,
@@ -74,7 +75,7 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
                 Severity::Info,
                 format!(
                     "{} was written. Open it in an editor (Ctrl+E), change it and save it: the picture follows.",
-                    path.display()
+                    path.shown()
                 ),
             );
         }
@@ -83,10 +84,10 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
             session.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
             session.say(
                 Severity::Error,
-                format!("{} exists already and was left as it is; choose another name.", path.display()),
+                format!("{} exists already and was left as it is; choose another name.", path.shown()),
             );
         }
-        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
+        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.shown())),
     }
 }
 
@@ -100,20 +101,20 @@ fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
     let text = match custom::file::read(from, &name.to_string_lossy()) {
         Ok(text) => text,
         Err(problem) => {
-            let text = format!("{} was not copied: {}.", from.display(), problem.message);
+            let text = format!("{} was not copied: {}.", from.shown(), problem.message);
             return session.say(Severity::Error, text);
         }
     };
     match write_new(&path, &text) {
         Ok(()) => {
             session.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            session.say(Severity::Info, format!("{} was copied to {}.", from.display(), folder.display()));
+            session.say(Severity::Info, format!("{} was copied to {}.", from.shown(), folder.shown()));
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => session.say(
             Severity::Error,
-            format!("{} exists already and was left as it is; rename the other file.", path.display()),
+            format!("{} exists already and was left as it is; rename the other file.", path.shown()),
         ),
-        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
+        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.shown())),
     }
 }
 
@@ -121,14 +122,14 @@ fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
 fn told(exported: &Exported, folder: &Path) -> String {
     let count = |n: usize| if n == 1 { "1 file".to_owned() } else { format!("{n} files") };
     let mut text = match exported.written.len() {
-        0 => format!("The shaders are in {} already", folder.display()),
-        n => format!("{} of shaders and example models were written to {}", count(n), folder.display()),
+        0 => format!("The shaders are in {} already", folder.shown()),
+        n => format!("{} of shaders and example models were written to {}", count(n), folder.shown()),
     };
     if !exported.kept.is_empty() {
         text += &format!("; {} that differ were left as they are", count(exported.kept.len()));
     }
     format!(
         "{text}. Change one and save it: the picture follows. `lcm --assets {}` begins with them the next time.",
-        folder.display()
+        folder.shown()
     )
 }

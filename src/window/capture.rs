@@ -16,6 +16,7 @@ use bevy::{
 };
 
 use super::{ViewOptions, WindowView, watching::complain};
+use crate::files::Shown as _;
 use crate::{
     failure::Failure,
     panel::state::Session,
@@ -129,7 +130,7 @@ fn write(
         exit.write(AppExit::Success);
         return;
     };
-    let failure = Failure::Write(format!("{} could not be written: {what}", file.display()));
+    let failure = Failure::Write(format!("{} could not be written: {what}", file.shown()));
     exit.write(AppExit::from_code(failure.status()));
     match &countdown.reported {
         Some(report) => *report.lock().unwrap_or_else(PoisonError::into_inner) = Some(failure),

@@ -14,6 +14,7 @@ use std::{
 use bevy::ecs::prelude::*;
 
 use crate::files;
+use crate::files::Shown as _;
 
 /// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
 /// for the file and the line; without `{file}` the file comes last.
@@ -291,7 +292,7 @@ impl Editors {
             let text = format!(
                 "{} could not be opened in an editor: {why}. Open it by hand, or name an editor in the environment \
                  variable {EDITOR_VARIABLE}, such as \"code --goto {{file}}:{{line}}\".",
-                file.display()
+                file.shown()
             );
             complaints.lock().unwrap_or_else(PoisonError::into_inner).push(text);
             wake();

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use bevy::ecs::prelude::*;
 
 use super::background::Background;
+use crate::files::Shown as _;
 use crate::{
     export::{
         ExportError, Form, Progress, Request, form, view,
@@ -139,7 +140,6 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
 /// Shows a folder in the file manager.
 pub(super) fn reveal(folder: &Path, session: &mut Session) {
     if let Err(error) = ::open::that_detached(folder) {
-        session
-            .say(Severity::Warning, format!("The folder {} could not be shown: {error}.", folder.display()));
+        session.say(Severity::Warning, format!("The folder {} could not be shown: {error}.", folder.shown()));
     }
 }

@@ -7,6 +7,7 @@ use std::{
 
 use bevy::ecs::resource::Resource;
 
+use crate::files::Shown as _;
 use crate::{
     files::{self, Kind},
     panel::{
@@ -106,7 +107,7 @@ impl Files for DiskFiles {
         if self.seen.as_ref().is_some_and(|(seen, stamp)| seen == path && *stamp == version) {
             return Looked::Same;
         }
-        let name = path.display().to_string();
+        let name = path.shown().to_string();
         let content = opened(load::from_bytes(&bytes, &name, registry, Defaults::Ask));
         Looked::Changed { version, content }
     }

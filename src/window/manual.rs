@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::files::Shown as _;
 use crate::{
     files,
     library::assets::data_folder,
@@ -28,7 +29,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, String> {
     std::fs::create_dir_all(folder)
         .map_err(files::FileError::from)
         .and_then(|()| files::write(&path, page.as_bytes()))
-        .map_err(|why| format!("The manual could not be written to {}: {why}.", path.display()))?;
+        .map_err(|why| format!("The manual could not be written to {}: {why}.", path.shown()))?;
     Ok(path)
 }
 
@@ -37,10 +38,10 @@ pub(super) fn show(session: &mut Session) {
     let folder = data_folder().unwrap_or_else(|| std::env::temp_dir().join("lights-camera-models"));
     let shown = write(&folder).and_then(|path| match ::open::that_detached(&path) {
         Ok(()) => Ok(path),
-        Err(why) => Err(format!("No browser could be started ({why}): the manual is {}.", path.display())),
+        Err(why) => Err(format!("No browser could be started ({why}): the manual is {}.", path.shown())),
     });
     match shown {
-        Ok(path) => session.say(Severity::Info, format!("The browser shows the manual, {}.", path.display())),
+        Ok(path) => session.say(Severity::Info, format!("The browser shows the manual, {}.", path.shown())),
         Err(why) => session.say(Severity::Warning, why),
     }
 }

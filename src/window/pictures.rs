@@ -23,6 +23,7 @@ use super::{
     readback::{Reading, codes},
     views::ShownViews,
 };
+use crate::files::Shown as _;
 use crate::{
     caption,
     compare::{Shown, compose, size_around},
@@ -170,7 +171,7 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
         let png = file.with_extension("png");
         return Err(format!(
             "The picture was not saved to {}: only PNG files can be written; name it {}.",
-            file.display(),
+            file.shown(),
             png.file_name().unwrap_or_default().to_string_lossy()
         ));
     }
@@ -252,7 +253,7 @@ impl Job {
     fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
         let about = About::scene(&self.pictured(), &self.registry).with("Renderer", "GPU");
         png::write(file, width, height, rgb8, &about)
-            .map_err(|error| format!("{} could not be written: {error}.", file.display()))
+            .map_err(|error| format!("{} could not be written: {error}.", file.shown()))
     }
 
     /// The scene that the picture shows, with its observer where the camera is: whoever opens the picture sees the same.

@@ -24,6 +24,7 @@ use super::{
     order::Loading,
     watching::{complain, waker},
 };
+use crate::files::Shown as _;
 use crate::{
     panel::{
         files::Files as _,
@@ -162,7 +163,7 @@ impl Recovery {
             complain(&format!(
                 "unsaved changes of “{}” are kept in {}; a window without --exit-after offers them",
                 left.about.title,
-                left.journal.file().display()
+                left.journal.file().shown()
             ));
         }
     }

@@ -16,6 +16,7 @@ use super::{
     redraw::{SETTLING_FRAMES, Settling},
     watching::{FileWatch, FilesChanged, complain, complain_in_colour, waker},
 };
+use crate::files::Shown as _;
 use crate::{
     custom,
     library::{
@@ -163,7 +164,7 @@ fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Loca
         |troubles: &[Trouble], trouble: &Trouble| troubles.iter().any(|t| t.problem == trouble.problem);
     for trouble in status.troubles.iter().filter(|t| !known(&session.shaders.troubles, t)) {
         let file =
-            trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.display().to_string());
+            trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.shown().to_string());
         if io::stderr().is_terminal() {
             complain_in_colour(&coloured(&trouble.problem, &file));
         } else {

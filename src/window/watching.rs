@@ -14,6 +14,7 @@ use bevy::{
 };
 
 use super::order::Loading;
+use crate::files::Shown as _;
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
@@ -154,7 +155,7 @@ fn follow_named_files(
                 suspects.remove(&path);
                 session.healed(&path);
                 scene.set_changed();
-                session.say(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
+                session.say(Severity::Info, format!("{} was reloaded: it changed on disk.", path.shown()));
             }
             _ => {}
         }

@@ -28,7 +28,7 @@ use lights_camera_models::{
 use crate::pictures::{close_up, compare, on_gpu};
 
 const fn number(name: &'static str, default: f32) -> Parameter {
-    Parameter::number(name, 0.0..=1.0, default).help("A number.")
+    Parameter::number(name, 0.0..=1.0, default).label("a number").help("A number.")
 }
 
 const SHARE: Parameter = number("share", 0.5);

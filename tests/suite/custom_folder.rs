@@ -195,13 +195,13 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
         ("check worse.json", "", 1, worse),
         ("check worse.json bad.json", "", 1, bad),
         ("render bad.json --size 8x8 -o x.png", "", 1, bad),
-        ("render --reflection worse --size 8x8 -o x.png", "", 2, worse),
-        ("evaluate bad", ANGLES, 2, bad),
-        ("albedo worse", "mu\n1\n", 2, worse),
+        ("render --reflection worse --size 8x8 -o x.png", "", 1, worse),
+        ("evaluate bad", ANGLES, 1, bad),
+        ("albedo worse", "mu\n1\n", 1, worse),
         ("models check bad", "", 1, bad),
-        ("models duplicate bad mine", "", 2, bad),
-        ("evaluate bytes", ANGLES, 2, "bytes.wgsl:1:4"),
-        ("evaluate larger", ANGLES, 2, "larger than 1 MiB"),
+        ("models duplicate bad mine", "", 1, bad),
+        ("evaluate bytes", ANGLES, 1, "bytes.wgsl:1:4"),
+        ("evaluate larger", ANGLES, 1, "larger than 1 MiB"),
     ] {
         let told = bench.run(command, input);
         assert_eq!(told.status, Some(status), "{command}: {}", told.err);

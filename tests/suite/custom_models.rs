@@ -296,6 +296,14 @@ fn registering_replaces_in_place_and_removing_forgets() {
         &with("second", &matt("{ \"parameters\": [{ \"name\": \"x\" }] }")),
     );
     assert!(clash.unwrap_err()[0].message.contains("second has a parameter of that name with type number"));
+    // And on their units.
+    let clash = custom::read(
+        &path("third"),
+        &matt("{ \"parameters\": [{ \"name\": \"x\", \"unit\": \"°\" }] }"),
+        &with("second", &matt("{ \"parameters\": [{ \"name\": \"x\" }] }")),
+    );
+    let said = clash.unwrap_err()[0].message.clone();
+    assert!(said.contains("it is in ° here and without a unit in second"), "{said}");
 }
 
 #[test]

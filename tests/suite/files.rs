@@ -822,6 +822,38 @@ fn what_a_terminal_obeys_does_not_reach_it() {
 }
 
 #[test]
+fn a_name_with_a_line_end_forges_no_line_of_a_message() {
+    let folder = folder();
+    let at = folder.path();
+    let name = "a.json\nerror: rm -rf";
+    let (valid, bad) = (format!("{name}.valid.json"), format!("{name}.bad.json"));
+    fs::write(at.join(&valid), full_scene().to_string()).expect("written");
+    fs::write(at.join(&bad), "{").expect("written");
+    let models = format!("{name}.models");
+    fs::create_dir(at.join(&models)).expect("made");
+    fs::write(at.join(&models).join("broken.wgsl"), "fn response(").expect("written");
+    for arguments in [
+        &["check", &valid][..],
+        &["check", &bad],
+        &["check", &format!("{name}.none.json")],
+        &["render", &bad],
+        &["render", &valid, "-o", &format!("{name}.png"), "--size", "16x16", "--renderer", "cpu"],
+        &["render", &valid, "-o", &format!("{name}.jpg")],
+        &["new", &valid],
+        &["export", &valid, "--as", "wgsl", "-o", &format!("{name}.out")],
+        &["match", &valid, "-o", &valid],
+        &["models", "--models", &models],
+        &["study", "-o", &valid],
+        &["lesson", "check", &bad],
+    ] {
+        let ran = run(&mut lcm(at, arguments));
+        let said = [String::from_utf8_lossy(&ran.out).into_owned(), ran.err].concat();
+        assert!(!said.contains("\nerror: rm"), "{arguments:?}: {said}");
+        assert!(said.contains(r"a.json\nerror: rm"), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
 fn messages_of_the_window_show_what_a_terminal_would_obey() {
     let mut session = Session::new(Scene { name: None, ..Scene::default() });
     session.say(Severity::Error, format!("{ODD}.json was not opened"));

@@ -442,6 +442,7 @@ fn the_examples_pass_the_public_tests_and_draw_alike_without_a_window() {
     }
     testing::assert_light::<light::Blind>();
     testing::assert_mesh::<shape::Pear>();
+    testing::assert_shading::<shading_model::Banded>();
     let mut registry = Registry::builtin();
     register(&mut registry);
     let mut renderer =

@@ -352,6 +352,62 @@ fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
 }
 
 #[test]
+fn parameters_of_one_name_have_one_unit_and_the_schema_says_every_range() {
+    const TILT: Parameter = Parameter::number("tilt", 0.0..=1.0, 0.5);
+    model!(First, MODEL, { tilt: number = TILT });
+    const fn second() -> reflection::Declaration {
+        reflection::Declaration::new("second", "Second", MODEL.wgsl)
+    }
+    let mut registry = Registry::builtin();
+    registry.try_add_reflection_model::<First>().expect("right");
+    model!(InDegrees, second(), { tilt: number = TILT.unit("°") });
+    shading!(Shading, SHADING, { tilt: number = TILT.unit("m") });
+    let refused = |result: Result<(), RegistrationError>, expected: &str| {
+        let said = result.expect_err(expected).what;
+        assert!(said.contains(expected) && said.contains("models share parameters by name"), "{said}");
+    };
+    let added = registry.try_add_reflection_model::<InDegrees>().map(drop);
+    refused(added, "parameter `tilt`: is in °, but that of `paper` is without a unit");
+    let added = registry.try_add_shading_model::<Shading>().map(drop);
+    refused(added, "parameter `tilt`: is in m, but that of `paper` is without a unit");
+
+    model!(Wider, second(), { tilt: number = Parameter::number("tilt", 0.0..=90.0, 45.0) });
+    registry.try_add_reflection_model::<Wider>().expect("another range and default");
+    let schema = lights_camera_models::scene::schema::schema(&registry);
+    let object = &schema["properties"]["objects"]["items"];
+    let field = &object["properties"]["material"]["properties"]["tilt"];
+    let said = field["description"].as_str().expect("described");
+    assert!(said.contains("It is between 0 and 1 in paper; between 0 and 90 in second."), "{said}");
+    assert!(said.ends_with("By default 0.5 in paper; 45 in second."), "{said}");
+    assert!(field.get("default").is_none() && field.get("maximum").is_none(), "neither of them: {field}");
+    assert_eq!(field["anyOf"][1]["maximum"], 90);
+    let own: Vec<_> = object["allOf"]
+        .as_array()
+        .expect("conditions")
+        .iter()
+        .map(|c| {
+            let maximum = &c["then"]["properties"]["material"]["properties"]["tilt"]["maximum"];
+            (
+                c["if"]["properties"]["reflection_model"]["const"].as_str().unwrap_or_default(),
+                maximum.as_f64(),
+            )
+        })
+        .filter(|(_, maximum)| maximum.is_some())
+        .collect();
+    assert_eq!(own, [("paper", Some(1.0)), ("second", Some(90.0))]);
+}
+
+#[test]
+fn a_label_is_asked_for() {
+    model!(Raw, MODEL, { fur: number = Parameter::number("fur_length", 0.0..=1.0, 0.5) });
+    model_refused::<Raw>(&[
+        "parameter `fur_length`: has no label for people to read; add .label(\"fur length\")",
+    ]);
+    light!(RawLamp, LAMP, { fur: number = Parameter::number("fur_length", 0.0..=1.0, 0.5) });
+    light_refused::<RawLamp>(&["parameter `fur_length`: has no label"]);
+}
+
+#[test]
 fn shading_models_have_a_key_of_their_own() {
     const fn keyed(key: char) -> shading::Declaration {
         shading::Declaration::new("plain", "Plain", Stage::Pixel, key, SHADING.wgsl)

@@ -4,10 +4,12 @@ use glam::Vec3;
 use lights_camera_models::{
     light::{self, Incident, LightRecord, LightType},
     optics::{Frame, Terms},
+    parameter::Parameter,
     parameters, reflection,
     reflection::ReflectionModel,
     registry::Registry,
     shader::{Source, compose::Sources},
+    shading::{self, Corner, Lighting, ShadingModel, Stage, Varying},
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
     testing,
 };
@@ -66,6 +68,100 @@ fn what_is_right_passes() {
     testing::assert_parity_on_gpu::<Paper>();
     testing::assert_light::<Downlight>();
     testing::assert_mesh::<Tetrahedron>();
+    testing::assert_shading::<Banded>();
+}
+
+/// Light in bands, with that exponent in Rust, declared for that stage.
+macro_rules! banded {
+    ($name:ident, $stage:expr, $power:literal) => {
+        parameters! {
+            struct $name { bands: number = BANDS }
+        }
+        impl ShadingModel for $name {
+            const DECLARATION: shading::Declaration =
+                shading::Declaration::new("in_bands", "In bands", $stage, 'Z', IN_BANDS);
+            fn vertex(&self, _: &dyn Lighting, corner: &Corner) -> Varying {
+                let Corner { position, normal, tangent, .. } = *corner;
+                Varying { position, normal, tangent, ..Varying::default() }
+            }
+            fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
+                let normal = varying.normal.normalize_or_zero().lerp(face_normal, 0.5);
+                lighting.colour(varying.position, normal, varying.tangent).abs().powf($power) / self.bands
+            }
+        }
+    };
+}
+
+const BANDS: Parameter = Parameter::number("bands", 1.0..=16.0, 4.0);
+const IN_BANDS: Source = Source::new(
+    "in_bands.wgsl",
+    "fn shade_vertex(corner: Corner) -> Varying {
+    return Varying(corner.position, corner.normal, corner.tangent, vec3(0.0), vec3(0.0));
+}
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    let face = unit_or_zero(cross(dpdy(passed.offset), dpdx(passed.offset)));
+    let colour = illuminate(passed.position, mix(unit_or_zero(passed.normal), face, 0.5), passed.tangent);
+    return pow(abs(colour), vec3(2.0)) / shading_parameters().bands;
+}
+",
+);
+banded!(Banded, Stage::Pixel, 2.0);
+banded!(Steeper, Stage::Pixel, 2.001);
+banded!(Misplaced, Stage::Vertex, 2.0);
+
+#[test]
+fn every_built_in_shading_model_passes() {
+    for shading in Registry::builtin().shading_models() {
+        let all = testing::shadings::all(shading, &Sources::default());
+        assert_eq!(all, Ok(()), "{}", shading.declaration.id);
+    }
+}
+
+#[test]
+#[should_panic(expected = "in_bands: Values({\"bands\": ")]
+fn a_shading_model_that_differs_a_little_between_the_languages_fails() {
+    testing::assert_shading::<Steeper>();
+}
+
+#[test]
+#[should_panic(
+    expected = "declares to be evaluated per vertex, but vertex does not evaluate the light and pixel evaluates it"
+)]
+fn a_shading_model_at_another_stage_fails() {
+    testing::assert_shading::<Misplaced>();
+}
+
+paper!(
+    Misspelt,
+    1.0,
+    reflection::Declaration::new(
+        "paper",
+        "Paper",
+        Source::new(
+            "paper.wgsl",
+            "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(max(dot(frame.n, l), 0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(1.0);
+}
+",
+        ),
+    )
+);
+
+#[test]
+#[should_panic(expected = "paper: paper.wgsl:1:4: response must be fn response(l: vec3<f32>")]
+fn a_mistake_is_named_in_the_file_of_the_model() {
+    testing::assert_parity::<Misspelt>();
+}
+
+paper!(Nameless, 1.0, reflection::Declaration::new("paper", "", PAPER.wgsl));
+
+#[test]
+#[should_panic(expected = "paper: the name is empty")]
+fn a_model_that_cannot_be_registered_keeps_no_laws() {
+    testing::assert_laws::<Nameless>();
 }
 
 #[test]

@@ -58,4 +58,5 @@ fn all_of_it_is_right() {
     testing::assert_parity::<sheen::Sheen>();
     testing::assert_light::<beacon::Beacon>();
     testing::assert_mesh::<blossom::Blossom>();
+    testing::assert_shading::<lazy::Lazy>();
 }

@@ -3,6 +3,7 @@
 use bevy_egui::egui::{Button, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
+use crate::files::Shown as _;
 use crate::{
     panel::{linked, theme::Palette},
     parameter::{NamedFile, Parameter},
@@ -24,7 +25,7 @@ pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile) -> bool {
     });
     linked::touch(ui, label.rect.union(button.rect), &[p.symbol]);
     explain(label, |ui| tooltip(ui, &caption, "", ""));
-    let place = file.path().map_or("part of the program".to_owned(), |path| path.display().to_string());
+    let place = file.path().map_or("part of the program".to_owned(), |path| path.shown().to_string());
     let text = file.problem().unwrap_or(place);
     let clicked = button.on_hover_text(text).clicked();
     ui.add_space(4.0);

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
 
 use crate::panel::theme;
-use crate::text::mathematics::{Atom, is_variable};
+use crate::text::mathematics::{Atom, parse};
 
 /// A run of characters, and where it stands.
 #[derive(Clone)]
@@ -47,16 +47,16 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
     let mut width = x;
     for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
         let mut x = x + 0.04 * size;
-        for run in runs(script) {
-            // One letter is a variable, as in a line; several are a word.
-            let family = if is_variable(run) { variable(run) } else { theme::maths() };
-            let galley = text(run, family, script_size);
-            let y = shift - baseline(&galley);
-            let advance = galley.size().x;
-            width = width.max(x + advance);
-            pieces.push(Piece { galley, offset: vec2(x, y) });
-            x += advance;
+        // One letter is a variable, as in a line; several are a word; and a power may have a power.
+        for atom in parse(script) {
+            let inner = lay_out(ui, &atom, script_size, colour);
+            let place = vec2(x, shift);
+            pieces.extend(
+                inner.pieces.into_iter().map(|piece| Piece { offset: place + piece.offset, ..piece }),
+            );
+            x += inner.width;
         }
+        width = width.max(x);
     }
     Laid { pieces, width: width + padding }
 }
@@ -67,20 +67,25 @@ fn variable(letter: &str) -> egui::FontFamily {
     if capital { theme::maths() } else { theme::maths_italic() }
 }
 
-/// The runs of an index or a power: its words and what stands between them.
-fn runs(script: &str) -> impl Iterator<Item = &str> {
-    let mut rest = script;
-    std::iter::from_fn(move || {
-        let first = rest.chars().next()?;
-        // Greek letters are variables, however many stand side by side.
-        let end = if first.is_alphabetic() && !first.is_ascii() {
-            first.len_utf8()
-        } else {
-            let same = |c: char| c.is_ascii_alphabetic() == first.is_ascii_alphabetic();
-            rest.find(|c: char| !same(c) || c.is_alphabetic() && !c.is_ascii()).unwrap_or(rest.len())
-        };
-        let (run, after) = rest.split_at(end);
-        rest = after;
-        Some(run)
-    })
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_may_have_a_power() {
+        let ctx = egui::Context::default();
+        ctx.set_fonts(crate::lettering::fonts());
+        for _ in 0..2 {
+            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+                let atoms = parse("e^{-x^2}");
+                let laid = lay_out(ui, &atoms[0], 20.0, Color32::WHITE);
+                let texts: Vec<_> = laid.pieces.iter().map(|p| p.galley.text().to_owned()).collect();
+                assert_eq!(texts, ["e", "-", "x", "2"], "each in its place, and no mark among them");
+                let heights: Vec<_> = laid.pieces.iter().map(|p| p.galley.size().y).collect();
+                assert!(heights[0] > heights[2] && heights[2] > heights[3], "{heights:?}");
+                let end = laid.pieces[3].offset.x + laid.pieces[3].galley.size().x;
+                assert!((laid.width - end).abs() < 2.0, "{} {end}", laid.width);
+            });
+        }
+    }
 }

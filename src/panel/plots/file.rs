@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui_file_dialog::FileDialog;
 
 use super::request::{NoCurve, Request};
+use crate::files::Shown as _;
 use crate::{
     curves::{Detail, Format},
     files,
@@ -61,7 +62,7 @@ pub fn write(
     files::may_overwrite(file, format.signature(), inputs.iter().map(PathBuf::as_path))
         .map_err(|refused| refused.to_string())?;
     if !replace && file.exists() {
-        return Err(format!("{} exists; choose it in the list of files to replace it", file.display()));
+        return Err(format!("{} exists; choose it in the list of files to replace it", file.shown()));
     }
     let setup = request.setup;
     let mut made = Vec::new();
@@ -81,8 +82,7 @@ pub fn write(
     }
     let sheet = request.sheet(made.iter().map(|(style, drawn)| (*style, drawn)));
     let bytes = format.bytes(&sheet).map_err(|error| error.to_string())?;
-    files::write(file, &bytes)
-        .map_err(|error| format!("{} could not be written: {error}", file.display()))?;
+    files::write(file, &bytes).map_err(|error| format!("{} could not be written: {error}", file.shown()))?;
     notes.extend(sheet.notes());
     Ok(notes)
 }

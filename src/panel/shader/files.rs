@@ -8,6 +8,7 @@ use bevy_egui::egui::{
 };
 
 use super::missing_model;
+use crate::files::Shown as _;
 use crate::{
     panel::{
         icon::{self, Icon},
@@ -124,7 +125,7 @@ fn export(ui: &mut Ui, actions: &mut Vec<Action>) {
 /// The folder that is watched; from right to left.
 fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    let text = folder.display().to_string();
+    let text = folder.shown().to_string();
     if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {
         actions.push(Action::Copy(text.clone()));
     }
@@ -134,7 +135,7 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
     let path = ui.label(shown);
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
     if let Some(models) = &session.shaders.folders.models {
-        help += &format!("\nCustom models: {}", models.display());
+        help += &format!("\nCustom models: {}", models.shown());
     }
     path.on_hover_text(help);
     ui.label(theme::small(ui, "watched:"));
@@ -200,7 +201,7 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
         ui.set_max_width(340.0);
         ui.label(theme::strong(ui, &name));
         ui.label(help);
-        let place = on_disk.map_or_else(|| format!("{path}, built in"), |f| f.display().to_string());
+        let place = on_disk.map_or_else(|| format!("{path}, built in"), |f| f.shown().to_string());
         ui.label(theme::small(ui, place));
     });
 }

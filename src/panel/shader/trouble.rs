@@ -4,6 +4,7 @@ use bevy_egui::egui::{
     self, Align, FontId, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
 
+use crate::files::Shown as _;
 use crate::{
     library::status::{Trouble, shown_instead},
     panel::{
@@ -78,7 +79,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
 /// A problem as text: message, place, the line with a caret, the consequence.
 #[must_use]
 pub fn report(trouble: &Trouble) -> String {
-    let path = trouble.path.as_ref().map(|path| path.display().to_string());
+    let path = trouble.path.as_ref().map(|path| path.shown().to_string());
     let text = annotated(&trouble.problem, path.as_deref().unwrap_or(&trouble.problem.file));
     format!("{text}\n{}\n", consequence(trouble))
 }
@@ -108,7 +109,7 @@ pub(super) fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>)
         response.on_hover_text(Severity::Error.name());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(path) = &trouble.path {
-                let open = ui.button("Open in editor").on_hover_text(path.display().to_string());
+                let open = ui.button("Open in editor").on_hover_text(path.shown().to_string());
                 if open.clicked() {
                     actions.push(Action::Model(ModelCommand::Edit { path: path.clone(), line: p.line }));
                 }

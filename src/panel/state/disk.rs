@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Badge, MissingPart, Note, Session, Severity};
+use crate::files::Shown as _;
 use crate::{files::printable, scene::load::Stamp};
 
 /// A state of a file on disk: its content, or that there is no file.
@@ -85,7 +86,7 @@ impl Session {
             &format!(
                 "{} was changed by another program, and there are changes here that are not saved. Saving asks which \
                  of both to keep.",
-                path.display()
+                path.shown()
             ),
         );
     }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Action, Effect, LessonCommand, LessonSource, ModelCommand, Note, Session, Severity};
+use crate::files::Shown as _;
 use crate::{
     custom,
     document::{Edit, Selection},
@@ -106,7 +107,7 @@ impl Session {
             None => {
                 let text = format!(
                     "{} is not in the folder of custom models. A copy there can be used.",
-                    path.display()
+                    path.shown()
                 );
                 let copy = Action::Model(ModelCommand::Adopt(path.to_owned()));
                 self.note(Note::new(Severity::Info, text).offering("Copy it there", copy));

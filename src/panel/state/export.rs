@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Action, Answer, Effect, ExportCommand, Note, Question, Session, Severity};
 use crate::export::{Form, form};
+use crate::files::Shown as _;
 
 impl Session {
     pub(super) fn export(&mut self, command: ExportCommand) -> Vec<Effect> {
@@ -43,7 +44,7 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                let text = format!("Exported as {name} to {}.", path.display());
+                let text = format!("Exported as {name} to {}.", path.shown());
                 self.note_file(text, if path.is_dir() { &path } else { crate::files::folder_of(&path) });
             }
             // The latest message stands on top.

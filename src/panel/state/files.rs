@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Action, Effect, Note, Session, Severity};
+use crate::files::Shown as _;
 use crate::{
     document::{Document, Edit, Extent, LightField, ObjectField, Selection},
     files,
@@ -168,14 +169,14 @@ impl Session {
     pub(in crate::panel) fn copy_saved(&mut self, path: &Path) -> Vec<Effect> {
         self.remember_file(path);
         self.note_file(
-            format!("A copy of this scene was saved to {}; the lesson goes on.", path.display()),
+            format!("A copy of this scene was saved to {}; the lesson goes on.", path.shown()),
             files::folder_of(path),
         );
         vec![Effect::SaveSettings]
     }
 
     pub(super) fn note_saved(&mut self, path: &Path) {
-        let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.display()));
+        let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.shown()));
         if self.facts.camera_left {
             note.text.push_str(" The file keeps the observer’s view, not the one you turned to.");
             match self.observer_problem() {

@@ -12,6 +12,7 @@ use super::{
     aside::Shown,
     open_lesson::{Entered, problem_of},
 };
+use crate::files::Shown as _;
 use crate::{
     document::Document,
     files,
@@ -431,7 +432,7 @@ impl Session {
                 for problem in problems.iter().rev() {
                     self.say_about(&path, Severity::Error, problem_of(&path, problem));
                 }
-                let text = format!("The lesson {} was not opened.", path.display());
+                let text = format!("The lesson {} was not opened.", path.shown());
                 self.say_about(&path, Severity::Error, text);
                 Vec::new()
             }

@@ -8,6 +8,7 @@ use std::{
 };
 
 use super::{Aside, LessonSource, Plots, aside::Shown};
+use crate::files::Shown as _;
 use crate::{
     document::Selection,
     lesson::{Lesson, Problem, Step},
@@ -94,5 +95,5 @@ impl OpenLesson {
 /// A problem with the file that it is in.
 pub(in crate::panel) fn problem_of(file: &Path, problem: &Problem) -> String {
     let space = if problem.place.is_some() { "" } else { " " };
-    format!("{}:{space}{problem}", file.display())
+    format!("{}:{space}{problem}", file.shown())
 }

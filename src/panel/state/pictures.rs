@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Answer, Effect, PictureCommand, Question, Session, Severity};
+use crate::files::Shown as _;
 use crate::{files, scene::variant::LETTERS};
 
 /// The end of a picture.
@@ -53,7 +54,7 @@ impl Session {
     pub fn pictured(&mut self, end: PictureEnd) {
         match end {
             PictureEnd::Saved(path) => {
-                self.note_file(format!("Saved the picture to {}.", path.display()), files::folder_of(&path));
+                self.note_file(format!("Saved the picture to {}.", path.shown()), files::folder_of(&path));
             }
             PictureEnd::Copied([width, height]) => {
                 self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));

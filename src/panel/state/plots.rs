@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Effect, Session, Severity};
+use crate::files::Shown as _;
 use crate::{
     curves::{Channel, Kind, Style, draw::Line},
     document::Selection,
@@ -191,10 +192,7 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(
-                    format!("The plot was written to {}.", path.display()),
-                    files::folder_of(&path),
-                );
+                self.note_file(format!("The plot was written to {}.", path.shown()), files::folder_of(&path));
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }

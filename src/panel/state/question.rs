@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Action, Answer, Effect, Offer, Session, Severity};
+use crate::files::Shown as _;
 use crate::{
     registry::Registry,
     scene::{Scene, load::Stamp},
@@ -167,7 +168,7 @@ impl Session {
                 let names: Vec<_> = parts.iter().map(|p| p.name.as_str()).collect();
                 self.say(
                     Severity::Warning,
-                    format!("{} was not opened: it lacks {}.", path.display(), listed(&names, "and")),
+                    format!("{} was not opened: it lacks {}.", path.shown(), listed(&names, "and")),
                 );
                 Vec::new()
             }

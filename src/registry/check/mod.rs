@@ -146,6 +146,37 @@ fn path(registry: &Registry, source: &Source, replaced: Option<&str>) -> Check {
     })
 }
 
+/// Checks that each parameter has a label: raw names are for files.
+fn labels(all: &[Parameter]) -> Check {
+    all.iter().try_for_each(|p| {
+        ensure(!p.label.trim().is_empty() && (p.label != p.name || !p.name.contains('_')), || {
+            let words = p.name.replace('_', " ");
+            format!("parameter `{}`: has no label for people to read; add .label(\"{words}\")", p.name)
+        })
+    })
+}
+
+/// Checks the parameters of a reflection or shading model: in materials, those of one name are one parameter.
+fn of_material(
+    all: &[Parameter],
+    others: impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone,
+) -> Check {
+    shared(all, "models", others.clone())?;
+    for p in all {
+        let clash = |(id, all): (&'static str, &'static [Parameter])| {
+            all.iter().filter(|other| other.name == p.name).find_map(|other| Some((id, p.clash(other)?)))
+        };
+        if let Some((id, (own, theirs))) = others.clone().find_map(clash) {
+            return Err(format!(
+                "parameter `{}`: is {own}, but that of `{id}` is {theirs}; models share parameters by name, so they must \
+                 have one unit: use that, or another name",
+                p.name
+            ));
+        }
+    }
+    labels(all)
+}
+
 /// Checks that parameters fit, and have the types of those of the same names in others of their sort.
 fn shared(
     all: &[Parameter],
@@ -182,7 +213,7 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
     }
     let models = registry.models().iter().filter(|m| m.declaration.id != d.id);
     let shadings = registry.shading_models().iter().map(|s| (s.declaration.id, s.parameters));
-    shared(entry.parameters, "models", models.map(|m| (m.declaration.id, m.parameters)).chain(shadings))?;
+    of_material(entry.parameters, models.map(|m| (m.declaration.id, m.parameters)).chain(shadings))?;
     path(registry, &d.wgsl, registry.model(d.id).map(|m| m.declaration.id))
 }
 
@@ -193,7 +224,7 @@ pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check 
     parameters(entry.parameters, OBJECT_KEYS, OBJECT, false)?;
     let models = registry.models().iter().map(|m| (m.declaration.id, m.parameters));
     let shadings = registry.shading_models().iter().filter(|s| s.declaration.id != d.id);
-    shared(entry.parameters, "models", models.chain(shadings.map(|s| (s.declaration.id, s.parameters))))?;
+    of_material(entry.parameters, models.chain(shadings.map(|s| (s.declaration.id, s.parameters))))?;
     let words = crate::parameter::words(entry.parameters, &Values::default(), Encoding::default()).len();
     ensure(words <= PARAMETER_WORDS, || {
         format!("its parameters take {words} numbers, at most {PARAMETER_WORDS} fit; a colour takes three")
@@ -220,6 +251,7 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     parameters(entry.parameters, LIGHT_KEYS, LIGHT, true)?;
     let others = registry.lights().iter().filter(|l| l.declaration.id != d.id);
     shared(entry.parameters, "light types", others.map(|l| (l.declaration.id, l.parameters)))?;
+    labels(entry.parameters)?;
     ensure(UNITS.contains(&d.unit), || {
         format!(
             "its unit is \"{}\", but must be cd or lx, for lights with a position and without, or × for a factor",
@@ -248,6 +280,7 @@ pub(super) fn object_type(registry: &Registry, entry: &ShapeEntry) -> Check {
     parameters(entry.parameters, OBJECT_KEYS, OBJECT, true)?;
     let others = registry.shapes().iter().filter(|s| s.declaration.id != d.id);
     shared(entry.parameters, "object types", others.map(|s| (s.declaration.id, s.parameters)))?;
+    labels(entry.parameters)?;
     let (least, most) = (*d.tessellation.start(), *d.tessellation.end());
     ensure(1 <= least && least <= most, || {
         format!("its tessellations are {least} to {most}, but must be at least 1, the smaller one first")

@@ -18,6 +18,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::verdict::Verdict;
+use crate::files::Shown as _;
 use crate::{
     files,
     shader::{
@@ -277,7 +278,7 @@ impl Worker {
 
     /// Starts a process and waits until it can be asked.
     fn start(&self) -> Result<Running, String> {
-        let program = self.program.display();
+        let program = self.program.shown();
         let mut process =
             Running::start(&self.program).map_err(|e| format!("{program} could not be started: {e}"))?;
         match process.answer(START, u64::MAX, || self.shared.lock().closed) {

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::files::Shown as _;
 use crate::{
     custom,
     light::MAX_LIGHTS,
@@ -252,7 +253,7 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
 fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
     let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
     let file = folder.join(id).with_extension(custom::EXTENSION);
-    Some(format!("the folder of custom models has no {}", file.display()))
+    Some(format!("the folder of custom models has no {}", file.shown()))
 }
 
 /// The id of a shading model.
