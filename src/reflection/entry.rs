@@ -13,9 +13,10 @@ use std::{
 use glam::{Vec3, Vec4};
 
 use super::{
+    ReflectionModel,
     declaration::{Ambient, Declaration},
     group::Group,
-    model::ReflectionModel,
+    model::OnPages,
     preset::{self, Measured},
     surface::{Instance, Surface},
 };
@@ -42,6 +43,7 @@ pub struct ModelEntry {
     lobe: Lobe,
     curves: &'static [NamedCurve],
     pub(super) instantiate: Instantiate,
+    on_pages: Option<OnPages>,
     on_cpu: Option<Arc<dyn Interpreted>>,
     identity: Identity,
     /// Surfaces with curves, by their packed parameters: objects of one material share one.
@@ -107,6 +109,7 @@ impl ModelEntry {
             instantiate: Arc::new(|values, encoding| {
                 Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
             }),
+            on_pages: M::ON_PAGES,
             on_cpu: None,
             identity: Identity::new(&M::DECLARATION, M::PARAMETERS),
             kept: Arc::default(),
@@ -133,6 +136,7 @@ impl ModelEntry {
             lobe,
             curves,
             instantiate,
+            on_pages: None,
             on_cpu,
             identity,
             kept: Arc::default(),
@@ -227,6 +231,12 @@ impl ModelEntry {
     #[must_use]
     pub fn curves(&self) -> &'static [NamedCurve] {
         self.curves
+    }
+
+    /// The curves in the language of web pages.
+    #[must_use]
+    pub fn on_pages(&self) -> Option<OnPages> {
+        self.on_pages
     }
 
     /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the further curves.

@@ -60,7 +60,7 @@ pub use metallic_roughness::MetallicRoughness;
 pub use microfacet::Microfacet;
 pub use minnaert::Minnaert;
 pub use mod_lambert::ModLambert;
-pub use model::ReflectionModel;
+pub use model::{OnPages, ReflectionModel};
 pub use modified_phong::ModifiedPhong;
 pub use openpbr::OpenPbr;
 pub use oren_nayar::OrenNayar;

@@ -11,6 +11,16 @@ use crate::{
     parameter::{ParameterSet, Value},
 };
 
+/// The curves of a model in the language of web pages.
+#[derive(Clone, Copy, Debug)]
+pub struct OnPages {
+    /// A function in JavaScript, `(m, table) => curves`: from the parameters by name, colours as linear light, to the
+    /// quadruples of each of the [`CURVES`](ReflectionModel::CURVES) by name, as [`ReflectionModel::curves`] gives them.
+    pub script: &'static str,
+    /// Numbers that the function reads; often none.
+    pub table: fn() -> Vec<f32>,
+}
+
 /// A reflection model. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)).
 pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
@@ -26,6 +36,10 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// Further curves over a cosine that the model calculates once per surface, see [`curves`](Self::curves). Its WGSL may
     /// call `curve_NAME(mu)` and `mean_NAME()` of each.
     const CURVES: &'static [NamedCurve] = &[];
+
+    /// The same curves in the language of web pages, whose knobs change the parameters where the program is not there. A model
+    /// with [`CURVES`](Self::CURVES) and none of this has knobs that are fixed there, and the export says so.
+    const ON_PAGES: Option<OnPages> = None;
 
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
     /// formula as published. Finite for all unit vectors and legal parameters.

@@ -3,8 +3,8 @@ use std::{f32::consts::PI, sync::LazyLock};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Readout, ReflectionModel,
-    Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, OnPages, Readout,
+    ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{
@@ -522,6 +522,11 @@ impl ReflectionModel for OpenPbr {
         NamedCurve { name: "fuzz", spacing: Spacing::Linear(FUZZ_NODES) },
         NamedCurve { name: "prepared", spacing: Spacing::Values(PREPARED) },
     ];
+
+    const ON_PAGES: Option<OnPages> = Some(OnPages {
+        script: include_str!("openpbr.js"),
+        table: || FUZZ.iter().flat_map(|v| v.to_array()).collect(),
+    });
 
     fn curves(&self) -> Vec<Vec4> {
         let mut all = [self.boundaries.values(), self.fuzz.values()].concat();

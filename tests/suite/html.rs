@@ -8,6 +8,7 @@ use std::{
 };
 
 use lights_camera_models::{
+    custom,
     export::{ExportError, Progress, Request, html},
     registry::Registry,
     scene::{
@@ -210,6 +211,13 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         // And here the lobe's as well.
         knob("white_furnace.json", "alpha_y", json!(0.7), "0.7"),
         knob("white_furnace.json", "k_d", json!(0.6), "0.6"),
+        // OpenPBR's curves, each layer: the page calculates them as the program does.
+        knob("openpbr_car_paint.json", "coat_roughness", json!(0.5), "0.5"),
+        knob("openpbr_car_paint.json", "coat_ior", json!(2.2), "2.2"),
+        knob("openpbr_velvet.json", "fuzz_roughness", json!(0.9), "0.9"),
+        knob("openpbr_brushed_steel.json", "roughness", json!(0.9), "0.9"),
+        knob("openpbr_anodised_titanium.json", "thin_film_thickness", json!(0.3), "0.3"),
+        knob("openpbr_satin.json", "specular_ior", json!(2.5), "2.5"),
     ];
     // Lamps name it.
     fs::copy(shipped("wall_washer.ies"), folder.path().join("wall_washer.ies")).expect("copied");
@@ -263,6 +271,34 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
     }
     assert_eq!(seen, 2 * cases.len());
+}
+
+/// A model whose lobe only the program can calculate.
+const BORROWED: &str = "/* lcm { \"lobe\": \"microfacet\", \"parameters\": [\"alpha_x\", \"k_s\"] } */
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s * lobe_albedo(dot(frame.n, v)) * max(dot(frame.n, l), 0.0)));
+}
+";
+
+#[test]
+fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
+    let mut registry = Registry::builtin();
+    let model = custom::read(Path::new("models/borrowed.wgsl"), BORROWED, &registry).expect("valid");
+    registry.put_custom_model(model);
+    let notes_of = |id: &str| {
+        let mut scene = scene(&shipped("openpbr_car_paint.json"));
+        scene.reflection_model = id.to_owned();
+        scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
+        let request =
+            Request { scene: &scene, registry: &registry, stem: "page", size: (WIDTH, HEIGHT), object: 0 };
+        let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page");
+        export.notes
+    };
+    let about = |notes: &[String]| notes.iter().filter(|n| n.contains("knobs are fixed")).count();
+    assert_eq!(about(&notes_of("borrowed")), 1);
+    for id in ["openpbr", "microfacet", "phong"] {
+        assert_eq!(about(&notes_of(id)), 0, "{id}");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The scene as the page reads it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use serde_json::{Map, Value as Json, json};
 
@@ -14,8 +14,9 @@ use super::{
 use crate::{
     export::{ExportError, Progress, Request, lit::Lit, object_path, shaders::alone},
     optics::colour::srgb_encode,
-    parameter::{Parameter, ParameterKind, json as value, layout, stride},
-    reflection::{Ambient, ModelEntry, Term},
+    parameter::{Parameter, ParameterKind, Value, json as value, layout, stride},
+    reflection::{Ambient, ModelEntry, OnPages, Term},
+    registry::Registry,
     scene::Scene,
     shading::ShadingEntry,
 };
@@ -27,6 +28,8 @@ pub struct Data {
     pub scene: Json,
     /// The bytes of the meshes, one after the other.
     pub meshes: Vec<u8>,
+    /// The curves that its models calculate anew when a knob is turned.
+    pub script: String,
     /// What differs from the picture in the lab: sentences.
     pub notes: Vec<String>,
 }
@@ -67,7 +70,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
     };
 
     let (mut texts, mut blocks) = (Texts::default(), Blocks::default());
-    let mut models = Vec::new();
+    let (mut models, mut scripts) = (Vec::new(), BTreeMap::new());
     for (m, of_model) in lit.programs.iter().enumerate() {
         let done = 0.4 + 0.4 * m as f32 / lit.programs.len() as f32;
         progress.step(done, "translating its shaders")?;
@@ -78,7 +81,8 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         for lit in &lits {
             programs.push(program(lit, &lit.objects[at], &mut texts, &mut blocks)?);
         }
-        models.push(model(of_model.model, lit.lights.uniform, &programs));
+        models.push(model((of_model.model, registry), lit, &programs, &mut blocks));
+        scripts.extend(twin(of_model.model, registry).map(|(id, _, twin)| (id, twin.script)));
     }
 
     progress.step(0.8, "packing its meshes")?;
@@ -131,7 +135,11 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
     });
     let mut notes = lit.notes();
     notes.extend(normals(lit));
-    Ok(Data { scene, meshes: bytes, notes })
+    let fixed =
+        lit.programs.iter().filter_map(|of_model| Some((of_model.model, fixed(of_model.model, registry)?)));
+    notes.extend(fixed.map(|(model, why)| format!("{}: {why}.", model.declaration.name)));
+    let script = |(id, script): (&&str, &&str)| format!("CURVES[{}] = {script};\n", json!(id));
+    Ok(Data { scene, meshes: bytes, notes, script: scripts.iter().map(script).collect() })
 }
 
 /// The scene with one shading model for all objects.
@@ -174,8 +182,27 @@ fn meshes(lit: &Lit, tangents: bool) -> Result<(Vec<Json>, Vec<usize>, Vec<u8>),
     Ok((all, of_objects, bytes))
 }
 
-fn model(entry: &ModelEntry, uniform: bool, programs: &[Json]) -> Json {
+fn model(
+    (entry, registry): (&ModelEntry, &Registry),
+    lit: &Lit,
+    programs: &[Json],
+    blocks: &mut Blocks,
+) -> Json {
     let what = entry.declaration;
+    let uniform = lit.lights.uniform;
+    let curves = entry.curves().iter().map(|curve| json!({ "name": curve.name, "length": curve.length() }));
+    let twin = twin(entry, registry).map(|(id, of, twin)| {
+        let table: Vec<u8> = (twin.table)().iter().flat_map(|number| number.to_le_bytes()).collect();
+        let default = |p: &Parameter| {
+            let value = match p.default_value() {
+                Value::Colour(rgb) => json!(lit.request.scene.display.encoding.decode(rgb).to_array()),
+                other => value(&other),
+            };
+            (p.name.to_owned(), value)
+        };
+        let defaults: Map<_, _> = of.parameters.iter().map(default).collect();
+        json!({ "of": id, "defaults": defaults, "table": blocks.add(&table) })
+    });
     let parts: Vec<_> = what
         .equation
         .iter()
@@ -194,18 +221,34 @@ fn model(entry: &ModelEntry, uniform: bool, programs: &[Json]) -> Json {
         // The parts of the curve that the shaders read.
         "albedo": uniform && what.ambient == Ambient::Albedo,
         "lobe": lobe(entry),
+        "curves": curves.collect::<Vec<_>>(),
+        "twin": twin,
+        "fixed": fixed(entry, registry),
         "programs": programs,
     })
 }
 
 /// The settings under which the specular response of a model is its lobe alone, with F = 1 and without multiple
-/// scattering: null for models without a lobe, and `false` for those whose lobe only the program can calculate.
+/// scattering: null for models without one.
 fn lobe(entry: &ModelEntry) -> Json {
-    match entry.lobe_of() {
-        None => Json::Null,
-        Some("microfacet") if entry.has_lobe() => json!({ "fresnel": "none", "multiple_scattering": "none" }),
-        Some(_) => Json::Bool(false),
-    }
+    let own = entry.lobe_of() == Some("microfacet") && entry.has_lobe();
+    if own { json!({ "fresnel": "none", "multiple_scattering": "none" }) } else { Json::Null }
+}
+
+/// The model whose curves a page can calculate for this one, which has the same, and their twin.
+fn twin<'a>(entry: &ModelEntry, registry: &'a Registry) -> Option<(&'static str, &'a ModelEntry, OnPages)> {
+    let id = entry.lobe_of()?;
+    let of = registry.model(id)?;
+    (of.curves() == entry.curves()).then_some((id, of, of.on_pages()?))
+}
+
+/// The reason why no parameter of a model may change on a page; none if all may.
+fn fixed(entry: &ModelEntry, registry: &Registry) -> Option<&'static str> {
+    let none = entry.lobe_of().is_none() && entry.curves().is_empty();
+    let follows = none || twin(entry, registry).is_some() || lobe(entry) != Json::Null;
+    (!follows).then_some(
+        "its knobs are fixed on the page, since only the program calculates its multiple scattering",
+    )
 }
 
 fn term(term: Term) -> &'static str {

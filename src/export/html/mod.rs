@@ -53,6 +53,8 @@ const SCRIPT: &[&str] = &[
     include_str!("js/panel.js"),
     include_str!("js/main.js"),
 ];
+/// The end of the program, behind the curves of its models.
+const START: &str = "start();\n";
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     let data = data::data(request, progress)?;
@@ -66,7 +68,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
             ("name", &escaped(name)),
             ("description", &escaped(description)),
             ("style", STYLE),
-            ("script", &SCRIPT.concat()),
+            ("script", &[SCRIPT.concat().as_str(), &data.script, START].concat()),
             ("scene", &scene),
             ("meshes", &meshes),
         ],

@@ -2,6 +2,8 @@
 // `albedo`), as the program does on the CPU for the values in this file.
 
 const NODES = 16;
+// The functions that calculate the further curves of models, by id: those of the models in this file stand at its end.
+const CURVES = {};
 
 // The cubic of Catmull and Rom (1974) over the cube root of μ, continued in a straight line at both ends.
 function curveAt(nodes, mu) {
@@ -33,24 +35,50 @@ function harmonicsOf(rows, harmonics, node, channel) {
   return [0.25 * (e0 + 2 * e45 + e90), 0.5 * (e0 - e90), 0.25 * (e0 - 2 * e45 + e90)];
 }
 
+// The numbers of a packed struct of parameters by name, colours as linear light; `defaults` for those that it lacks.
+function numbersOf(parameters, bytes, defaults) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset);
+  const numbers = { ...defaults };
+  for (const p of parameters) {
+    const at = (i) => view.getFloat32(p.at + 4 * i, true);
+    if (p.kind === 'choice') numbers[p.name] = view.getUint32(p.at, true);
+    else numbers[p.name] = p.kind === 'colour' || p.kind === 'triple' ? [0, 1, 2].map(at) : at(0);
+  }
+  return numbers;
+}
+
 // True if the pictures of an object depend on its curve.
-const readsCurve = (thing) => thing.program.albedo !== null && (thing.model.albedo || thing.model.lobe !== null);
+const readsCurve = ({ model, program }) =>
+  program.albedo !== null && (model.albedo || model.lobe !== null || model.twin !== null);
 
 // The bytes of the curve of an object with these values.
 async function curveOf(renderer, thing, values) {
   const { model, program } = thing;
   const count = model.harmonics * NODES;
-  const curve = new Float32Array(4 * count + 4);
+  // Behind the harmonics the curves that the model has beside them, and then the mean of the lobe.
+  const size = count + model.curves.reduce((sum, { length }) => sum + length, 0);
+  const curve = new Float32Array(4 * size + 4);
   const evaluate = (parameters) =>
     renderer.albedo(program.albedo, { parameters, albedo_curve: new Uint8Array(curve.buffer) });
+  if (model.twin) {
+    const { defaults, table } = model.twin;
+    const bytes = thing.scene.blocks[table];
+    const numbers = numbersOf(model.parameters, thing.packed(values), defaults);
+    const made = CURVES[model.twin.of](numbers, new Float32Array(bytes.slice().buffer));
+    let at = count;
+    for (const { name, length } of model.curves) {
+      made[name].forEach((quadruple, i) => curve.set(quadruple, 4 * (at + i)));
+      at += length;
+    }
+  }
   if (model.lobe) {
     const rows = await evaluate(thing.packed({ ...values, ...model.lobe }));
     const nodes = Array.from({ length: NODES }, (_, i) => harmonicsOf(rows, model.harmonics, i, 0)[0]);
     nodes.forEach((node, i) => (curve[4 * i + 3] = node));
-    curve[4 * count] = averageOf(nodes);
+    curve[4 * size] = averageOf(nodes);
   } else {
     for (let i = 0; i < NODES; i++) curve[4 * i + 3] = 1;
-    curve[4 * count] = 1;
+    curve[4 * size] = 1;
   }
   if (model.albedo) {
     const rows = await evaluate(thing.packed(values));

@@ -149,4 +149,4 @@ async function main() {
   page.draw();
 }
 
-main().catch((error) => fail(`The page could not start: ${error.message}`));
+const start = () => main().catch((error) => fail(`The page could not start: ${error.message}`));

@@ -1,7 +1,5 @@
 // The panel: shading model, object, reflection model with its equation and knobs, exposure, shader.
 
-const FOREIGN_LOBE = 'Fixed here: multiple scattering of this model is calculated in the program only';
-
 class Panel {
   // `changed(thing)` is called after values of an object changed; without an object, after anything else did.
   constructor(scene, changed) {
@@ -70,9 +68,10 @@ class Panel {
     document.getElementById('exposure').replaceChildren(element('div', { class: 'knob' }, caption, range));
   }
 
-  // The reason why a parameter has no effect at present, or may not change; null if it may.
+  // The reason why a parameter has no effect at present, or may not change; null if it may. The reason of all of them
+  // stands above them.
   reasonFor(parameters, p) {
-    if (this.selected.model.lobe === false) return FOREIGN_LOBE;
+    if (this.selected.model.fixed) return '';
     let here = p;
     for (let i = 0; i < parameters.length && here.usedWhen; i++) {
       const other = parameters.find((q) => q.name === here.usedWhen.parameter);
@@ -112,7 +111,8 @@ class Panel {
       }),
     );
     const focused = document.activeElement?.closest?.('.knob')?.dataset.name;
-    this.knobs.replaceChildren(...made);
+    const fixed = selected.model.fixed ? [element('p', { class: 'summary' }, selected.model.fixed)] : [];
+    this.knobs.replaceChildren(...fixed, ...made);
     if (focused) this.knobs.querySelector(`[data-name="${CSS.escape(focused)}"] select`)?.focus();
   }
 
