@@ -14,6 +14,7 @@
 //!
 //! - [`text`]: words for messages, and JSON whose values know their place.
 //! - [`lettering`]: text in pictures.
+//! - [`program`]: the name of the program, and folders by it.
 //! - [`files`]: every read and write: size limits, atomic replacement.
 //! - [`failure`]: why a command failed, and its exit status.
 //! - [`progress`]: how far some work is, and the wish to stop it.
@@ -66,6 +67,8 @@ pub use glam;
 pub mod text;
 
 pub mod lettering;
+
+pub mod program;
 
 pub mod failure;
 pub mod files;

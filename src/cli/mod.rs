@@ -8,6 +8,7 @@ use crate::{
     failure::Failure,
     files::{self, printable},
     parameter::outside,
+    program::{self, in_own_words},
     registry::Registry,
     scene::load::Defaults,
     signals::Interrupt,
@@ -18,10 +19,13 @@ use std::{
     io::{self, IsTerminal as _, Write},
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::mpsc,
+    thread,
+    time::Duration,
 };
 
 use bevy::app::App;
-use clap::{Args, Parser, Subcommand, error::ErrorKind};
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use workshop::Places;
@@ -287,12 +291,15 @@ type Outcome = Result<(), Failure>;
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    main_with(|_| (), |_| ())
+    run_as(Some(program::LAB), std::env::args_os(), |_| (), |_| ())
 }
 
 /// Runs the command line of this process with more types than are built in, known to every command, and with more in the
 /// window: panels, systems, plugins. Types belong in the first function: what the second one registers is known to the
-/// window alone, and replaces nothing of an id that is known already.
+/// window alone, its scene included, and replaces nothing of an id that is known already.
+///
+/// The program has the name of its file, or that of [`program::set_name`], in its help and its messages, and
+/// settings and copies of unsaved work [by that name](program::own).
 ///
 /// ```no_run
 /// use lights_camera_models::{bevy::prelude::*, cli, prelude::*};
@@ -314,6 +321,14 @@ pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App
     run_with(std::env::args_os(), types, window)
 }
 
+/// [`clap`]'s command under the name of the program.
+fn named() -> clap::Command {
+    Cli::command()
+        .name(program::command())
+        .bin_name(program::command())
+        .override_usage(in_own_words(USAGE).into_owned())
+}
+
 /// As [`main_with`], with these arguments, of which the first is the name of the program.
 #[must_use]
 pub fn run_with(
@@ -321,14 +336,32 @@ pub fn run_with(
     types: impl FnOnce(&mut Registry),
     window: impl FnOnce(&mut App),
 ) -> ExitCode {
+    run_as(None, arguments, types, window)
+}
+
+fn run_as(
+    name: Option<&str>,
+    arguments: impl IntoIterator<Item = OsString>,
+    types: impl FnOnce(&mut Registry),
+    window: impl FnOnce(&mut App),
+) -> ExitCode {
+    let inside = payload::inside();
+    // A program that was exported is one of its own.
+    if let (Some(name), Ok(None)) = (name, &inside) {
+        program::set_name(name);
+    }
     let arguments: Vec<_> = arguments.into_iter().collect();
-    let mut cli = match Cli::try_parse_from(&arguments) {
+    let parsed = named().try_get_matches_from(&arguments).and_then(|found| Cli::from_arg_matches(&found));
+    let mut cli = match parsed {
         Ok(cli) => cli,
         Err(error) => {
             return match error.kind() {
                 // Help and version are results; clap sends them to standard output.
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion if program::name() == program::LAB => {
                     ended(error.print().and_then(|()| io::stdout().flush()).map_err(Failure::from))
+                }
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                    ended(print(&in_own_words(&error.render().to_string())))
                 }
                 _ => {
                     misunderstood(&error, &arguments);
@@ -338,7 +371,7 @@ pub fn run_with(
         }
     };
     cli.options.restarts = arguments.iter().eq(&std::env::args_os().collect::<Vec<_>>());
-    match payload::inside() {
+    match inside {
         Ok(inside) => cli.places = cli.places.with(inside),
         Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
     }
@@ -379,7 +412,7 @@ fn ended(outcome: Outcome) -> ExitCode {
 /// Prints a usage error found by clap, in its colours unless it repeats control characters.
 fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
     let odd = arguments.iter().any(|word| printable(&word.to_string_lossy()) != word.to_string_lossy());
-    if odd {
+    if odd || program::name() != program::LAB {
         complain(error.render().to_string().trim_end());
     } else {
         // If this fails, there is nobody left to inform.
@@ -430,7 +463,7 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
 
 /// Prints a result for people to standard output, control characters escaped.
 fn print_text(text: &str) -> Outcome {
-    print(&printable(text))
+    print(&printable(&in_own_words(text)))
 }
 
 /// Prints paths to standard output, a line each: unchanged for programs, printable for people.
@@ -448,7 +481,7 @@ fn print(text: &str) -> Outcome {
 
 /// Prints a line to standard error, control characters escaped. A missing reader is no reason to panic.
 fn complain(what: impl fmt::Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", printable(&what.to_string()));
+    let _ = writeln!(io::stderr().lock(), "{}", printable(&in_own_words(&what.to_string())));
 }
 
 /// A progress bar if it helps: several steps, a terminal, and no `--quiet`.
@@ -461,6 +494,38 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Works, and says on a terminal what takes so long, if it does.
+fn patiently<T>(what: &str, options: Options, work: impl FnOnce() -> T) -> T {
+    const PATIENCE: Duration = Duration::from_secs(1);
+    const PAUSE: Duration = Duration::from_millis(100);
+    if options.quiet || !io::stderr().is_terminal() {
+        return work();
+    }
+    let (ends, ended) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            let goes_on = |time| ended.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
+            if !goes_on(PATIENCE) {
+                return;
+            }
+            let bar = ProgressBar::new_spinner();
+            if let Ok(style) =
+                ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it")
+            {
+                bar.set_style(style);
+            }
+            bar.set_message(printable(what).into_owned());
+            while goes_on(PAUSE) {
+                bar.tick();
+            }
+            bar.finish_and_clear();
+        });
+        let result = work();
+        drop(ends);
+        result
+    })
 }
 
 /// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything but y or yes is a no.

@@ -12,7 +12,7 @@ use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Options, Outcome, finite, outputs, progress,
+    Options, Outcome, finite, outputs, patiently, progress,
     scenes::Source,
     views::{self, Part, Plan},
     workshop::{Workshop, drawable, invalid, not_on_cpu},
@@ -329,7 +329,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             channel,
             with_legend: !arguments.no_legend,
         };
-        let remarks = painter.draw(&job, registry)?;
+        let remarks = if bar.is_hidden() {
+            patiently(&format!("drawing {}", source.name()), options, || painter.draw(&job, registry))?
+        } else {
+            painter.draw(&job, registry)?
+        };
         remarks.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", source.name())));
         bar.inc(1);
         if bar.is_hidden() {

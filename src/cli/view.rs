@@ -13,6 +13,7 @@ use crate::{
     files,
     lesson::{Lesson, shipped::LESSONS},
     panel::state::LessonSource,
+    program,
     registry::Registry,
     scene::{Scene, error::LoadError, load::Defaults},
     text::{did_you_mean, listed, quoted},
@@ -84,6 +85,7 @@ pub(super) fn run(
         file: None,
         stamp: None,
         open: None,
+        late: None,
         lesson: lesson.as_deref().map(|lesson| lesson_source(lesson, &workshop.registry)).transpose()?,
         step: step.map(|step| step as usize - 1),
         examples: source == Source::Default,
@@ -124,6 +126,8 @@ pub(super) fn run(
                     view.stamp = Some(loaded.stamp);
                     view.file = Some(path);
                 }
+                // Of another program, the window may know types that the command line does not.
+                Err(_) if program::name() != program::LAB => view.late = Some(path),
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }

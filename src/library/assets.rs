@@ -71,8 +71,7 @@ fn folder(variable: &str) -> Option<PathBuf> {
 /// system; `None` when there is neither.
 #[must_use]
 pub fn data_folder() -> Option<PathBuf> {
-    let usual =
-        || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
+    let usual = || Some(directories::ProjectDirs::from("", "", crate::program::LAB)?.data_dir().to_owned());
     folder(DATA_VARIABLE).or_else(usual)
 }
 

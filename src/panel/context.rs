@@ -1,12 +1,20 @@
 //! A panel and its connection to the rest of the window.
 
+use std::{
+    any::Any,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
+
 use bevy::{
     app::App,
     ecs::{resource::Resource, world::World},
 };
 use bevy_egui::egui::Ui;
 
-use super::state::{Action, PanelInfo, Place, Session, Severity};
+use super::{
+    state::{Action, PanelInfo, Place, Session, Severity},
+    theme::Palette,
+};
 use crate::{
     document::{Document, Edit},
     registry::Registry,
@@ -105,6 +113,55 @@ impl<'a> PanelContext<'a> {
     }
 }
 
+/// A panel of others, which may panic.
+struct Guarded<P> {
+    panel: P,
+    /// The message of its panic.
+    stopped: Option<String>,
+}
+
+impl<P: Panel> Panel for Guarded<P> {
+    fn id(&self) -> &'static str {
+        self.panel.id()
+    }
+
+    fn title(&self) -> &'static str {
+        self.panel.title()
+    }
+
+    fn place(&self) -> Place {
+        self.panel.place()
+    }
+
+    fn note(&self, session: &Session) -> Option<(Severity, String)> {
+        self.panel.note(session)
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        if let Some(why) = &self.stopped {
+            ui.colored_label(Palette::here(ui).error, format!("This panel stopped: {why}"));
+            if ui.button("Show it again").clicked() {
+                self.stopped = None;
+            }
+            return;
+        }
+        let Err(payload) = catch_unwind(AssertUnwindSafe(|| self.panel.show(ui, context))) else { return };
+        let why = said(&*payload);
+        let (title, id) = (self.panel.title(), self.panel.id());
+        let text = format!(
+            "The panel “{title}” ({id}) stopped, since it panicked: {why}. The window goes on without it."
+        );
+        context.act(Action::Say(Severity::Error, text));
+        self.stopped = Some(why);
+    }
+}
+
+/// The message of a panic.
+fn said(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("it gave no reason").to_owned()
+}
+
 /// The panels of the window.
 #[derive(Default, Resource)]
 pub struct Panels {
@@ -133,9 +190,10 @@ impl std::fmt::Debug for Panels {
 }
 
 impl Panels {
-    /// Adds a panel; one with the same id is replaced, and the new one stands in its place.
+    /// Adds a panel; one with the same id is replaced, and the new one stands in its place. One that panics is shown no
+    /// more, and the window goes on.
     pub fn add(&mut self, panel: impl Panel) {
-        self.put(Box::new(panel), true);
+        self.put(Box::new(Guarded { panel, stopped: None }), true);
     }
 
     /// Adds a panel of the window itself.

@@ -1,12 +1,16 @@
 //! The file with what the user has done of the lessons, in the folder of the user's data.
 
-use std::{io, path::Path};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use super::state::{Progress, Session, Severity};
 use crate::files::Shown as _;
 use crate::{
     files::{self, FileError, tidy},
     library::assets::data_folder,
+    program,
 };
 
 /// The name of the file.
@@ -57,9 +61,14 @@ pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String
         .map_err(|e| format!("What you have done of the lessons cannot be written to {}: {e}.", path.shown()))
 }
 
+/// The folder of this program in the user's data.
+fn own_folder() -> Option<PathBuf> {
+    data_folder().map(program::own)
+}
+
 /// Reads what was done in earlier sessions into the state; says so when it cannot be read.
 pub fn load_progress(session: &mut Session) {
-    let Some(folder) = data_folder() else { return };
+    let Some(folder) = own_folder() else { return };
     let _ = tidy(&folder);
     let (progress, complaint) = load(&folder);
     session.progress = progress;
@@ -70,7 +79,7 @@ pub fn load_progress(session: &mut Session) {
 
 /// Writes what was done of a lesson; says so when it cannot be written.
 pub fn save_progress(session: &mut Session, name: &str) {
-    if let Some(folder) = data_folder()
+    if let Some(folder) = own_folder()
         && let Err(complaint) = save(&folder, &session.progress, name)
     {
         session.say(Severity::Warning, complaint);

@@ -9,7 +9,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::state::{RECENT_FILES, Session, Severity, ThemeChoice, View, nearest_scale};
 use crate::files::Shown as _;
-use crate::files::{self, FileError, tidy};
+use crate::{
+    files::{self, FileError, tidy},
+    program,
+};
 
 /// The environment variable that names another folder for the settings.
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
@@ -85,16 +88,15 @@ impl Default for Settings {
     }
 }
 
-/// The folder of the settings: the one that [`FOLDER_VARIABLE`] names, else the usual place of the
-/// operating system; `None` when there is neither.
+/// The folder of the settings: in the one that [`FOLDER_VARIABLE`] names, else in the usual place of the operating system;
+/// `None` when there is neither. Each program has [its own](program::own).
 #[must_use]
 pub fn folder() -> Option<PathBuf> {
-    match std::env::var_os(FOLDER_VARIABLE) {
+    let shared = match std::env::var_os(FOLDER_VARIABLE) {
         Some(folder) if !folder.is_empty() => Some(PathBuf::from(folder)),
-        _ => {
-            directories::ProjectDirs::from("", "", "lights-camera-models").map(|d| d.config_dir().to_owned())
-        }
-    }
+        _ => directories::ProjectDirs::from("", "", program::LAB).map(|d| d.config_dir().to_owned()),
+    };
+    shared.map(program::own)
 }
 
 /// Reads the settings in a folder. No file means defaults; a file that cannot be read means defaults

@@ -13,6 +13,7 @@ use crate::{
     files,
     library::assets,
     parameter::outside,
+    program,
     registry::Registry,
     scene::{
         Scene,
@@ -64,10 +65,10 @@ pub struct Left {
 }
 
 impl Store {
-    /// The one in the user's data; `None` where there is no such folder.
+    /// The one in the user's data, for this program alone; `None` where there is no such folder.
     #[must_use]
     pub fn of_user() -> Option<Self> {
-        Some(Self::new(assets::data_folder()?.join(FOLDER)))
+        Some(Self::new(program::own(assets::data_folder()?).join(FOLDER)))
     }
 
     /// One at any place. The folder need not exist yet.

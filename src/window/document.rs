@@ -44,7 +44,10 @@ use crate::{
         schedule::{LabFrame, LabSystems},
         typed::know_types,
     },
-    scene::load::{self, Defaults},
+    scene::{
+        error::LoadError,
+        load::{self, Defaults},
+    },
     text::sentence,
 };
 
@@ -168,6 +171,20 @@ fn declare_custom(registry: &mut Registry, session: &mut Session) {
         }
         Err(why) => session.say(Severity::Error, why.to_string()),
     }
+}
+
+/// Opens a file with what the app knows by now, beside what was known before.
+///
+/// # Errors
+/// If the scene cannot be read, or has problems.
+pub fn open_late(app: &mut App, file: &Path, mut known: Registry) -> Result<(), LoadError> {
+    let world = app.world_mut();
+    known.add_missing(world.get_resource_or_init::<Registry>().as_ref());
+    let loaded = load::file(file, &known, Defaults::Refuse)?;
+    world.resource_mut::<DiskFiles>().expect(file, Some(loaded.stamp));
+    world.insert_resource(CurrentScene(loaded.scene.clone()));
+    world.resource_mut::<Session>().opened(file.to_owned(), loaded.scene);
+    Ok(())
 }
 
 /// Opens a file at the start. Without a user there is nobody to ask.

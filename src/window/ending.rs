@@ -6,9 +6,13 @@
 //! goes on to the status that is meant. Elsewhere the status is 1, and the copy is there as it always is.
 
 use std::{
+    backtrace::Backtrace,
     cell::RefCell,
-    panic::{self, AssertUnwindSafe},
-    sync::atomic::{AtomicBool, Ordering},
+    panic::{self, AssertUnwindSafe, PanicHookInfo},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     time::Duration,
 };
 
@@ -57,8 +61,15 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
     let sentence = || keeper.and_then(|keeper| keeper.settle(PATIENCE).sentence());
     static RUNNING: AtomicBool = AtomicBool::new(false);
     RUNNING.store(true, Ordering::SeqCst);
+    // The first panic is the cause of all others.
+    static CULPRIT: Mutex<Option<String>> = Mutex::new(None);
     let hook = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
+        if RUNNING.load(Ordering::SeqCst)
+            && let Ok(mut culprit) = CULPRIT.try_lock()
+        {
+            culprit.get_or_insert_with(|| described(info));
+        }
         // Of a lost display the windowing library complains in its own way; ours is below.
         if !RUNNING.load(Ordering::SeqCst) || display_answers() {
             hook(info);
@@ -80,12 +91,39 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
             Err(Failure::NoRenderer(lost("the connection to the display was lost", sentence())))
         }
         Err(panic) => {
-            if let Some(sentence) = sentence() {
-                complain(&sentence);
-            }
+            let culprit = CULPRIT.lock().unwrap_or_else(PoisonError::into_inner).take();
+            complain(&lost(
+                &format!("the window was closed: {}", culprit.as_deref().unwrap_or("a system panicked")),
+                sentence(),
+            ));
             panic::resume_unwind(panic)
         }
     }
+}
+
+/// A panic in a system, by the function if the program has the names of functions, and by its place.
+fn described(info: &PanicHookInfo<'_>) -> String {
+    let payload = info.payload();
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let why = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("it gave no reason");
+    let place = info.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
+    let trace = Backtrace::force_capture().to_string();
+    let name = culprit(&trace).map_or_else(String::new, |name| format!(" {name}"));
+    format!("the system{name} panicked{place}: {why}")
+}
+
+/// The innermost function of a backtrace that is not of the library or of those that it stands on.
+fn culprit(trace: &str) -> Option<&str> {
+    const OTHERS: [&str; 9] =
+        ["std", "core", "alloc", "backtrace", "rust_", "__rust", "_rust", "bevy", "lights_camera_models"];
+    let names = trace.lines().filter_map(|line| line.trim_start().split_once(": "));
+    let names =
+        names.filter(|(number, _)| number.bytes().all(|b| b.is_ascii_digit())).map(|(_, name)| name.trim());
+    let name = |name: &&str| {
+        let plain = name.trim_start_matches(['<', '&']);
+        plain.contains("::") && !OTHERS.iter().any(|other| plain.starts_with(other))
+    };
+    names.into_iter().find(name)
 }
 
 fn lost(what: &str, kept: Option<String>) -> String {
@@ -112,4 +150,23 @@ fn display_answers() -> bool {
 #[cfg(not(target_os = "linux"))]
 fn display_answers() -> bool {
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_function_of_another_crate_is_named() {
+        let trace = "   0: std::backtrace::Backtrace::force_capture\n             at /rustc/library/std/src/backtrace.rs:312:9
+   1: lights_camera_models::window::ending::described
+   2: std::panicking::panic_with_hook
+   3: core::panicking::panic_fmt
+   4: velvet::systems::spin
+             at ./src/systems.rs:12:5
+   5: <bevy_ecs::system::function_system::FunctionSystem<M> as System>::run_unsafe
+   6: main";
+        assert_eq!(culprit(trace), Some("velvet::systems::spin"));
+        assert_eq!(culprit("   0: <unknown>\n   1: main\n"), None);
+    }
 }

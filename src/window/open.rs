@@ -10,6 +10,7 @@ use bevy::app::{App, PluginGroup as _, Plugins};
 use super::{
     ViewOptions,
     capture::{Countdown, Report},
+    document::open_late,
     ending,
     plugins::LabPlugins,
     recovery::Recovery,
@@ -26,8 +27,12 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
     need_display()?;
     need_driver()?;
     let mut app = App::new();
+    let (late, known) = (options.late.clone(), options.registry.clone().unwrap_or_default());
     add_with_display(&mut app, LabPlugins::new(options).build().disable::<RequirementsPlugin>())?;
     extend(&mut app);
+    if let Some(file) = late {
+        open_late(&mut app, &file, known).map_err(|error| Failure::Invalid(error.to_string()))?;
+    }
     let report = Report::default();
     if let Some(mut countdown) = app.world_mut().get_resource_mut::<Countdown>() {
         countdown.reported = Some(report.clone());

@@ -255,7 +255,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         run(folder.path(), &format!("render --reflection {id} --size 8x8 -o x.png --models models"), "")
     };
     let bad = render("bad");
-    assert_eq!(bad.status, Some(2));
+    assert_eq!(bad.status, Some(1));
     assert!(
         bad.err.contains("bad\", but the file of that custom model has an error: models/bad.wgsl:4:"),
         "{}",

@@ -351,3 +351,27 @@ fn the_program_starts_again_only_where_a_driver_is_loaded() {
     let gpu = ["render", "--renderer", "gpu", "--size", "16x16", "-o", "x.png"];
     assert_eq!(starts(&gpu).0, 2);
 }
+
+/// A program started by `script` writes to a terminal.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_picture_that_takes_long_says_so_on_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(root().join("scenes/default.json")).expect("readable");
+    let mut scene: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let place = |i: usize, n: usize| 0.5 + 9.0 * i as f32 / n as f32;
+    let spheres = (0..10_000).map(|i| {
+        let position = [place(i % 20, 19), place(i / 20 % 20, 19), place(i / 400, 24)];
+        serde_json::json!({ "type": "sphere", "position": position, "size": 0.3, "tessellation": 48 })
+    });
+    scene["objects"] = spheres.collect::<Vec<_>>().into();
+    std::fs::write(folder.path().join("many.json"), scene.to_string()).expect("written");
+    let command =
+        format!("{} render many.json -o many.png --renderer cpu --size 64x64", env!("CARGO_BIN_EXE_lcm"));
+    let mut on_terminal = std::process::Command::new("script");
+    on_terminal.args(["-qec", &command, "/dev/null"]).current_dir(folder.path());
+    let output = on_terminal.output().expect("script is a part of every Linux");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("drawing many.json, 1s so far; Ctrl+C ends it"), "{said}");
+    assert!(said.contains("wrote many.png"), "{said}");
+}

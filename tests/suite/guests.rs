@@ -300,3 +300,53 @@ fn commands_of_panels_run_in_their_order_and_once() {
     }
     assert!(empty.get_resource::<Pressed>().is_none());
 }
+
+/// A panel that panics when its button is pressed.
+struct Fragile;
+
+impl Panel for Fragile {
+    fn id(&self) -> &'static str {
+        "fragile"
+    }
+
+    fn title(&self) -> &'static str {
+        "Fragile"
+    }
+
+    fn place(&self) -> Place {
+        Place::Right
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        ui.label("Whole");
+        if context.document().name.as_deref() == Some("Break") {
+            panic!("{} lights are too many", context.document().lights.len());
+        }
+    }
+}
+
+#[test]
+fn a_panel_that_panics_is_named_and_the_window_goes_on() {
+    let mut bench = bench(100, vec![guest("sound", "Sound", Place::Left, 1)]);
+    bench.panels.add(Fragile);
+    bench.settle();
+    assert!(bench.says("Whole"));
+    bench.apply(Action::Edit(Edit::SceneName("Break".to_owned())));
+    bench.settle();
+    let lights = bench.session.document.lights.len();
+    let why = format!("{lights} lights are too many");
+    let said: Vec<_> = bench.session.messages.iter().filter(|m| m.text.contains("Fragile")).collect();
+    assert_eq!(said.len(), 1, "once");
+    assert_eq!(
+        said[0].text,
+        format!(
+            "The panel “Fragile” (fragile) stopped, since it panicked: {why}. The window goes on without it."
+        )
+    );
+    assert!(bench.says(&format!("This panel stopped: {why}")) && !bench.says("Whole"));
+    assert!(bench.says("sound row 0"), "the others are there");
+    bench.apply(Action::Edit(Edit::SceneName("Mended".to_owned())));
+    bench.click("Show it again");
+    bench.settle();
+    assert!(bench.says("Whole"));
+}

@@ -77,6 +77,7 @@ mod pointer;
 mod precision;
 mod presentation;
 mod probe;
+mod programs;
 mod reference_renderer;
 mod registration;
 mod reload;

@@ -15,6 +15,7 @@ use crate::{
         state::{Action, ModelCommand, Session, Severity},
         theme::{self, Palette},
     },
+    program,
     registry::{
         Registry,
         compose::{File, Part},
@@ -87,8 +88,12 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
                 ui.add(label).on_hover_text("The picture is made of these files.");
                 if session.shaders.folders.shaders.is_none() {
                     let own = files.iter().any(|file| file.path.starts_with("models/"));
-                    let text =
-                        if own { "All but the model is built in." } else { "The shaders are built in." };
+                    let added = files.iter().any(|file| registry.is_foreign(&file.path));
+                    let text = match (own, added) {
+                        (_, true) => "Some are of this program, the others built in.",
+                        (true, false) => "All but the model is built in.",
+                        (false, false) => "The shaders are built in.",
+                    };
                     if theme::small_width(ui, text) <= ui.available_width() {
                         ui.label(theme::small(ui, text));
                     }
@@ -107,7 +112,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.spacing_mut().interact_size.y = ROW;
         let names = (names.ceil() + 10.0).min(0.6 * ui.available_width());
         for file in files {
-            self::file(ui, session, &file, names, actions);
+            self::file(ui, (session, registry), &file, names, actions);
         }
     });
 }
@@ -155,7 +160,14 @@ fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<
 const ROW: f32 = 22.0;
 
 /// The row of a file; `names` points for its name.
-pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, actions: &mut Vec<Action>) {
+pub(super) fn file(
+    ui: &mut Ui,
+    (session, registry): (&Session, &Registry),
+    file: &File,
+    names: f32,
+    actions: &mut Vec<Action>,
+) {
+    let foreign = registry.is_foreign(&file.path);
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
@@ -190,7 +202,7 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
                 ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));
             } else if edited {
                 let mark = ui.label(RichText::new("● edited").small().color(palette.accent));
-                mark.on_hover_text("This file differs from the copy that is built in.");
+                mark.on_hover_text("This file differs from the copy that is compiled in.");
             }
             let font = TextStyle::Monospace.resolve(ui.style());
             let shown = short(ui, path, &font, palette.weak, ui.available_width());
@@ -201,7 +213,11 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
         ui.set_max_width(340.0);
         ui.label(theme::strong(ui, &name));
         ui.label(help);
-        let place = on_disk.map_or_else(|| format!("{path}, built in"), |f| f.shown().to_string());
+        let place = on_disk.map_or_else(
+            // The folder that it is of may be on the machine of its author alone.
+            || if foreign { format!("{path}, of {}", program::name()) } else { format!("{path}, built in") },
+            |f| f.shown().to_string(),
+        );
         ui.label(theme::small(ui, place));
     });
 }

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{Action, MESSAGES_TAB, Session, Severity};
-use crate::files::printable;
+use crate::{files::printable, program::in_own_words};
 
 /// The most messages that are kept; the oldest give way.
 pub const MAX_MESSAGES: usize = 500;
@@ -26,7 +26,7 @@ impl Note {
     /// A message without what names of files may hold that is not to be shown.
     #[must_use]
     pub fn new(severity: Severity, text: impl Into<String>) -> Self {
-        Self { severity, text: printable(&text.into()).into_owned(), offer: None }
+        Self { severity, text: in_own_words(&printable(&text.into())).into_owned(), offer: None }
     }
 
     /// The same with a button beside it.

@@ -11,10 +11,13 @@ use bevy::{
     image::Image,
     light::cluster::GlobalClusterSettings,
     log::LogPlugin,
+    pbr::PreparedMaterial,
     picking::{InteractionPlugin, PickingPlugin, input::PointerInputPlugin},
     prelude::{DefaultPlugins, PluginGroup},
     render::{
         RenderApp, RenderPlugin,
+        erased_render_asset::ErasedRenderAssets,
+        mesh::RenderMesh,
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::{
@@ -189,6 +192,8 @@ impl Output {
 /// The longest that a first picture may take; software Vulkan compiles shaders for a few seconds at
 /// most.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// A frame that takes longer is drawn once, if it can be.
+const SLOW: Duration = Duration::from_millis(150);
 
 /// A renderer that draws scenes into an image, frame by frame.
 pub struct GpuRenderer {
@@ -340,13 +345,20 @@ impl GpuRenderer {
     pub fn settle(&mut self) -> Result<(), GpuError> {
         let start = std::time::Instant::now();
         let mut ready = 0;
-        // The first frame is drawn before the target is, hence two.
+        // The first frame is drawn before the target is, hence two; but a slow one for which all was there is not repeated.
         while ready < 2 {
+            let (before, begun) = (self.prepared(), std::time::Instant::now());
             self.step();
             if let Some(why) = self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem) {
                 return Err(GpuError::Memory(why));
             }
             ready = if self.is_waiting()? { 0 } else { ready + 1 };
+            if ready == 1 && before.is_some() && before == self.prepared() {
+                self.wait();
+                if begun.elapsed() > SLOW {
+                    break;
+                }
+            }
             if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
                 // Another process has the processors for what it tries.
                 std::thread::sleep(Duration::from_millis(2));
@@ -356,6 +368,18 @@ impl GpuRenderer {
             }
         }
         Ok(())
+    }
+
+    /// How many meshes, materials and images are on the GPU; none before the target is.
+    fn prepared(&self) -> Option<[usize; 3]> {
+        let world = self.app.get_sub_app(RenderApp)?.world();
+        let images = world.resource::<RenderAssets<GpuImage>>();
+        images.get(&self.target)?;
+        Some([
+            world.resource::<RenderAssets<RenderMesh>>().iter().count(),
+            world.resource::<ErasedRenderAssets<PreparedMaterial>>().iter().count(),
+            images.iter().count(),
+        ])
     }
 
     /// True while something waits to be loaded or compiled.
