@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     /// The object for forms that hold one: its name, or its place in the list from 0
     #[arg(long, value_name = "NAME|INDEX")]
     object: Option<String>,
-    /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs all views
+    /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs and pages all views
     #[arg(long, value_name = "VIEW")]
     view: Option<String>,
     /// Size of pictures and windows in pixels

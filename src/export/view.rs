@@ -1,6 +1,6 @@
 //! The view of a scene that an export holds: most forms hold one.
 
-use super::{Form, executable};
+use super::{Form, executable, html};
 use crate::{
     optics::TermSelection,
     registry::Registry,
@@ -8,8 +8,8 @@ use crate::{
     text::listed,
 };
 
-/// The scene that a form gets, and a sentence that says which view it is and how to get the others. Programs hold all
-/// views unless one was asked for, and scenes without variants have only one: then there is nothing to say.
+/// The scene that a form gets, and a sentence that says which view it is and how to get the others. Programs and pages
+/// hold all views unless one was asked for, and scenes without variants have only one: then there is nothing to say.
 #[must_use]
 pub fn exported(
     form: &Form,
@@ -44,14 +44,14 @@ pub fn exported(
     (seen, Some(note))
 }
 
-/// True if a form holds one view; programs hold all.
+/// True if a form holds one view; programs and pages hold all.
 #[must_use]
 pub fn holds_one(form: &Form) -> bool {
-    form.id != executable::FORM.id
+    form.id != executable::FORM.id && form.id != html::HTML.id
 }
 
 /// `view B (Phong)`.
-fn called(scene: &Scene, view: usize) -> String {
+pub(super) fn called(scene: &Scene, view: usize) -> String {
     let letter = LETTERS.get(view).copied().unwrap_or("?");
     match scene.view_name(view) {
         name if name == letter => format!("view {letter}"),

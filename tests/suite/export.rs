@@ -443,6 +443,9 @@ fn an_export_of_a_scene_with_views_says_which_one_it_is() {
     scene["variants"] = serde_json::json!([{ "name": "Half", "exposure": 1.0, "shading_model": "flat" }]);
     fs::write(folder.path().join("room.json"), scene.to_string()).expect("written");
     let all = [("mitsuba", "scene.xml"), ("bevy", "src/main.rs"), ("wgsl", "manifest.json"), ("html", "")];
+    // A page holds all views unless one is asked for.
+    let run = export(folder.path(), &["room.json", "--as", "html", "-o", "all.html"]);
+    assert_eq!((run.status, run.err.contains("--view")), (Some(0), false), "{}", run.err);
     for (form, file) in all {
         for (view, one, other) in [
             ("A", "view A", "view B (Half)"),
@@ -450,7 +453,7 @@ fn an_export_of_a_scene_with_views_says_which_one_it_is() {
             ("Half", "view B (Half)", "view A"),
         ] {
             let mut arguments = vec!["room.json", "--as", form, "-o", "out", "--overwrite"];
-            if view != "A" {
+            if view != "A" || form == "html" {
                 arguments.extend(["--view", view]);
             }
             let run = export(folder.path(), &arguments);

@@ -273,6 +273,47 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
     assert_eq!(seen, 2 * cases.len());
 }
 
+#[test]
+fn a_page_holds_every_view_with_a_switch() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = shipped("compare_diffuse_models.json");
+    let page_file = folder.path().join("page.html");
+    fs::write(&page_file, page(&scene(&file)).expect("a page")).expect("written");
+    let text = |what: &str| browser.run(what).as_str().unwrap_or_default().to_owned();
+    for renderer in ["webgpu", "webgl"] {
+        browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+        let expected = |view: &str| rendered(&file, folder.path(), &["--view", view]);
+        for view in ["A", "C", "B", "A"] {
+            set(&browser, &format!("#views input[value={view}]"), "");
+            let (shown, _) = browser.look();
+            let off = difference(&shown, &expected(view));
+            assert!(off.mean < MEAN && off.beyond < BEYOND, "{renderer} {view}: {off:?}");
+        }
+        // Another view is another picture.
+        let off = difference(&expected("A"), &expected("B"));
+        assert!(off.mean > MEAN || off.beyond > BEYOND, "{off:?}");
+        // The panel follows: the model, its knobs, the exposure.
+        let model = "return document.querySelector('#model h2').textContent";
+        let of_a = text(model);
+        set(&browser, "#views input[value=B]", "");
+        assert_ne!(text(model), of_a);
+        assert_eq!(browser.run("return document.querySelectorAll('#shadings label').length"), json!(4));
+    }
+}
+
+#[test]
+fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
+    let registry = Registry::builtin();
+    let scene = scene(&shipped("compare_tone_mappings.json"));
+    let request =
+        Request { scene: &scene, registry: &registry, stem: "page", size: (WIDTH, HEIGHT), object: 0 };
+    let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page of the others");
+    let left_out: Vec<_> = export.notes.iter().filter(|note| note.contains("is left out")).collect();
+    assert!(left_out.len() == 1 && left_out[0].starts_with("view C (AgX) is left out: "), "{left_out:?}");
+}
+
 /// A model whose lobe only the program can calculate.
 const BORROWED: &str = "/* lcm { \"lobe\": \"microfacet\", \"parameters\": [\"alpha_x\", \"k_s\"] } */
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {

@@ -12,13 +12,14 @@ use super::{
     texts::Texts,
 };
 use crate::{
-    export::{ExportError, Progress, Request, lit::Lit, object_path, shaders::alone},
-    optics::colour::srgb_encode,
+    export::{ExportError, Progress, Request, lit::Lit, object_path, shaders::alone, view::called},
+    optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, ParameterKind, Value, json as value, layout, stride},
     reflection::{Ambient, ModelEntry, OnPages, Term},
     registry::Registry,
-    scene::Scene,
+    scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
+    shape::MeshKey,
 };
 
 /// The scene, and its meshes.
@@ -51,43 +52,116 @@ fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
     })
 }
 
-/// Takes a scene apart for a page.
+/// What the views of a page share.
+#[derive(Default)]
+struct Shared {
+    texts: Texts,
+    blocks: Blocks,
+    meshes: Meshes,
+    scripts: BTreeMap<&'static str, &'static str>,
+    /// Each once, in the order of the first view that has it.
+    notes: Vec<String>,
+}
+
+impl Shared {
+    fn note(&mut self, notes: impl IntoIterator<Item = String>) {
+        for note in notes {
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+    }
+}
+
+/// Takes a scene apart for a page, with all its views.
 ///
 /// # Errors
 /// Parts that a page cannot hold.
 pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError> {
+    let Request { scene, registry, .. } = *request;
+    let mut shared = Shared::default();
+    let mut views = Vec::new();
+    let all: Vec<_> = (0..=scene.variants.len()).filter_map(|i| scene.seen(i, registry)).collect();
+    for (i, (seen, terms)) in all.iter().enumerate() {
+        let part = |done: f32| (i as f32 + done) / all.len() as f32;
+        let named = called(scene, i);
+        let of_view = Request { scene: seen, ..*request };
+        let made = view(&of_view, &mut shared, &|done, step| Ok(progress.step(0.9 * part(done), step)?));
+        let mut json = match made {
+            // The others are worth having without it.
+            Err(ExportError::Refused(reasons)) if i > 0 => {
+                shared.note([format!("{named} is left out: {}.", reasons.join("; "))]);
+                continue;
+            }
+            made => made?,
+        };
+        json["name"] = json!(scene.view_name(i));
+        json["letter"] = json!(LETTERS.get(i));
+        views.push(json);
+        if *terms != TermSelection::All {
+            shared.note([format!("{named} shows some terms of the equation only; the page shows all.")]);
+        }
+    }
+    let shadings = registry.shading_models().iter().map(|s| {
+        json!({
+            "id": s.declaration.id,
+            "name": s.declaration.name,
+            "source": s.declaration.source,
+            "summary": s.declaration.summary,
+            "parameters": parameters(s.parameters),
+            "size": stride(s.parameters),
+        })
+    });
+    let data = json!({
+        "shadings": shadings.collect::<Vec<_>>(),
+        "views": views,
+        "meshes": shared.meshes.all,
+        "texts": shared.texts.json(),
+        "blocks": shared.blocks.json(),
+    });
+    let script = |(id, script): (&&str, &&str)| format!("CURVES[{}] = {script};\n", json!(id));
+    let script = shared.scripts.iter().map(script).collect();
+    Ok(Data { scene: data, meshes: shared.meshes.bytes, notes: shared.notes, script })
+}
+
+/// Takes one view of a scene apart.
+fn view(
+    request: &Request,
+    shared: &mut Shared,
+    step: &dyn Fn(f32, &'static str) -> Result<(), ExportError>,
+) -> Result<Json, ExportError> {
     let Request { scene, registry, .. } = *request;
     let host = alone(request)?;
     let shadings = registry.shading_models();
     let variants: Vec<Scene> = shadings.iter().map(|shading| shaded(scene, shading)).collect();
     let mut lits = Vec::new();
     for (i, variant) in variants.iter().enumerate() {
-        progress.step(0.4 * i as f32 / variants.len() as f32, "taking the scene apart")?;
+        step(0.4 * i as f32 / variants.len() as f32, "taking the scene apart")?;
         lits.push(Lit::of(Request { scene: variant, ..*request }, host, |_| true)?);
     }
     let Some(lit) = lits.first().filter(|lit| !lit.objects.is_empty()) else {
         return Err(ExportError::refused("all objects are hidden; make one visible"));
     };
 
-    let (mut texts, mut blocks) = (Texts::default(), Blocks::default());
-    let (mut models, mut scripts) = (Vec::new(), BTreeMap::new());
+    let mut models = Vec::new();
     for (m, of_model) in lit.programs.iter().enumerate() {
-        let done = 0.4 + 0.4 * m as f32 / lit.programs.len() as f32;
-        progress.step(done, "translating its shaders")?;
+        step(0.4 + 0.4 * m as f32 / lit.programs.len() as f32, "translating its shaders")?;
         // Each shading model has materials of its own, but the objects are the same.
         let at = lit.objects.iter().position(|drawn| lit.materials[drawn.material].program == m);
         let Some(at) = at else { continue };
         let mut programs = Vec::new();
         for lit in &lits {
-            programs.push(program(lit, &lit.objects[at], &mut texts, &mut blocks)?);
+            programs.push(program(lit, &lit.objects[at], &mut shared.texts, &mut shared.blocks)?);
         }
-        models.push(model((of_model.model, registry), lit, &programs, &mut blocks));
-        scripts.extend(twin(of_model.model, registry).map(|(id, _, twin)| (id, twin.script)));
+        models.push(model((of_model.model, registry), lit, &programs, &mut shared.blocks));
+        shared.scripts.extend(twin(of_model.model, registry).map(|(id, _, twin)| (id, twin.script)));
+        let fixed = fixed(of_model.model, registry);
+        shared.note(fixed.map(|why| format!("{}: {why}.", of_model.model.declaration.name)));
     }
 
-    progress.step(0.8, "packing its meshes")?;
+    step(0.8, "packing its meshes")?;
     let tangents = lit.programs.iter().any(|p| p.model.declaration.anisotropic);
-    let (meshes, mesh_of, bytes) = meshes(lit, tangents)?;
+    let mesh_of = shared.meshes.of(lit, tangents)?;
     let objects: Vec<_> = lit
         .objects
         .iter()
@@ -105,23 +179,16 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
                 "mesh": mesh,
                 "matrix": drawn.room_from_object(request).to_cols_array(),
                 "values": values,
-                "curve": (!material.curve.is_empty()).then(|| blocks.add(&material.curve)),
+                "curve": (!material.curve.is_empty()).then(|| shared.blocks.add(&material.curve)),
             })
         })
         .collect();
+    shared.note(lit.notes());
+    shared.note(normals(lit));
     let observer = &scene.observer;
-    let scene = json!({
-        "shadings": shadings.iter().map(|s| json!({
-            "id": s.declaration.id,
-            "name": s.declaration.name,
-            "source": s.declaration.source,
-            "summary": s.declaration.summary,
-            "parameters": parameters(s.parameters),
-            "size": stride(s.parameters),
-        })).collect::<Vec<_>>(),
+    Ok(json!({
         "models": models,
         "objects": objects,
-        "meshes": meshes,
         "observer": {
             "position": observer.position.to_array(),
             "direction": observer.direction.to_array(),
@@ -130,16 +197,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         "exposure": scene.display.exposure,
         "encoding": scene.display.encoding.id(),
         "background": lit.background().map(|v| srgb_encode(v.clamp(0.0, 1.0))).to_array(),
-        "texts": texts.json(),
-        "blocks": blocks.json(),
-    });
-    let mut notes = lit.notes();
-    notes.extend(normals(lit));
-    let fixed =
-        lit.programs.iter().filter_map(|of_model| Some((of_model.model, fixed(of_model.model, registry)?)));
-    notes.extend(fixed.map(|(model, why)| format!("{}: {why}.", model.declaration.name)));
-    let script = |(id, script): (&&str, &&str)| format!("CURVES[{}] = {script};\n", json!(id));
-    Ok(Data { scene, meshes: bytes, notes, script: scripts.iter().map(script).collect() })
+    }))
 }
 
 /// The scene with one shading model for all objects.
@@ -151,35 +209,44 @@ fn shaded(scene: &Scene, shading: &ShadingEntry) -> Scene {
     scene
 }
 
-/// The meshes, that of each object, and the bytes of all.
-fn meshes(lit: &Lit, tangents: bool) -> Result<(Vec<Json>, Vec<usize>, Vec<u8>), ExportError> {
-    let Request { scene, registry, .. } = lit.request;
-    let (mut all, mut of_objects, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
-    let mut known: HashMap<_, usize> = HashMap::new();
-    for drawn in &lit.objects {
-        let object = &scene.objects[drawn.index];
-        // Known, or the scene could not have been taken apart.
-        let Some(shape) = registry.shape(&object.object_type) else { continue };
-        let key = shape.key(&object.shape, object.tessellation);
-        if let Some(index) = known.get(&key) {
-            of_objects.push(*index);
-            continue;
+/// The meshes, and the bytes of all.
+#[derive(Default)]
+struct Meshes {
+    all: Vec<Json>,
+    bytes: Vec<u8>,
+    known: HashMap<(MeshKey, bool), usize>,
+}
+
+impl Meshes {
+    /// The index of the mesh of each object.
+    fn of(&mut self, lit: &Lit, tangents: bool) -> Result<Vec<usize>, ExportError> {
+        let Request { scene, registry, .. } = lit.request;
+        let mut of_objects = Vec::new();
+        for drawn in &lit.objects {
+            let object = &scene.objects[drawn.index];
+            // Known, or the scene could not have been taken apart.
+            let Some(shape) = registry.shape(&object.object_type) else { continue };
+            let key = (shape.key(&object.shape, object.tessellation), tangents);
+            if let Some(index) = self.known.get(&key) {
+                of_objects.push(*index);
+                continue;
+            }
+            let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+            limits::mesh(&polygons)?;
+            let packed = mesh::pack(&polygons, tangents);
+            self.known.insert(key, self.all.len());
+            of_objects.push(self.all.len());
+            self.all.push(json!({
+                "vertices": packed.vertices,
+                "polygons": packed.polygons,
+                "step": packed.step,
+                "tangents": packed.tangents,
+                "at": self.bytes.len(),
+            }));
+            self.bytes.extend(packed.bytes);
         }
-        let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
-        limits::mesh(&polygons)?;
-        let packed = mesh::pack(&polygons, tangents);
-        known.insert(key, all.len());
-        of_objects.push(all.len());
-        all.push(json!({
-            "vertices": packed.vertices,
-            "polygons": packed.polygons,
-            "step": packed.step,
-            "tangents": packed.tangents,
-            "at": bytes.len(),
-        }));
-        bytes.extend(packed.bytes);
+        Ok(of_objects)
     }
-    Ok((all, of_objects, bytes))
 }
 
 fn model(

@@ -75,16 +75,19 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     );
     if page.len() > LIMIT {
         let words = 3 * escaped(name).len() + escaped(description).len();
-        return Err(ExportError::refused(too_large(page.len(), [scene.len(), meshes.len(), words])));
+        let several = !request.scene.variants.is_empty();
+        return Err(ExportError::refused(too_large(page.len(), [scene.len(), meshes.len(), words], several)));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
 
 /// The sizes of the page, of its shaders and values, of its meshes, and of the name and the description of the scene.
-fn too_large(page: usize, [scene, meshes, words]: [usize; 3]) -> String {
+fn too_large(page: usize, [scene, meshes, words]: [usize; 3], several_views: bool) -> String {
     let kb = |bytes: usize| bytes.div_ceil(1000);
     let remedy = if words > scene.max(meshes) {
         "a shorter name or description makes it smaller"
+    } else if several_views {
+        "one view alone (--view A), or lower tessellations, make it smaller"
     } else {
         "lower tessellations, or fewer different reflection models, make it smaller"
     };
@@ -151,11 +154,11 @@ mod tests {
 
     #[test]
     fn a_page_that_is_too_large_is_refused_with_its_sizes() {
-        let said = too_large(512_345, [90_000, 380_000, 100]);
+        let said = too_large(512_345, [90_000, 380_000, 100], false);
         assert!(said.contains("513 kB") && said.contains("300 kB is the limit"), "{said}");
         assert!(said.contains("380 kB are meshes") && said.contains("90 kB shaders"), "{said}");
         assert!(said.contains("lower tessellations"), "{said}");
-        let said = too_large(512_345, [90_000, 10_000, 400_000]);
+        let said = too_large(512_345, [90_000, 10_000, 400_000], false);
         assert!(said.contains("a shorter name or description") && !said.contains("lower"), "{said}");
     }
 }

@@ -83,6 +83,12 @@ class Page {
     scene.view.set(bytesOfFloats(floats));
   }
 
+  // Shows another view of the scene, from where the camera is.
+  show(scene) {
+    this.scene = scene;
+    this.draw();
+  }
+
   // Draws before the next picture of the screen.
   draw() {
     if (this.waiting) return;
@@ -131,14 +137,17 @@ async function main() {
     return;
   }
   const [text, meshes] = await Promise.all([unpack('scene-data'), unpack('mesh-data')]);
-  const scene = new Scene(JSON.parse(new TextDecoder().decode(text)), meshes);
-  const page = new Page(scene);
+  const data = JSON.parse(new TextDecoder().decode(text));
+  const shared = new Shared(data, meshes);
+  const views = data.views.map((view) => new Scene(view, shared));
+  const page = new Page(views[0]);
   if (bare) {
     document.body.classList.add('bare');
     picture.style.width = `${bare[0]}px`;
     picture.style.height = `${bare[1]}px`;
   }
-  const panel = new Panel(scene, (thing) => (thing ? page.apply(thing) : page.draw()));
+  const changed = (thing) => (thing ? page.apply(thing) : page.draw());
+  const panel = new Panel(views, changed, (scene) => page.show(scene));
   if (!(await page.start())) return;
   listen(picture, page.camera, () => page.draw(), (x, y) => panel.select(page.pickAt(x, y)));
   document.getElementById('view').addEventListener('click', () => {

@@ -2,19 +2,47 @@
 
 class Panel {
   // `changed(thing)` is called after values of an object changed; without an object, after anything else did.
-  constructor(scene, changed) {
-    this.scene = scene;
+  // `viewed(scene)` is called when another view is chosen.
+  constructor(views, changed, viewed) {
+    this.views = views;
     this.changed = changed;
-    this.selected = scene.things[0];
+    this.viewed = viewed;
     this.shadings = document.getElementById('shadings');
     this.object = document.getElementById('object');
     this.model = document.getElementById('model');
     this.knobs = document.getElementById('knobs');
+    this.object.addEventListener('change', () => this.select(this.scene.things[this.object.value]));
+    document.getElementById('reset').addEventListener('click', () => this.reset());
+    this.showViews();
+    this.enter(views[0]);
+  }
+
+  // Shows another view of the scene: the same object of it, if it is there.
+  enter(scene) {
+    const before = this.scene ? this.scene.things.indexOf(this.selected) : 0;
+    this.scene = scene;
+    this.selected = scene.things[before] ?? scene.things[0];
     this.showShadings();
     this.showObjects();
     this.showExposure();
     this.showModel();
-    document.getElementById('reset').addEventListener('click', () => this.reset());
+  }
+
+  showViews() {
+    const { views } = this;
+    document.getElementById('scene-views').hidden = views.length < 2;
+    views.forEach((view, i) => {
+      const named = view.name === view.letter ? '' : ` ${view.name}`;
+      const input = element('input', {
+        type: 'radio', name: 'view', checked: i === 0, value: view.letter,
+        onchange: () => {
+          this.enter(view);
+          this.viewed(view);
+        },
+      });
+      const text = element('span', {}, element('b', {}, view.letter), named);
+      document.getElementById('views').append(element('label', { title: `View ${view.letter}${named}` }, input, text));
+    });
   }
 
   showShadings() {
@@ -26,6 +54,7 @@ class Panel {
       summary.textContent = text;
       summary.title = source;
     };
+    document.getElementById('shadings').replaceChildren();
     for (const [index, name, text, source] of all) {
       const chosen = scene.shading === index;
       if (chosen) tell(text, source);
@@ -45,11 +74,8 @@ class Panel {
   showObjects() {
     const { scene } = this;
     document.getElementById('objects').hidden = scene.things.length < 2;
-    scene.things.forEach((thing, i) => {
-      const { name } = thing;
-      this.object.append(element('option', { value: i }, name));
-    });
-    this.object.addEventListener('change', () => this.select(scene.things[this.object.value]));
+    this.object.replaceChildren(...scene.things.map(({ name }, i) => element('option', { value: i }, name)));
+    this.object.value = scene.things.indexOf(this.selected);
   }
 
   select(thing) {

@@ -52,11 +52,25 @@ class Thing {
   }
 }
 
-class Scene {
+// What all views of a scene have in common.
+class Shared {
   constructor(data, meshBytes) {
+    this.shadings = data.shadings;
     this.blocks = data.blocks.map(bytesOf);
+    this.common = this.blocks.map((bytes) => new Uniform(bytes));
+    this.meshes = data.meshes.map((header) => new Mesh(header, meshBytes));
+    this.texts = data.texts;
+  }
+}
+
+// One view of the scene.
+class Scene {
+  constructor(data, shared) {
+    this.blocks = shared.blocks;
     Object.assign(this, {
-      shadings: data.shadings,
+      letter: data.letter,
+      name: data.name,
+      shadings: shared.shadings,
       models: data.models,
       encoding: data.encoding,
       background: data.background,
@@ -66,8 +80,8 @@ class Scene {
       // The shading model of all objects; null while each has its own.
       shading: null,
     });
-    this.common = this.blocks.map((bytes) => new Uniform(bytes));
-    const text = (parts) => parts.map((i) => data.texts[i]).join('');
+    this.common = shared.common;
+    const text = (parts) => parts.map((i) => shared.texts[i]).join('');
     const joined = (shader) => {
       shader.wgsl = text(shader.wgsl);
       for (const stage of shader.glsl) stage.text = text(stage.text);
@@ -78,7 +92,7 @@ class Scene {
         if (program.albedo) joined(program.albedo);
       }
     }
-    this.meshes = data.meshes.map((header) => new Mesh(header, meshBytes));
+    this.meshes = shared.meshes;
     this.things = data.objects.map((object) => new Thing(object, this));
     const shadings = new Set(this.things.map((thing) => thing.shading));
     this.mixed = shadings.size > 1;
