@@ -496,10 +496,15 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
     bar
 }
 
-/// Works, and says on a terminal what takes so long, if it does.
-fn patiently<T>(what: &str, options: Options, work: impl FnOnce() -> T) -> T {
-    const PATIENCE: Duration = Duration::from_secs(1);
-    const PAUSE: Duration = Duration::from_millis(100);
+/// Works, and if that takes longer than some time and there is a terminal, calls `watch` beside it, with a function that
+/// waits a moment and is true as long as the work goes on.
+fn attended<T>(
+    options: Options,
+    patience: Duration,
+    watch: impl FnOnce(&dyn Fn() -> bool) + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    const PAUSE: Duration = Duration::from_millis(50);
     if options.quiet || !io::stderr().is_terminal() {
         return work();
     }
@@ -507,25 +512,30 @@ fn patiently<T>(what: &str, options: Options, work: impl FnOnce() -> T) -> T {
     thread::scope(|scope| {
         scope.spawn(move || {
             let goes_on = |time| ended.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
-            if !goes_on(PATIENCE) {
-                return;
+            if goes_on(patience) {
+                watch(&|| goes_on(PAUSE));
             }
-            let bar = ProgressBar::new_spinner();
-            if let Ok(style) =
-                ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it")
-            {
-                bar.set_style(style);
-            }
-            bar.set_message(printable(what).into_owned());
-            while goes_on(PAUSE) {
-                bar.tick();
-            }
-            bar.finish_and_clear();
         });
         let result = work();
         drop(ends);
         result
     })
+}
+
+/// Works, and says on a terminal what takes so long, if it does.
+fn patiently<T>(what: &str, options: Options, work: impl FnOnce() -> T) -> T {
+    let watch = |goes_on: &dyn Fn() -> bool| {
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it") {
+            bar.set_style(style);
+        }
+        bar.set_message(printable(what).into_owned());
+        while goes_on() {
+            bar.tick();
+        }
+        bar.finish_and_clear();
+    };
+    attended(options, Duration::from_secs(1), watch, work)
 }
 
 /// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything but y or yes is a no.

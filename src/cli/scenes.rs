@@ -2,15 +2,14 @@
 //! raise.
 
 use std::{
-    io::{self, IsTerminal as _},
+    io,
     path::{Path, PathBuf},
-    sync::{Arc, mpsc},
-    thread,
+    sync::Arc,
     time::Duration,
 };
 
 use super::{
-    Options, ask, progress,
+    Options, ask, attended, progress,
     workshop::{Workshop, files_inside},
 };
 use crate::files::Shown as _;
@@ -159,32 +158,18 @@ impl Source {
 
 /// Shows how many files are read, while something reads many of them for long.
 fn watched<T>(options: Options, work: impl FnOnce() -> T) -> T {
-    const PATIENCE: Duration = Duration::from_millis(500);
-    const PAUSE: Duration = Duration::from_millis(50);
-    if options.quiet || !io::stderr().is_terminal() {
-        return work();
-    }
     let [before, _] = files_read();
-    let (ends, ended) = mpsc::channel::<()>();
-    thread::scope(|scope| {
-        scope.spawn(move || {
-            let goes_on = |time| ended.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
-            if !goes_on(PATIENCE) {
-                return;
-            }
-            let bar = progress((files_read()[1] - before) as u64, options);
-            bar.set_message("files");
-            while goes_on(PAUSE) {
-                let [done, all] = files_read();
-                bar.set_length((all - before) as u64);
-                bar.set_position((done - before) as u64);
-            }
-            bar.finish_and_clear();
-        });
-        let result = work();
-        drop(ends);
-        result
-    })
+    let watch = move |goes_on: &dyn Fn() -> bool| {
+        let bar = progress((files_read()[1] - before) as u64, options);
+        bar.set_message("files");
+        while goes_on() {
+            let [done, all] = files_read();
+            bar.set_length((all - before) as u64);
+            bar.set_position((done - before) as u64);
+        }
+        bar.finish_and_clear();
+    };
+    attended(options, Duration::from_millis(500), watch, work)
 }
 
 /// The answer of the flags, or of the user; `None` if there is nobody to ask, or the flags refuse.
