@@ -310,12 +310,6 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         scenes.iter().zip(&plans).zip(channels).zip(&sources).zip(&files)
     {
         bar.set_message(printable(&source.name()).into_owned());
-        let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
-        if let Some(folder) = folder {
-            fs::create_dir_all(folder).map_err(|e| {
-                Failure::Write(format!("the folder {} could not be created: {e}", folder.shown()))
-            })?;
-        }
         let job = Job {
             scene,
             plan,
@@ -422,6 +416,11 @@ impl Painter {
         };
         let about = if job.with_scene { about } else { about.without_scene() };
         let (rgb8, [width, height]) = captioned(job, registry, rgb8);
+        // Not earlier: what is interrupted leaves no empty folder behind.
+        let folder = crate::files::folder_of(job.file);
+        fs::create_dir_all(folder).map_err(|e| {
+            Failure::Write(format!("the folder {} could not be created: {e}", folder.shown()))
+        })?;
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
             _ => Failure::Write(format!("{} could not be written: {e}", job.file.shown())),

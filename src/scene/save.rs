@@ -169,6 +169,10 @@ pub fn write(
     let writer =
         format.writer().ok_or_else(|| SaveError::CannotWrite { path: shown(), format: format.name() })?;
     let failed = |error| SaveError::from_file(path, error);
+    // What /dev/stdout leads to has no folder for a draft.
+    if let Ok(kind @ (files::Kind::Pipe | files::Kind::Device)) = files::kind(path) {
+        return Err(failed(files::FileError::Kind(kind)));
+    }
     let target = files::follow(path).map_err(|e| failed(e.into()))?;
     let folder = files::folder_of(&target);
     if !folder.is_dir() {

@@ -366,12 +366,42 @@ fn a_picture_that_takes_long_says_so_on_a_terminal() {
     });
     scene["objects"] = spheres.collect::<Vec<_>>().into();
     std::fs::write(folder.path().join("many.json"), scene.to_string()).expect("written");
-    let command =
-        format!("{} render many.json -o many.png --renderer cpu --size 64x64", env!("CARGO_BIN_EXE_lcm"));
+    // On one processor, which needs more than a second for it anywhere.
+    let command = format!(
+        "taskset -c 0 {} render many.json -o many.png --renderer cpu --size 2560x1440",
+        env!("CARGO_BIN_EXE_lcm")
+    );
     let mut on_terminal = std::process::Command::new("script");
     on_terminal.args(["-qec", &command, "/dev/null"]).current_dir(folder.path());
     let output = on_terminal.output().expect("script is a part of every Linux");
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(said.contains("drawing many.json, 1s so far; Ctrl+C ends it"), "{said}");
     assert!(said.contains("wrote many.png"), "{said}");
+    // Ended meanwhile, it leaves nothing.
+    let command = format!(
+        "exec taskset -c 0 {} render many.json -o new/many.png --renderer cpu",
+        env!("CARGO_BIN_EXE_lcm")
+    );
+    let mut program = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .current_dir(folder.path())
+        .spawn()
+        .expect("a shell");
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    let ended = std::process::Command::new("kill").args(["-TERM", &program.id().to_string()]).status();
+    assert!(ended.expect("kill").success());
+    let status = program.wait().expect("it ends");
+    assert!(!status.success() && !folder.path().join("new").exists(), "{status}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_new_scene_is_no_stream() {
+    let ran = lcm(&["new", "/dev/stdout"], "");
+    assert_eq!(ran.status, Some(4));
+    assert!(
+        ran.err.contains("/dev/stdout was not written: it is a named pipe, not a regular file"),
+        "{}",
+        ran.err
+    );
 }

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
 
 use crate::panel::theme;
-use crate::text::mathematics::{Atom, parse};
+use crate::text::mathematics::{Atom, is_variable, parse};
 
 /// A run of characters, and where it stands.
 #[derive(Clone)]
@@ -47,16 +47,27 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
     let mut width = x;
     for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
         let mut x = x + 0.04 * size;
-        // One letter is a variable, as in a line; several are a word; and a power may have a power.
-        for atom in parse(script) {
-            let inner = lay_out(ui, &atom, script_size, colour);
+        // A power may have a power.
+        let nested = if script.contains(['^', '_']) { parse(script) } else { Vec::new() };
+        for atom in &nested {
+            let inner = lay_out(ui, atom, script_size, colour);
             let place = vec2(x, shift);
             pieces.extend(
                 inner.pieces.into_iter().map(|piece| Piece { offset: place + piece.offset, ..piece }),
             );
             x += inner.width;
+            width = width.max(x);
         }
-        width = width.max(x);
+        for run in runs(if nested.is_empty() { script } else { "" }) {
+            // One letter is a variable, as in a line; several are a word.
+            let family = if is_variable(run) { variable(run) } else { theme::maths() };
+            let galley = text(run, family, script_size);
+            let y = shift - baseline(&galley);
+            let advance = galley.size().x;
+            width = width.max(x + advance);
+            pieces.push(Piece { galley, offset: vec2(x, y) });
+            x += advance;
+        }
     }
     Laid { pieces, width: width + padding }
 }
@@ -65,6 +76,24 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
 fn variable(letter: &str) -> egui::FontFamily {
     let capital = letter.starts_with(|c| ('Α'..='Ω').contains(&c));
     if capital { theme::maths() } else { theme::maths_italic() }
+}
+
+/// The runs of an index or a power: its words and what stands between them.
+fn runs(script: &str) -> impl Iterator<Item = &str> {
+    let mut rest = script;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        // Greek letters are variables, however many stand side by side.
+        let end = if first.is_alphabetic() && !first.is_ascii() {
+            first.len_utf8()
+        } else {
+            let same = |c: char| c.is_ascii_alphabetic() == first.is_ascii_alphabetic();
+            rest.find(|c: char| !same(c) || c.is_alphabetic() && !c.is_ascii()).unwrap_or(rest.len())
+        };
+        let (run, after) = rest.split_at(end);
+        rest = after;
+        Some(run)
+    })
 }
 
 #[cfg(test)]
