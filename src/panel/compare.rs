@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 
 mod bar;
 
-use bar::bar;
+use bar::{NARROW, ROW, bar};
 
 use super::{
     caption::Lines,
@@ -29,10 +29,6 @@ use crate::{
 
 /// Height of a header, points.
 const HEADER: f32 = 28.0;
-/// Height of a row of the bar, points.
-const ROW: f32 = 34.0;
-/// In a narrower bar, the numbers have a row of their own.
-const NARROW: f32 = 560.0;
 /// Between views, points.
 const GAP: f32 = 2.0;
 /// Width of the place in which the edge of a wipe can be grasped, points.

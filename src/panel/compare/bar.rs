@@ -5,7 +5,6 @@ use bevy_egui::egui::{
     WidgetType, vec2,
 };
 
-use super::{NARROW, ROW};
 use crate::{
     compare::fitting_amplification,
     panel::{
@@ -18,6 +17,11 @@ use crate::{
         comparison::{AMPLIFICATIONS, Channel, Compared, Edge, Layout, Sign},
     },
 };
+
+/// Height of a row of the bar, points.
+pub(super) const ROW: f32 = 34.0;
+/// In a narrower bar, the numbers have a row of their own.
+pub(super) const NARROW: f32 = 560.0;
 
 /// The layout, its choices, and the numbers.
 pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
