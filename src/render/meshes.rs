@@ -10,7 +10,11 @@ use bevy::{
 
 use rayon::prelude::*;
 
-use super::material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT};
+use super::{
+    drawn::Drawn,
+    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+    shown::ShownObject,
+};
 use crate::{
     registry::Registry,
     scene::Object,
@@ -23,7 +27,7 @@ pub const MESH_BUDGET: u64 = 1 << 30;
 /// The meshes without objects that stay for a change back: at most so many, and so many bytes.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
-/// The meshes that are made at once. Together they may go beyond the budget, before they are counted.
+/// The meshes that are made at once, at most. Together they may go beyond the budget, before they are counted.
 const AT_ONCE: usize = 16;
 
 /// The vertices of a mesh.
@@ -37,11 +41,13 @@ pub(super) enum Vertices {
 
 /// The meshes by object type, parameters and tessellation. Meshes are large, so each is made only in the form that its
 /// shading model needs, and once the GPU has it, it is nowhere else.
-#[derive(Default, Resource)]
+#[derive(Resource)]
 pub struct ShapeMeshes {
     known: HashMap<(MeshKey, Vertices), Known>,
-    /// The bytes of all.
+    /// The bytes of all, the most that several may have, and the most that one may have alone.
     bytes: u64,
+    together: u64,
+    alone: u64,
     /// Those for which there was no room, and the objects that are not drawn for want of them.
     refused: HashSet<(MeshKey, Vertices)>,
     left_out: Vec<Entity>,
@@ -56,7 +62,64 @@ struct Known {
     bytes: u64,
 }
 
+impl Default for ShapeMeshes {
+    fn default() -> Self {
+        Self {
+            known: HashMap::new(),
+            bytes: 0,
+            together: MESH_BUDGET,
+            alone: MESH_BUDGET,
+            refused: HashSet::new(),
+            left_out: Vec::new(),
+            room: false,
+            grown: false,
+        }
+    }
+}
+
 impl ShapeMeshes {
+    /// Holds so many bytes of several meshes, or of one alone, instead of [`MESH_BUDGET`].
+    pub fn limit(&mut self, together: u64, alone: u64) {
+        (self.together, self.alone) = (together, alone);
+    }
+
+    /// The bytes of all meshes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// True if there is no mesh.
+    pub(super) fn is_empty(&self) -> bool {
+        self.known.is_empty()
+    }
+
+    /// Takes all meshes from objects and from the GPU. Those that were left out before can be tried once there is
+    /// [room](Self::make_room).
+    pub(super) fn clear(world: &mut World) {
+        let mut drawn = world.query_filtered::<Entity, (With<Mesh3d>, With<Drawn>)>();
+        for drawable in drawn.iter(world).collect::<Vec<_>>() {
+            take_off(world, drawable);
+        }
+        let mut meshes = world.resource_mut::<Self>();
+        meshes.known.clear();
+        meshes.bytes = 0;
+    }
+
+    /// Tries the objects again that were left out.
+    pub(super) fn make_room(&mut self) {
+        self.room = true;
+    }
+
+    /// Tries all objects again.
+    pub(super) fn restart(world: &mut World) {
+        let mut objects = world.query::<&mut ShownObject>();
+        objects.iter_mut(world).for_each(|mut object| object.set_changed());
+        let mut meshes = world.resource_mut::<Self>();
+        meshes.refused.clear();
+        meshes.left_out.clear();
+    }
+
     /// Makes the meshes of objects that are not yet known, as long as there is room.
     pub(super) fn make<'a>(
         &mut self,
@@ -80,7 +143,7 @@ impl ShapeMeshes {
                 self.refused.extend(missing.by_ref().map(|(key, ..)| key));
                 return;
             }
-            let made: Vec<_> = missing.by_ref().take(AT_ONCE).collect();
+            let made: Vec<_> = missing.by_ref().take(rayon::current_num_threads().min(AT_ONCE)).collect();
             let made: Vec<_> = made
                 .into_par_iter()
                 .map(|(key, shape, object)| {
@@ -94,7 +157,8 @@ impl ShapeMeshes {
                 .collect();
             for (key, mesh) in made {
                 let bytes = size(&mesh);
-                if self.bytes + bytes > MESH_BUDGET {
+                let most = if self.bytes == 0 { self.alone.max(self.together) } else { self.together };
+                if self.bytes + bytes > most {
                     self.refused.insert(key);
                 } else {
                     self.bytes += bytes;
@@ -132,11 +196,23 @@ impl ShapeMeshes {
             format!(
                 "the shapes of this scene need more than the {} MiB of GPU memory that meshes may take: {} {} not drawn; \
                  give objects a lower tessellation or shapes that they share",
-                MESH_BUDGET >> 20,
+                self.together.max(self.alone) >> 20,
                 plural(count, "shape"),
                 if count == 1 { "is" } else { "are" },
             )
         })
+    }
+}
+
+/// Takes an object out of the picture. The material goes with the mesh: for the renderer an object with a new mesh and
+/// the material of before is not a new one, and it would not be drawn again.
+pub(super) fn take_off(world: &mut World, drawable: Entity) {
+    let model = world.get::<Drawn>(drawable).map(Drawn::model);
+    let attachment = model.and_then(|model| world.get_resource::<Attachments>()?.get(model));
+    let Ok(mut entity) = world.get_entity_mut(drawable) else { return };
+    entity.remove::<Mesh3d>();
+    if let Some(attachment) = attachment {
+        (attachment.detach)(&mut entity);
     }
 }
 

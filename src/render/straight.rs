@@ -13,6 +13,7 @@ use bevy::{
     ecs::{
         prelude::*,
         schedule::{ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
+        system::SystemParam,
     },
     log::error_once,
     pbr::{
@@ -23,7 +24,7 @@ use bevy::{
         batching::gpu_preprocessing::GpuPreprocessingSupport,
         camera::{CameraRenderGraph, ExtractedCamera},
         render_phase::{ViewBinnedRenderPhases, ViewSortedRenderPhases},
-        render_resource::{RenderPassDescriptor, StoreOp},
+        render_resource::{RenderPassColorAttachment, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget},
     },
@@ -38,6 +39,11 @@ use super::{
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Straight;
 
+/// The schedule of cameras that only add objects to the picture, and leave it as light: the display's passes come with
+/// another, later.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Layer;
+
 /// Draws pictures [`ForDisplay`] in as few passes as they need.
 pub(super) struct StraightPlugin;
 
@@ -45,13 +51,16 @@ impl Plugin for StraightPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(LabFrame, choose.in_set(LabSystems::Upload).after(follow_scene));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            let mut schedule = Schedule::new(Straight);
-            schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
-                auto_insert_apply_deferred: false,
-                ..ScheduleBuildSettings::default()
-            });
-            schedule.add_systems(draw);
-            render.add_schedule(schedule);
+            for mut schedule in [Schedule::new(Straight), Schedule::new(Layer)] {
+                schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(
+                    ScheduleBuildSettings {
+                        auto_insert_apply_deferred: false,
+                        ..ScheduleBuildSettings::default()
+                    },
+                );
+                render.add_schedule(schedule);
+            }
+            render.add_systems(Straight, draw).add_systems(Layer, draw_layer);
         }
     }
 
@@ -59,8 +68,7 @@ impl Plugin for StraightPlugin {
         let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
         // Where the GPU prepares the instances, it does so first, as in `Core3d`.
         if render.world().get_resource::<GpuPreprocessingSupport>().is_some_and(|gpu| gpu.is_available()) {
-            render.add_systems(
-                Straight,
+            let prepare = || {
                 (
                     clear_indirect_parameters_metadata,
                     unpack_bins,
@@ -68,8 +76,9 @@ impl Plugin for StraightPlugin {
                     main_build_indirect_parameters,
                 )
                     .chain()
-                    .before(draw),
-            );
+            };
+            render.add_systems(Straight, prepare().before(draw));
+            render.add_systems(Layer, prepare().before(draw_layer));
         }
     }
 }
@@ -97,12 +106,15 @@ fn choose(
     }
 }
 
+/// The parts of a view that a pass draws with.
+type Parts =
+    (&'static ExtractedCamera, &'static ExtractedView, &'static ViewTarget, &'static ViewDepthTexture);
+
 /// Draws a picture: objects, and gizmos over them.
 pub fn draw(
     world: &World,
-    view: ViewQuery<(&ExtractedCamera, &ExtractedView, &ViewTarget, &ViewDepthTexture)>,
-    opaque: Res<ViewBinnedRenderPhases<Opaque3d>>,
-    transparent: Res<ViewSortedRenderPhases<Transparent3d>>,
+    view: ViewQuery<Parts>,
+    phases: Phases,
     clear_colour: Res<ClearColor>,
     mut context: RenderContext,
 ) {
@@ -113,22 +125,51 @@ pub fn draw(
         ClearColorConfig::Custom(colour) => Some(colour),
         ClearColorConfig::None => None,
     };
-    let Some(colour) = target.out_texture_color_attachment(background.map(Into::into)) else { return };
-    let mut pass = context.begin_tracked_render_pass(RenderPassDescriptor {
-        label: Some("picture"),
-        color_attachments: &[Some(colour)],
-        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Discard)),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    });
-    if let Some(viewport) = &camera.viewport {
-        pass.set_camera_viewport(viewport);
+    if let Some(colour) = target.out_texture_color_attachment(background.map(Into::into)) {
+        phases.draw(world, entity, (camera, view, depth), colour, &mut context);
     }
-    let drawn = opaque.get(&view.retained_view_entity).map(|phase| phase.render(&mut pass, world, entity));
-    let over =
-        transparent.get(&view.retained_view_entity).map(|phase| phase.render(&mut pass, world, entity));
-    for problem in [drawn, over].into_iter().flatten().filter_map(Result::err) {
-        error_once!("The picture could not be drawn: {problem:?}");
+}
+
+/// Draws objects into the light of a picture.
+fn draw_layer(world: &World, view: ViewQuery<Parts>, phases: Phases, mut context: RenderContext) {
+    let entity = view.entity();
+    let (camera, view, target, depth) = view.into_inner();
+    phases.draw(world, entity, (camera, view, depth), target.get_color_attachment(), &mut context);
+}
+
+/// Everything that a picture shows.
+#[derive(SystemParam)]
+pub struct Phases<'w> {
+    opaque: Res<'w, ViewBinnedRenderPhases<Opaque3d>>,
+    transparent: Res<'w, ViewSortedRenderPhases<Transparent3d>>,
+}
+
+impl Phases<'_> {
+    fn draw(
+        &self,
+        world: &World,
+        entity: Entity,
+        (camera, view, depth): (&ExtractedCamera, &ExtractedView, &ViewDepthTexture),
+        colour: RenderPassColorAttachment,
+        context: &mut RenderContext,
+    ) {
+        let mut pass = context.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(colour)],
+            // Kept, as another batch may be drawn over it.
+            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        if let Some(viewport) = &camera.viewport {
+            pass.set_camera_viewport(viewport);
+        }
+        let id = &view.retained_view_entity;
+        let drawn = self.opaque.get(id).map(|phase| phase.render(&mut pass, world, entity));
+        let over = self.transparent.get(id).map(|phase| phase.render(&mut pass, world, entity));
+        for problem in [drawn, over].into_iter().flatten().filter_map(Result::err) {
+            error_once!("The picture could not be drawn: {problem:?}");
+        }
     }
 }

@@ -17,7 +17,7 @@ use super::{
     illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
-    meshes::{ShapeMeshes, Vertices, forget_unused_meshes},
+    meshes::{ShapeMeshes, Vertices, forget_unused_meshes, take_off},
     overrides::Overrides,
     shown::{Shown, ShownObject},
     stage::{Stage, ViewCopy, copies},
@@ -282,7 +282,8 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let key = shape.key(&shown.shape, shown.tessellation);
     let vertices = vertices(&now.shading, registry);
     let Some(mesh) = world.resource::<ShapeMeshes>().get(key, vertices) else {
-        world.entity_mut(drawable).remove::<Mesh3d>().insert_if_new(now);
+        take_off(world, drawable);
+        world.entity_mut(drawable).insert_if_new(now);
         world.resource_mut::<ShapeMeshes>().leave_out(object);
         return;
     };

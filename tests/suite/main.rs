@@ -4,6 +4,7 @@
 mod albedo;
 mod animation;
 mod assets;
+mod batches;
 mod browser;
 mod channels;
 mod clipping;

@@ -6,30 +6,26 @@ use bevy::{
     a11y::AccessibilityPlugin,
     app::{App, PluginsState, TerminalCtrlCHandlerPlugin},
     asset::{AssetPlugin, Assets, Handle, RenderAssetUsages},
-    camera::{Hdr, RenderTarget},
+    camera::{ClearColorConfig, Hdr, RenderTarget},
     ecs::prelude::*,
     image::Image,
     light::cluster::GlobalClusterSettings,
     log::LogPlugin,
-    pbr::PreparedMaterial,
     picking::{InteractionPlugin, PickingPlugin, input::PointerInputPlugin},
     prelude::{DefaultPlugins, PluginGroup},
     render::{
         RenderApp, RenderPlugin,
-        erased_render_asset::ErasedRenderAssets,
-        mesh::RenderMesh,
+        camera::CameraRenderGraph,
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CachedPipelineState, CommandEncoderDescriptor, Extent3d,
-            MapMode, PipelineCache, PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat,
-            TextureUsages,
+            Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Extent3d, MapMode, PollType,
+            TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureUsages,
         },
         renderer::{RenderDevice, RenderQueue, initialize_renderer},
         settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
         texture::GpuImage,
     },
-    shader::ShaderCacheError,
     tasks::block_on,
     window::{ExitCondition, WindowPlugin},
     winit::WinitPlugin,
@@ -46,14 +42,14 @@ use crate::{
     registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
+        capture::settle::BATCH,
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
-        meshes::ShapeMeshes,
+        meshes::{MESH_BUDGET, ShapeMeshes},
         overrides::Overrides,
         plugin::ScenePlugin,
         schedule::run_on_one_thread,
-        trial::Bench,
         view::View,
     },
     scene::Scene,
@@ -191,14 +187,14 @@ impl Output {
 
 /// The longest that a first picture may take; software Vulkan compiles shaders for a few seconds at
 /// most.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// A frame that takes longer is drawn once, if it can be.
-const SLOW: Duration = Duration::from_millis(150);
+pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A renderer that draws scenes into an image, frame by frame.
 pub struct GpuRenderer {
-    app: App,
-    target: Handle<Image>,
+    pub(super) app: App,
+    pub(super) target: Handle<Image>,
+    /// The background and the graph of the camera, if the last picture took several batches.
+    pub(super) batched: Option<(ClearColorConfig, CameraRenderGraph)>,
     staging: Option<Buffer>,
     output: Output,
     width: u32,
@@ -272,8 +268,9 @@ impl GpuRenderer {
             // Bevy's own lights are not used, so neither is their clustering.
             clusters.gpu_clustering = None;
         }
+        app.world_mut().resource_mut::<ShapeMeshes>().limit(BATCH, MESH_BUDGET);
         run_on_one_thread(&mut app);
-        Ok(Self { app, target, staging: None, output, width, height })
+        Ok(Self { app, target, batched: None, staging: None, output, width, height })
     }
 
     /// The world of the app, for tests and for registering more.
@@ -319,7 +316,8 @@ impl GpuRenderer {
         }
     }
 
-    /// Draws one frame.
+    /// Draws one frame. After a picture in [batches](Self::settle) it stays as it is until the next
+    /// has settled.
     pub fn step(&mut self) {
         self.app.update();
     }
@@ -336,71 +334,6 @@ impl GpuRenderer {
     #[must_use]
     pub fn shader_problem(&self) -> Option<ShaderProblem> {
         self.app.world().get_resource::<LiveShaders>()?.refused().cloned()
-    }
-
-    /// Draws frames until nothing is waiting to be loaded or compiled.
-    ///
-    /// # Errors
-    /// [`GpuError::TimedOut`] when that does not happen, e.g. because a shader cannot be compiled.
-    pub fn settle(&mut self) -> Result<(), GpuError> {
-        let start = std::time::Instant::now();
-        let mut ready = 0;
-        // The first frame is drawn before the target is, hence two; but a slow one for which all was there is not repeated.
-        while ready < 2 {
-            let (before, begun) = (self.prepared(), std::time::Instant::now());
-            self.step();
-            if let Some(why) = self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem) {
-                return Err(GpuError::Memory(why));
-            }
-            ready = if self.is_waiting()? { 0 } else { ready + 1 };
-            if ready == 1 && before.is_some() && before == self.prepared() {
-                self.wait();
-                if begun.elapsed() > SLOW {
-                    break;
-                }
-            }
-            if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
-                // Another process has the processors for what it tries.
-                std::thread::sleep(Duration::from_millis(2));
-            }
-            if start.elapsed() > PATIENCE {
-                return Err(GpuError::TimedOut(PATIENCE));
-            }
-        }
-        Ok(())
-    }
-
-    /// How many meshes, materials and images are on the GPU; none before the target is.
-    fn prepared(&self) -> Option<[usize; 3]> {
-        let world = self.app.get_sub_app(RenderApp)?.world();
-        let images = world.resource::<RenderAssets<GpuImage>>();
-        images.get(&self.target)?;
-        Some([
-            world.resource::<RenderAssets<RenderMesh>>().iter().count(),
-            world.resource::<ErasedRenderAssets<PreparedMaterial>>().iter().count(),
-            images.iter().count(),
-        ])
-    }
-
-    /// True while something waits to be loaded or compiled.
-    pub(super) fn is_waiting(&self) -> Result<bool, GpuError> {
-        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return Ok(false) };
-        let cache = render_app.world().resource::<PipelineCache>();
-        for pipeline in cache.pipelines() {
-            if let CachedPipelineState::Err(error) = &pipeline.state
-                && !matches!(
-                    error,
-                    ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
-                )
-            {
-                return Err(GpuError::Shader(error.to_string()));
-            }
-        }
-        let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
-        // Bevy goes on listing a pipeline for one frame after it was made.
-        let made =
-            |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
-        Ok(trying || !cache.waiting_pipelines().all(made))
     }
 
     /// The bytes of the picture as last drawn, rows without padding.

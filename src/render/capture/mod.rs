@@ -4,4 +4,5 @@
 pub mod evaluate;
 pub mod gpu;
 pub mod png;
+pub mod settle;
 pub mod trial;

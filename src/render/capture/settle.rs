@@ -1,0 +1,192 @@
+//! Pictures that are complete: frames until nothing is missing, and batches where not all shapes find room at once.
+
+use std::time::{Duration, Instant};
+
+use bevy::{
+    camera::{Camera, Camera3d, Camera3dDepthLoadOp, ClearColorConfig},
+    ecs::{prelude::*, world::EntityWorldMut},
+    pbr::PreparedMaterial,
+    render::{
+        RenderApp,
+        camera::CameraRenderGraph,
+        erased_render_asset::ErasedRenderAssets,
+        mesh::RenderMesh,
+        render_asset::RenderAssets,
+        render_resource::{CachedPipelineState, PipelineCache},
+        texture::GpuImage,
+    },
+    shader::ShaderCacheError,
+};
+
+use super::gpu::{GpuError, GpuRenderer, PATIENCE};
+use crate::render::{
+    camera::{ForDisplay, PictureCamera},
+    live::LiveShaders,
+    meshes::ShapeMeshes,
+    straight::Layer,
+    trial::Bench,
+};
+
+/// The most bytes of meshes that are on the GPU at once where nobody waits for the next frame. Beyond it shapes are drawn
+/// in batches: the same picture, later.
+pub const BATCH: u64 = 64 << 20;
+/// A frame that takes longer is drawn once, if it can be.
+const SLOW: Duration = Duration::from_millis(150);
+
+impl GpuRenderer {
+    /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: where they take
+    /// more than [`BATCH`], one batch after the other.
+    ///
+    /// # Errors
+    /// [`GpuError::TimedOut`] when that does not happen, e.g. because a shader cannot be compiled;
+    /// [`GpuError::Memory`] when one shape alone takes more than there is.
+    pub fn settle(&mut self) -> Result<(), GpuError> {
+        if let Some((background, graph)) = self.batched.take() {
+            self.edit_camera(|camera| {
+                set_background(camera, background);
+                camera.insert(graph);
+            });
+            ShapeMeshes::restart(self.app.world_mut());
+        }
+        self.draw_frames()?;
+        if self.refused().is_some() { self.draw_batches() } else { Ok(()) }
+    }
+
+    /// Draws the shapes batch by batch: each over the picture and the depths of those before, from meshes that take
+    /// the room of theirs. From then on frames leave the picture as it is.
+    fn draw_batches(&mut self) -> Result<(), GpuError> {
+        let mut before = None;
+        let mut straight = false;
+        self.edit_camera(|camera| {
+            straight = camera.get::<ForDisplay>().is_some_and(|display| display.straight);
+            before = camera
+                .get_components::<(&Camera, &CameraRenderGraph)>()
+                .ok()
+                .map(|(camera, graph)| (camera.clear_color, graph.clone()));
+            if !straight {
+                camera.insert(CameraRenderGraph::new(Layer));
+            }
+        });
+        self.batched.clone_from(&before);
+        // The first batch has been drawn, but light only straight.
+        let mut drawn = straight;
+        loop {
+            if !std::mem::take(&mut drawn) {
+                self.draw_frames()?;
+            }
+            let why = self.refused();
+            if let Some(why) = &why
+                && self.app.world().resource::<ShapeMeshes>().is_empty()
+            {
+                return Err(GpuError::Memory(why.clone()));
+            }
+            self.edit_camera(|camera| set_background(camera, ClearColorConfig::None));
+            if why.is_none() {
+                break;
+            }
+            self.clear_meshes();
+            self.app.world_mut().resource_mut::<ShapeMeshes>().make_room();
+        }
+        // The display's passes come once, at the end: they would take what they made for light.
+        if let Some((_, graph)) = before.filter(|_| !straight) {
+            self.edit_camera(|camera| _ = camera.insert(graph));
+            self.step();
+            self.edit_camera(|camera| _ = camera.insert(CameraRenderGraph::new(Layer)));
+        }
+        self.clear_meshes();
+        Ok(())
+    }
+
+    fn clear_meshes(&mut self) {
+        ShapeMeshes::clear(self.app.world_mut());
+        // The render world lets go of them a frame later.
+        self.step();
+        self.step();
+        self.wait();
+    }
+
+    /// Draws frames until nothing is waiting to be loaded or compiled.
+    fn draw_frames(&mut self) -> Result<(), GpuError> {
+        let start = Instant::now();
+        let mut ready = 0;
+        // The first frame is drawn before the target is, hence two; but a slow one for which all was there is not repeated.
+        while ready < 2 {
+            let (before, begun) = (self.prepared(), Instant::now());
+            self.step();
+            ready = if self.is_waiting()? { 0 } else { ready + 1 };
+            if ready == 1 && before.is_some() && before == self.prepared() {
+                self.wait();
+                if begun.elapsed() > SLOW {
+                    break;
+                }
+            }
+            if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
+                // Another process has the processors for what it tries.
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            if start.elapsed() > PATIENCE {
+                return Err(GpuError::TimedOut(PATIENCE));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many meshes, materials and images are on the GPU; none before the target is.
+    fn prepared(&self) -> Option<[usize; 3]> {
+        let world = self.app.get_sub_app(RenderApp)?.world();
+        let images = world.resource::<RenderAssets<GpuImage>>();
+        images.get(&self.target)?;
+        Some([
+            world.resource::<RenderAssets<RenderMesh>>().iter().count(),
+            world.resource::<ErasedRenderAssets<PreparedMaterial>>().iter().count(),
+            images.iter().count(),
+        ])
+    }
+
+    /// True while something waits to be loaded or compiled.
+    pub(super) fn is_waiting(&self) -> Result<bool, GpuError> {
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return Ok(false) };
+        let cache = render_app.world().resource::<PipelineCache>();
+        for pipeline in cache.pipelines() {
+            if let CachedPipelineState::Err(error) = &pipeline.state
+                && !matches!(
+                    error,
+                    ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+                )
+            {
+                return Err(GpuError::Shader(error.to_string()));
+            }
+        }
+        let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
+        // Bevy goes on listing a pipeline for one frame after it was made.
+        let made =
+            |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
+        Ok(trying || !cache.waiting_pipelines().all(made))
+    }
+
+    /// The reason why shapes are missing in the picture, if any are.
+    fn refused(&self) -> Option<String> {
+        self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem)
+    }
+
+    fn edit_camera(&mut self, change: impl FnOnce(&mut EntityWorldMut)) {
+        let world = self.app.world_mut();
+        let mut cameras = world.query_filtered::<Entity, With<PictureCamera>>();
+        if let Some(camera) = cameras.iter(world).next() {
+            change(&mut world.entity_mut(camera));
+        }
+    }
+}
+
+/// Gives a camera a background, or none: then it draws over the picture that is there.
+fn set_background(camera: &mut EntityWorldMut, background: ClearColorConfig) {
+    if let Some(mut lens) = camera.get_mut::<Camera3d>() {
+        lens.depth_load_op = match background {
+            ClearColorConfig::None => Camera3dDepthLoadOp::Load,
+            _ => Camera3dDepthLoadOp::default(),
+        };
+    }
+    if let Some(mut camera) = camera.get_mut::<Camera>() {
+        camera.clear_color = background;
+    }
+}

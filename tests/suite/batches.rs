@@ -1,0 +1,123 @@
+//! Pictures that are drawn in batches, because their shapes do not find room at once.
+
+use glam::Vec3;
+use lights_camera_models::{
+    channel::{DebugChannel, Setting},
+    optics::tone::ToneMapping,
+    parameter::Value,
+    registry::Registry,
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        meshes::ShapeMeshes,
+    },
+    scene::{Light, Object, Scene},
+};
+
+/// Different shapes that pass through one another, so that each batch has parts before and behind those of others.
+fn crossing(count: usize, tone: ToneMapping, shading: &str) -> Scene {
+    let object = |i: usize| {
+        let turn = i as f32 * 2.4;
+        let mut object = Object {
+            object_type: "superellipsoid".to_owned(),
+            position: Vec3::new(5.0 + turn.cos(), 5.0 + turn.sin(), 4.0 + 0.2 * (i % 5) as f32),
+            size: 2.5,
+            tessellation: Some(8),
+            ..Object::default()
+        };
+        object.shape.set("vertical_exponent", Value::Number(0.4 + 0.1 * i as f32));
+        object
+    };
+    let light = Light { position: Some(Vec3::new(3.0, 8.0, 9.0)), intensity: 60.0, ..Light::default() };
+    let mut scene = Scene {
+        objects: (0..count).map(object).collect(),
+        lights: vec![light],
+        shading_model: shading.to_owned(),
+        ..Scene::default()
+    };
+    scene.display.tone_mapping = tone;
+    scene
+}
+
+fn renderer(samples: u8, output: Output, most: Option<u64>) -> GpuRenderer {
+    let mut renderer = GpuRenderer::new(96, 64, samples, output).expect("a Vulkan driver, software will do");
+    if let Some(most) = most {
+        meshes(&mut renderer, |meshes| meshes.limit(most, u64::MAX));
+    }
+    renderer
+}
+
+fn meshes<T>(renderer: &mut GpuRenderer, with: impl FnOnce(&mut ShapeMeshes) -> T) -> T {
+    with(&mut renderer.app().world_mut().resource_mut::<ShapeMeshes>())
+}
+
+fn picture(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<u8> {
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    renderer.read().expect("there is a picture")
+}
+
+#[test]
+fn a_picture_in_batches_is_the_same_bit_for_bit() {
+    let cases = [
+        (1, Output::Display, ToneMapping::None, "phong"),
+        (1, Output::Display, ToneMapping::Aces, "flat"),
+        (4, Output::Display, ToneMapping::None, "flat"),
+        (4, Output::Display, ToneMapping::Reinhard, "phong"),
+        (1, Output::Linear, ToneMapping::None, "gouraud"),
+    ];
+    for (samples, output, tone, shading) in cases {
+        let scene = crossing(11, tone, shading);
+        let mut whole = renderer(samples, output, None);
+        let expected = picture(&mut whole, &scene);
+        let all = meshes(&mut whole, |meshes| meshes.bytes());
+        let mut batched = renderer(samples, output, Some(all / 4));
+        let case = format!("{samples} samples, {output:?}, {tone:?}, {shading}");
+        assert!(picture(&mut batched, &scene) == expected, "{case}");
+        let left = meshes(&mut batched, |meshes| meshes.bytes());
+        assert!(all > 0 && left == 0, "{case}: batches leave nothing behind");
+        batched.step();
+        assert!(batched.read().expect("a picture") == expected, "{case}: a frame later");
+
+        // Other pictures of the same renderer: in batches again, whole, and in batches once more.
+        let again = crossing(7, tone, shading);
+        let expected_again = picture(&mut whole, &again);
+        assert!(picture(&mut batched, &again) == expected_again, "{case}: fewer");
+        let few = crossing(2, tone, shading);
+        assert!(picture(&mut batched, &few) == picture(&mut whole, &few), "{case}: without batches");
+        assert!(picture(&mut batched, &scene) == expected, "{case}: again");
+    }
+}
+
+#[test]
+fn a_channel_in_batches_is_the_same() {
+    let scene = crossing(9, ToneMapping::None, "phong");
+    let setting =
+        Setting::new(DebugChannel::Normals, &scene, &Registry::builtin(), scene.observer.position, None);
+    let mut pictures = [None, Some(20_000)].map(|most| {
+        let mut renderer = renderer(1, Output::Display, most);
+        let plain = picture(&mut renderer, &scene);
+        renderer.set_channel(Some(setting));
+        let normals = picture(&mut renderer, &scene);
+        assert!(plain != normals);
+        normals
+    });
+    let [whole, batched] = &mut pictures;
+    assert!(whole == batched);
+}
+
+/// One shape that is too large alone is named, and the next picture has room.
+#[test]
+fn a_shape_that_is_too_large_alone_is_refused() {
+    let mut renderer = renderer(1, Output::Display, None);
+    let fine = |tessellation| {
+        let mut scene = crossing(3, ToneMapping::None, "phong");
+        scene.objects[1].tessellation = Some(tessellation);
+        scene
+    };
+    let expected = picture(&mut renderer, &fine(6));
+    meshes(&mut renderer, |meshes| meshes.limit(20_000, 100_000));
+    renderer.set_scene(fine(128));
+    let error = renderer.settle().expect_err("there is no room").to_string();
+    assert!(error.contains("1 shape is not drawn") && error.contains("--renderer cpu"), "{error}");
+    assert!(picture(&mut renderer, &fine(6)) == expected);
+}
