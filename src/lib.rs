@@ -70,6 +70,8 @@ pub mod lettering;
 
 pub mod program;
 
+pub mod caught;
+
 pub mod failure;
 pub mod files;
 pub mod progress;

@@ -127,7 +127,9 @@ pub(super) fn run(
                     view.file = Some(path);
                 }
                 // Of another program, the window may know types that the command line does not.
-                Err(_) if program::name() != program::LAB => view.late = Some(path),
+                Err(_) if program::name() != program::LAB => {
+                    view.late = Some((path, options.defaults()));
+                }
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }

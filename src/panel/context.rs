@@ -1,10 +1,5 @@
 //! A panel and its connection to the rest of the window.
 
-use std::{
-    any::Any,
-    panic::{AssertUnwindSafe, catch_unwind},
-};
-
 use bevy::{
     app::App,
     ecs::{resource::Resource, world::World},
@@ -16,6 +11,7 @@ use super::{
     theme::Palette,
 };
 use crate::{
+    caught::{catch, message},
     document::{Document, Edit},
     registry::Registry,
 };
@@ -145,8 +141,8 @@ impl<P: Panel> Panel for Guarded<P> {
             }
             return;
         }
-        let Err(payload) = catch_unwind(AssertUnwindSafe(|| self.panel.show(ui, context))) else { return };
-        let why = said(&*payload);
+        let Err(payload) = catch(|| self.panel.show(ui, context)) else { return };
+        let why = message(&*payload).to_owned();
         let (title, id) = (self.panel.title(), self.panel.id());
         let text = format!(
             "The panel “{title}” ({id}) stopped, since it panicked: {why}. The window goes on without it."
@@ -154,12 +150,6 @@ impl<P: Panel> Panel for Guarded<P> {
         context.act(Action::Say(Severity::Error, text));
         self.stopped = Some(why);
     }
-}
-
-/// The message of a panic.
-fn said(payload: &(dyn Any + Send)) -> String {
-    let text = payload.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("it gave no reason").to_owned()
 }
 
 /// The panels of the window.

@@ -3,7 +3,6 @@
 
 use std::{
     collections::HashMap,
-    panic::{AssertUnwindSafe, catch_unwind},
     path::PathBuf,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
@@ -16,6 +15,7 @@ use bevy_egui::egui::{
 
 use super::theme::Palette;
 use crate::{
+    caught::catch,
     reference,
     registry::Registry,
     scene::{
@@ -126,7 +126,7 @@ fn work(ctx: &Context, registry: &Registry, shared: &Shared) {
             };
             source
         };
-        let made = catch_unwind(AssertUnwindSafe(|| make(ctx, &source, registry)))
+        let made = catch(|| make(ctx, &source, registry))
             .unwrap_or_else(|_| Preview::Failed("This scene cannot be drawn.".into()));
         lock(shared).known.insert(source, made);
         ctx.request_repaint();

@@ -24,6 +24,9 @@ use crate::{
 
 /// The most that meshes may take on the GPU, bytes. On the way there they are held up to three times.
 pub const MESH_BUDGET: u64 = 1 << 30;
+/// The most bytes of meshes that are on the GPU at once where nobody waits for the next frame. Beyond it shapes are drawn
+/// in batches: the same picture, later.
+pub const BATCH: u64 = 64 << 20;
 /// The meshes without objects that stay for a change back: at most so many, and so many bytes.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;

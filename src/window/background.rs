@@ -1,7 +1,6 @@
 //! Work of the window that takes a while: one at a time, in a thread of its own, with progress and a way to stop it.
 
 use std::{
-    panic::{AssertUnwindSafe, catch_unwind},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -9,7 +8,7 @@ use std::{
     thread,
 };
 
-use crate::progress::Progress;
+use crate::{caught::catch, progress::Progress};
 
 /// Work with a label, and its result.
 #[derive(Debug)]
@@ -63,7 +62,7 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
             };
             let stops = || cancelled.load(Ordering::Relaxed);
             let progress = Progress { tell: &tell, cancelled: &stops };
-            let ended = catch_unwind(AssertUnwindSafe(|| work(&progress))).unwrap_or_else(|_| broken());
+            let ended = catch(|| work(&progress)).unwrap_or_else(|_| broken());
             *lock(&state) = State { running: None, ended: Some(ended) };
             wake();
         });

@@ -173,14 +173,27 @@ fn declare_custom(registry: &mut Registry, session: &mut Session) {
     }
 }
 
-/// Opens a file with what the app knows by now, beside what was known before.
+/// Opens a file with what the app knows by now, beside what was known before. Where the user is asked about missing parts,
+/// the window asks.
 ///
 /// # Errors
 /// If the scene cannot be read, or has problems.
-pub fn open_late(app: &mut App, file: &Path, mut known: Registry) -> Result<(), LoadError> {
+pub fn open_late(
+    app: &mut App,
+    file: &Path,
+    defaults: Defaults,
+    mut known: Registry,
+) -> Result<(), LoadError> {
     let world = app.world_mut();
     known.add_missing(world.get_resource_or_init::<Registry>().as_ref());
-    let loaded = load::file(file, &known, Defaults::Refuse)?;
+    let loaded = load::file(file, &known, defaults)?;
+    if defaults == Defaults::Ask && !loaded.missing.is_empty() {
+        let effects = world.resource_scope(|world, mut session: Mut<Session>| {
+            open(file, &mut session, &known, &mut world.resource_mut::<DiskFiles>(), true)
+        });
+        world.write_message_batch(effects.into_iter().map(LabEffect));
+        return Ok(());
+    }
     world.resource_mut::<DiskFiles>().expect(file, Some(loaded.stamp));
     world.insert_resource(CurrentScene(loaded.scene.clone()));
     world.resource_mut::<Session>().opened(file.to_owned(), loaded.scene);

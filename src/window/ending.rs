@@ -19,7 +19,7 @@ use std::{
 use bevy::app::{App, AppExit};
 
 use super::watching::complain;
-use crate::{failure::Failure, recovery::Keeper};
+use crate::{caught, failure::Failure, recovery::Keeper};
 
 /// Ending waits for the disk no longer than this.
 pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
@@ -61,14 +61,16 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
     let sentence = || keeper.and_then(|keeper| keeper.settle(PATIENCE).sentence());
     static RUNNING: AtomicBool = AtomicBool::new(false);
     RUNNING.store(true, Ordering::SeqCst);
-    // The first panic is the cause of all others.
-    static CULPRIT: Mutex<Option<String>> = Mutex::new(None);
+    // The first panic is the cause of all others, but not one that was caught.
+    static CULPRIT: Mutex<Option<(usize, String)>> = Mutex::new(None);
     let hook = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
         if RUNNING.load(Ordering::SeqCst)
             && let Ok(mut culprit) = CULPRIT.try_lock()
         {
-            culprit.get_or_insert_with(|| described(info));
+            let caught = caught::count();
+            let known = culprit.take().filter(|(before, _)| *before == caught);
+            *culprit = Some(known.unwrap_or_else(|| (caught, described(info))));
         }
         // Of a lost display the windowing library complains in its own way; ours is below.
         if !RUNNING.load(Ordering::SeqCst) || display_answers() {
@@ -92,10 +94,8 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
         }
         Err(panic) => {
             let culprit = CULPRIT.lock().unwrap_or_else(PoisonError::into_inner).take();
-            complain(&lost(
-                &format!("the window was closed: {}", culprit.as_deref().unwrap_or("a system panicked")),
-                sentence(),
-            ));
+            let why = culprit.map_or_else(|| "a system panicked".to_owned(), |(_, why)| why);
+            complain(&lost(&format!("the window was closed: {why}"), sentence()));
             panic::resume_unwind(panic)
         }
     }

@@ -30,8 +30,8 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
     let (late, known) = (options.late.clone(), options.registry.clone().unwrap_or_default());
     add_with_display(&mut app, LabPlugins::new(options).build().disable::<RequirementsPlugin>())?;
     extend(&mut app);
-    if let Some(file) = late {
-        open_late(&mut app, &file, known).map_err(|error| Failure::Invalid(error.to_string()))?;
+    if let Some((file, defaults)) = late {
+        open_late(&mut app, &file, defaults, known).map_err(|error| Failure::Invalid(error.to_string()))?;
     }
     let report = Report::default();
     if let Some(mut countdown) = app.world_mut().get_resource_mut::<Countdown>() {

@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use crate::{
     panel::state::LessonSource,
     registry::Registry,
-    scene::{Scene, load::Stamp},
+    scene::{
+        Scene,
+        load::{Defaults, Stamp},
+    },
 };
 
 /// The choices with which the window starts.
@@ -20,8 +23,9 @@ pub struct ViewOptions {
     pub stamp: Option<Stamp>,
     /// A file that the window opens itself, and asks about where there is something to ask.
     pub open: Option<PathBuf>,
-    /// A file whose types the window may know once all of it is there; what is wrong with it ends the program then.
-    pub late: Option<PathBuf>,
+    /// A file whose types the window may know once all of it is there, and what is done about missing parts; what is
+    /// wrong with it ends the program then.
+    pub late: Option<(PathBuf, Defaults)>,
     /// A lesson that the window opens.
     pub lesson: Option<LessonSource>,
     /// The step of the lesson, from 0; else the one that the user was at.

@@ -5,10 +5,14 @@
 use std::{env, ffi::OsString, fs, path::Path, process::Command};
 
 use bevy::prelude::{DetectChangesMut as _, Local, Res, ResMut, Update};
+use bevy_egui::egui;
 use lights_camera_models::{
     cli,
     document::Edit,
-    panel::state::{Action, Session},
+    panel::{
+        Panel, PanelApp as _, PanelContext, Place,
+        state::{Action, Session},
+    },
     recovery::Store,
     registry::{Register as _, Registry},
 };
@@ -48,12 +52,33 @@ fn a_program() {
         move |app| {
             app.add_reflection_model::<Toon>();
             if breaks {
-                app.add_systems(Update, breaking);
+                app.add_panel(Fragile).add_systems(Update, breaking);
             }
         },
     );
     // What the command line would give to the system.
     std::process::exit(i32::from(code != std::process::ExitCode::SUCCESS));
+}
+
+/// A panel that panics long before the system does, and is caught.
+struct Fragile;
+
+impl Panel for Fragile {
+    fn id(&self) -> &'static str {
+        "fragile"
+    }
+
+    fn title(&self) -> &'static str {
+        "Fragile"
+    }
+
+    fn place(&self) -> Place {
+        Place::Right
+    }
+
+    fn show(&mut self, _: &mut egui::Ui, _: &mut PanelContext<'_>) {
+        panic!("the panel is fragile");
+    }
 }
 
 fn program(arguments: &str, config: &Path) -> Command {
@@ -93,6 +118,20 @@ fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
     let mut open = program(&format!("view {} --exit-after 3", file.display()), folder.path());
     let (_, err) = said(open.env("DISPLAY", screen.display()));
     assert!(!err.contains("toon"), "{err}");
+    // What is missing is asked about, accepted or refused, as in the laboratory itself.
+    let mut lacking = scene.clone();
+    lacking.as_object_mut().expect("an object").remove("shading_model");
+    fs::write(&file, lacking.to_string()).expect("written");
+    let said_of = |flags: &str| {
+        let arguments = format!("view {} --exit-after 5 {flags}", file.display());
+        said(program(&arguments, folder.path()).env("DISPLAY", screen.display())).1
+    };
+    for flags in ["", "--use-defaults"] {
+        let err = said_of(flags);
+        assert!(!err.contains("shading_model"), "{flags}: {err}");
+    }
+    let err = said_of("--no-defaults");
+    assert!(err.contains("shading_model") && err.contains("--use-defaults"), "{err}");
     // A type that nobody registers is still an error.
     scene["reflection_model"] = "tune".into();
     fs::write(&file, scene.to_string()).expect("written");
@@ -108,6 +147,7 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     let (_, err) = said(breaks.env("DISPLAY", screen.display()).env("LCM_TEST_BREAKS", "1"));
     let line = err.lines().find(|line| line.contains("the window was closed: the system")).expect(&err);
     assert!(line.contains("programs.rs:") && line.contains("the forty frames are over"), "{line}");
+    assert!(err.contains("the panel is fragile") && !line.contains("fragile"), "it was caught: {err}");
     let data = folder.path().join("data");
     assert!(Store::new(data.join("recovery")).left().is_empty(), "nothing in the folder of the laboratory");
     let name = env::current_exe().expect("it runs").file_stem().expect("a name").to_owned();

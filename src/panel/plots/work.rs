@@ -2,7 +2,6 @@
 //! moment. It stops when the plots are no longer shown.
 
 use std::{
-    panic::{AssertUnwindSafe, catch_unwind},
     sync::{
         Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, Ordering},
@@ -16,6 +15,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::request::{Drawn, Key, NoCurve, Recipe};
 use crate::{
+    caught::catch,
     curves::{Detail, Kind, Setup},
     panel::state::Slot,
     progress::Progress,
@@ -171,10 +171,10 @@ impl Shared {
                 let registry = job.registry.as_ref().filter(|_| item.slot == Slot::Live);
                 item.recipe.draw(&job.setup, detail, registry, &progress)
             };
-            let made = catch_unwind(AssertUnwindSafe(|| match &*POOL {
+            let made = catch(|| match &*POOL {
                 Some(pool) => pool.install(draw),
                 None => draw(),
-            }));
+            });
             let outcome = match made {
                 Ok(Err(NoCurve::Cancelled)) => return false,
                 Ok(Err(NoCurve::Because(why))) => Err(why),

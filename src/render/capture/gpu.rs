@@ -42,11 +42,10 @@ use crate::{
     registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
-        capture::settle::BATCH,
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
-        meshes::{MESH_BUDGET, ShapeMeshes},
+        meshes::{BATCH, MESH_BUDGET, ShapeMeshes},
         overrides::Overrides,
         plugin::ScenePlugin,
         schedule::run_on_one_thread,

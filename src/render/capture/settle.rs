@@ -27,15 +27,12 @@ use crate::render::{
     trial::Bench,
 };
 
-/// The most bytes of meshes that are on the GPU at once where nobody waits for the next frame. Beyond it shapes are drawn
-/// in batches: the same picture, later.
-pub const BATCH: u64 = 64 << 20;
 /// A frame that takes longer is drawn once, if it can be.
 const SLOW: Duration = Duration::from_millis(150);
 
 impl GpuRenderer {
     /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: where they take
-    /// more than [`BATCH`], one batch after the other.
+    /// more than [`BATCH`](crate::render::meshes::BATCH), one batch after the other.
     ///
     /// # Errors
     /// [`GpuError::TimedOut`] when that does not happen, e.g. because a shader cannot be compiled;

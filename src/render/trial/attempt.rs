@@ -1,11 +1,6 @@
 //! The trial itself: a candidate is composed and made into a pipeline.
 
-use std::{
-    borrow::Cow,
-    cell::Cell,
-    panic::{self, AssertUnwindSafe},
-    sync::Once,
-};
+use std::{borrow::Cow, cell::Cell, panic, sync::Once};
 
 use bevy::{
     asset::{AssetId, uuid::Uuid},
@@ -27,7 +22,10 @@ use super::{
     tools::{COMPOSED, Example, Tools},
     verdict::Refusal,
 };
-use crate::shader::{check::locate, compose::Composed, limits, pitfall};
+use crate::{
+    caught::catch,
+    shader::{check::locate, compose::Composed, limits, pitfall},
+};
 
 /// Composes a candidate and makes a pipeline of it. The cache is filled when it is used first.
 pub(super) fn attempt(
@@ -81,7 +79,7 @@ pub(super) fn quietly<T>(call: impl FnOnce() -> T) -> Option<T> {
         }));
     });
     EXPECTED.set(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(call));
+    let result = catch(call);
     EXPECTED.set(false);
     result.ok()
 }

@@ -1,0 +1,47 @@
+//! Panics that are caught, so that the rest goes on: of somebody's panel, of a shader that is tried, of work in a thread.
+
+use std::{
+    any::Any,
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+/// The result of a call, or what it panicked with. Callers must leave nothing half done that others see.
+pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+    let result = catch_unwind(AssertUnwindSafe(call));
+    if result.is_err() {
+        COUNT.fetch_add(1, Ordering::SeqCst);
+    }
+    result
+}
+
+/// The number of panics caught so far. What ends the program came after them.
+#[must_use]
+pub fn count() -> usize {
+    COUNT.load(Ordering::SeqCst)
+}
+
+/// The message of a panic.
+#[must_use]
+pub fn message(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("it gave no reason")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_caught_panic_is_counted_and_has_its_message() {
+        let before = count();
+        assert_eq!(catch(|| 7).ok(), Some(7));
+        let payload = catch(|| panic!("the {} is broken", "lens")).expect_err("it panicked");
+        assert_eq!(message(&*payload), "the lens is broken");
+        assert_eq!(message(&*catch(|| panic!("plain")).expect_err("it panicked")), "plain");
+        assert_eq!(message(&7), "it gave no reason");
+        assert!(count() >= before + 2);
+    }
+}
