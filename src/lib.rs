@@ -15,6 +15,7 @@
 //! - [`text`]: words for messages, and JSON whose values know their place.
 //! - [`lettering`]: text in pictures.
 //! - [`program`]: the name of the program, and folders by it.
+//! - [`caught`]: panics that are caught, so that the rest goes on.
 //! - [`files`]: every read and write: size limits, atomic replacement.
 //! - [`failure`]: why a command failed, and its exit status.
 //! - [`progress`]: how far some work is, and the wish to stop it.
