@@ -48,6 +48,12 @@ fn observer_position() -> vec3<f32> {
     return view.world_position;
 }
 
+// True if no triangle at a corner faces the observer, so that none is drawn. The normal was as long as the cone of the
+// triangles' normals around it is narrow, the twin of src/render/facing.rs.
+fn faces_away(position: vec3<f32>, normal: vec3<f32>, narrowness: f32) -> bool {
+    return dot(normal, unit_or_zero(observer_position() - position)) * narrowness < -1.0;
+}
+
 @vertex
 fn vertex(in: VertexIn) -> Stages {
     object_row = mesh_functions::get_tag(in.instance_index);
@@ -65,7 +71,15 @@ fn vertex(in: VertexIn) -> Stages {
     corner.face_tangent = (room_from_local * vec4(in.face_tangent, 0.0)).xyz;
     corner.face_centre = (room_from_local * vec4(in.face_centre, 1.0)).xyz;
 #endif
-    let passed = shade_vertex(corner);
+    var passed = Varying(corner.position, corner.normal, corner.tangent, vec3(0.0), vec3(0.0));
+#ifdef FACES
+    let is_hidden = faces_away(corner.position, corner.face_normal, length(in.face_normal));
+#else
+    let is_hidden = faces_away(corner.position, corner.normal, length(in.normal));
+#endif
+    if !is_hidden {
+        passed = shade_vertex(corner);
+    }
     var out: Stages;
     out.clip_position = position_world_to_clip(corner.position);
     out.position = passed.position;

@@ -49,6 +49,15 @@ pub const FACE_TANGENT: MeshVertexAttribute =
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
 
+/// The vertices of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Vertices {
+    /// Shared by polygons, for shading models that interpolate.
+    Shared,
+    /// Apart, for shading models that calculate per polygon.
+    Apart,
+}
+
 /// The content of a material, the same for all model types.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialInputs {

@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 use super::{
     drawn::Drawn,
-    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+    facing,
+    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT, Vertices},
     shown::ShownObject,
 };
 use crate::{
@@ -32,15 +33,6 @@ const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
 /// The meshes that are made at once, at most. Together they may go beyond the budget, before they are counted.
 const AT_ONCE: usize = 16;
-
-/// The vertices of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Vertices {
-    /// Shared by polygons, for shading models that interpolate.
-    Shared,
-    /// Apart, for shading models that calculate per polygon.
-    Apart,
-}
 
 /// The meshes by object type, parameters and tessellation. Meshes are large, so each is made only in the form that its
 /// shading model needs, and once the GPU has it, it is nowhere else.
@@ -151,11 +143,12 @@ impl ShapeMeshes {
                 .into_par_iter()
                 .map(|(key, shape, object)| {
                     let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
-                    let mesh = match key.1 {
+                    let mut drawn = match key.1 {
                         Vertices::Shared => shared_mesh(&mesh),
                         Vertices::Apart => face_mesh(&mesh),
                     };
-                    (key, mesh)
+                    facing::tell(&mut drawn, &mesh, key.1);
+                    (key, drawn)
                 })
                 .collect();
             for (key, mesh) in made {

@@ -7,6 +7,7 @@ pub mod capture;
 pub mod drawn;
 pub mod entities;
 pub(crate) mod exchange;
+mod facing;
 pub mod illumination;
 pub mod live;
 pub mod material;
