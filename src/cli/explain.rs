@@ -12,10 +12,12 @@ use super::{
     workshop::{Workshop, drawable},
 };
 use crate::{
-    explain,
+    explain::{self, Explainer, Explanation, Influence},
     failure::Failure,
     optics::TermSelection,
     reference::{Settings, ignored_edits},
+    registry::Registry,
+    scene::{Scene, variant::LETTERS},
     text::listed,
 };
 
@@ -36,9 +38,18 @@ pub(super) struct Arguments {
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
-    /// Print the explanation as JSON
+    /// Also print the numbers of the scene that would move this pixel most, by differences
     #[arg(long)]
+    derivatives: bool,
+    /// Also print the lines that differ in another view at this pixel
+    #[arg(long, value_name = "VIEW")]
+    beside: Option<String>,
+    /// Print the explanation as JSON
+    #[arg(long, conflicts_with = "markdown")]
     json: bool,
+    /// Print the explanation as Markdown
+    #[arg(long)]
+    markdown: bool,
 }
 
 /// Column and row.
@@ -60,33 +71,88 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;
     let registry = &workshop.registry;
-    let view =
-        find(&scene, &arguments.view).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
-    let Size { width, height } = arguments.size;
-    let plan = Plan::of_view(&scene, view, [width, height], arguments.term, registry);
-    for part in &plan.parts {
-        drawable(registry, &part.scene)?;
-        cpu_can_draw(&part.scene, registry)?;
-        let passed = ignored_edits(registry, &part.scene);
-        if !passed.is_empty() {
-            let passed: Vec<_> = passed.iter().map(String::as_str).collect();
-            options.tell(format_args!(
-                "the CPU renderer, which is explained, ignores the edited {}",
-                listed(&passed, "and")
-            ));
+    let first = explained(arguments, &source, &scene, &arguments.view, options, registry)?;
+    let influences = match arguments.derivatives {
+        true => Some(influences(arguments, &first, registry)?),
+        false => None,
+    };
+    let other = match &arguments.beside {
+        Some(name) => Some(explained(arguments, &source, &scene, name, options, registry)?),
+        None => None,
+    };
+    if arguments.json {
+        let mut json = first.explanation.to_json();
+        if let Some(influences) = &influences {
+            json["derivatives"] = influences.iter().map(Influence::to_json).collect();
         }
-        let settings = Settings { width, height, samples: 1, terms: part.terms };
-        let explained = explain::pixel(&part.scene, registry, &settings, arguments.at.0)
-            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
-        // An endless function shows only when it runs.
-        cpu_can_draw(&part.scene, registry)?;
-        if arguments.json {
-            print(&format!("{:#}\n", explained.to_json()))?;
-        } else {
-            print_text(&explained.to_text())?;
+        if let Some(other) = &other {
+            json["beside"] = other.explanation.to_json();
         }
+        return print(&format!("{json:#}\n"));
     }
-    Ok(())
+    let markdown = arguments.markdown;
+    let mut text = match markdown {
+        true => first.explanation.to_markdown(),
+        false => first.explanation.to_text(),
+    };
+    if let Some(other) = &other {
+        let names = [first.view, other.view].map(|view| LETTERS.get(view).copied().unwrap_or("?"));
+        text += &first.explanation.differences_to_text(&other.explanation, names, markdown);
+    }
+    if let Some(influences) = &influences {
+        text += &Explanation::influences_to_text(influences, markdown);
+    }
+    print_text(&text)
+}
+
+/// The explanation of one view.
+struct Explained {
+    view: usize,
+    scene: Scene,
+    settings: Settings,
+    explanation: Explanation,
+}
+
+fn explained(
+    arguments: &Arguments,
+    source: &Source,
+    scene: &Scene,
+    view: &str,
+    options: Options,
+    registry: &Registry,
+) -> Result<Explained, Failure> {
+    let view = find(scene, view).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
+    let Size { width, height } = arguments.size;
+    let plan = Plan::of_view(scene, view, [width, height], arguments.term, registry);
+    let Some(part) = plan.parts.into_iter().next() else {
+        return Err(Failure::Invalid(format!("{}: the view shows nothing", source.name())));
+    };
+    drawable(registry, &part.scene)?;
+    cpu_can_draw(&part.scene, registry)?;
+    let passed = ignored_edits(registry, &part.scene);
+    if !passed.is_empty() {
+        let passed: Vec<_> = passed.iter().map(String::as_str).collect();
+        options.tell(format_args!(
+            "the CPU renderer, which is explained, ignores the edited {}",
+            listed(&passed, "and")
+        ));
+    }
+    let settings = Settings { width, height, samples: 1, terms: part.terms };
+    let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at.0)
+        .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+    // An endless function shows only when it runs.
+    cpu_can_draw(&part.scene, registry)?;
+    Ok(Explained { view, scene: part.scene, settings, explanation })
+}
+
+fn influences(
+    arguments: &Arguments,
+    explained: &Explained,
+    registry: &Registry,
+) -> Result<Vec<Influence>, Failure> {
+    let Explained { scene, settings, .. } = explained;
+    let found = Explainer::default().influences(scene, registry, settings, arguments.at.0);
+    found.map_err(|error| Failure::Usage(format!("--at: {error}")))
 }
 
 #[cfg(test)]

@@ -152,6 +152,7 @@ fn declared(
         summary: said.summary,
         synonyms: &[],
         equation: said.equation,
+        quantities: &[],
         laws: said.laws,
         ambient,
         anisotropic: said.anisotropic,

@@ -16,9 +16,15 @@ use crate::{
         colour::Encoding,
     },
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
-    reflection::{Ambient, Declaration, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve},
+    reflection::{
+        Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
+    },
     shader::interpret::Program,
+    text::mathematics::{parse, plain_symbol, same_symbol},
 };
+
+/// The most words of `let`s whose values are known.
+const MOST_WORDS: usize = 256;
 
 /// A custom model as run by the CPU.
 pub struct OnCpu {
@@ -29,27 +35,39 @@ pub struct OnCpu {
 
 struct Programs {
     response: Program,
+    /// The `let`s of `response` that the equation names, if there are any, by the symbols there.
+    lets: Option<(Program, Vec<(String, usize)>)>,
     /// For models that answer uniform light by a formula.
     ambient: Option<Program>,
 }
 
 impl OnCpu {
-    fn new(module: &Module, ambient: Ambient, lobe: bool) -> Self {
+    fn new(module: &Module, declaration: &Declaration, parameters: &[Parameter], lobe: bool) -> Self {
         // The albedo of a lobe is read from the row of the object.
+        let table = lobe.then_some("parameter_table");
         let program = |function| {
-            let program = if lobe {
-                Program::with_table(module, function, "parameter_table")
-            } else {
-                Program::new(module, function)
+            let program = match table {
+                Some(table) => Program::with_table(module, function, table),
+                None => Program::new(module, function),
             };
             program.map_err(|e| e.to_string())
         };
+        let ambient = declaration.ambient;
+        let symbols = symbols(declaration.equation, parameters);
+        let named = |name: &str| symbols.iter().any(|symbol| is_name_of(name, symbol));
         let programs = program("response").and_then(|response| {
             let ambient = match ambient {
                 Ambient::Formula => Some(program("ambient_response")?),
                 Ambient::Albedo => None,
             };
-            Ok(Programs { response, ambient })
+            // Names that nobody wants need no second program.
+            let lets = Program::lets(module, "response", table, named).ok().filter(|_| !symbols.is_empty());
+            let lets = lets.map(|(program, lets)| {
+                let symbol = |name: &str| symbols.iter().find(|symbol| is_name_of(name, symbol));
+                let of = |(name, words): (String, usize)| (symbol(&name).cloned().unwrap_or(name), words);
+                (program, lets.into_iter().map(of).collect())
+            });
+            Ok(Programs { response, ambient, lets })
         });
         Self { programs, endless: AtomicBool::new(false) }
     }
@@ -91,6 +109,51 @@ impl crate::reflection::Interpreted for OnCpu {
     }
 }
 
+/// The symbols of an equation that are no parameters: those that a `let` may have.
+fn symbols(equation: &[EquationPart], parameters: &[Parameter]) -> Vec<String> {
+    let atoms = equation.iter().flat_map(|part| parse(part.text));
+    let mut symbols: Vec<_> = atoms.filter_map(|atom| atom.symbol()).map(|s| plain_symbol(&s)).collect();
+    symbols.sort();
+    symbols.dedup();
+    symbols.retain(|symbol| !parameters.iter().any(|p| same_symbol(p.symbol, symbol)));
+    symbols
+}
+
+/// True if a name of WGSL is a symbol of the equation: the same, or with Greek letters spelt out: `alpha_x` is `α_x`.
+fn is_name_of(name: &str, symbol: &str) -> bool {
+    let (base, index) = symbol.split_once('_').unwrap_or((symbol, ""));
+    let (letter, rest) = name.split_once('_').unwrap_or((name, ""));
+    rest == index && (letter == base || GREEK.iter().any(|(greek, word)| *greek == base && *word == letter))
+}
+
+/// Greek letters as programs spell them.
+const GREEK: [(&str, &str); 24] = [
+    ("α", "alpha"),
+    ("β", "beta"),
+    ("γ", "gamma"),
+    ("Γ", "Gamma"),
+    ("δ", "delta"),
+    ("Δ", "Delta"),
+    ("ε", "epsilon"),
+    ("ζ", "zeta"),
+    ("η", "eta"),
+    ("θ", "theta"),
+    ("κ", "kappa"),
+    ("λ", "lambda"),
+    ("Λ", "Lambda"),
+    ("μ", "mu"),
+    ("ν", "nu"),
+    ("ξ", "xi"),
+    ("ρ", "rho"),
+    ("σ", "sigma"),
+    ("τ", "tau"),
+    ("φ", "phi"),
+    ("χ", "chi"),
+    ("ψ", "psi"),
+    ("ω", "omega"),
+    ("Ω", "Omega"),
+];
+
 /// The model whose lobe is read.
 fn lobe_of(reads: &Reads) -> Lobe {
     reads.lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id))
@@ -103,7 +166,7 @@ pub(super) fn entry(
     reads: Reads,
     module: &Module,
 ) -> ModelEntry {
-    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, reads.any()));
+    let on_cpu = Arc::new(OnCpu::new(module, declaration, parameters, reads.any()));
     let (lobe, curves) = (lobe_of(&reads), reads.named());
     let instantiate: Instantiate = {
         let on_cpu = on_cpu.clone();
@@ -247,6 +310,21 @@ impl Surface for Interpreted {
         let terms: [f32; 9] = self.ask(|p| Some(&p.response), &[l, v], frame);
         let vector = |at: usize| Vec3::new(terms[at], terms[at + 1], terms[at + 2]);
         Terms { ambient: vector(0), diffuse: vector(3), specular: vector(6) }
+    }
+
+    fn quantity(&self, symbol: &str, arguments: &[f32], l: Vec3, v: Vec3, frame: &Frame) -> Option<Vec3> {
+        let (_, lets) = self.on_cpu.programs.as_ref().ok()?.lets.as_ref()?;
+        let at = lets.iter().position(|(name, _)| name == symbol).filter(|_| arguments.is_empty())?;
+        let first: usize = lets[..at].iter().map(|(_, words)| words).sum();
+        let words: [f32; MOST_WORDS] =
+            self.ask(|p| p.lets.as_ref().map(|(program, _)| program), &[l, v], frame);
+        let value = match lets[at].1 {
+            1 => Vec3::splat(*words.get(first)?),
+            3 => Vec3::from_slice(words.get(first..first + 3)?),
+            _ => return None,
+        };
+        // What was not reached is not a number.
+        (!value.is_nan()).then_some(value)
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {

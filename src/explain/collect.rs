@@ -1,12 +1,12 @@
 //! Explanations from what the renderer did.
 
-use glam::Vec3;
+use std::sync::Arc;
 
 use super::{Asked, Corner, Geometry, Lit, Model, Part, Place, Seen, Setting, Spot};
 use crate::{
     light::Incident,
-    optics::geometry::{half_vector, mirror},
-    parameter::{Parameter, Value},
+    optics::colour::Encoding,
+    parameter::{Parameter, Value, Values},
     reference::{
         Settings,
         probe::{LitBy, Loop, Point, Probe, light_loop},
@@ -55,9 +55,8 @@ impl Explain<'_> {
             spots: at_corners.chain(at_pixel).collect(),
             per_pixel: found.phong.as_ref().map(|point| spot(Place::Pixel, point)),
             light: found.light.truncate(),
-            surface: Asked(found.surface.clone()),
             // Asked last: an endless function shows only when it runs.
-            model: self.model(model, object),
+            model: Model::of(model, &object.material, self.scene.display.encoding, found.surface.clone()),
         })
     }
 
@@ -67,23 +66,6 @@ impl Explain<'_> {
             name: object.name.clone(),
             id: object.object_type.clone(),
             type_name: self.registry.shape(&object.object_type).map_or("", |entry| entry.declaration.name),
-        }
-    }
-
-    fn model(&self, entry: &ModelEntry, object: &Object) -> Model {
-        let encoding = self.scene.display.encoding;
-        let setting = |parameter: &'static Parameter| {
-            let value = object.material.get(parameter);
-            let linear = matches!(value, Value::Colour(_) | Value::Triple(_))
-                .then(|| object.material.colour(parameter, encoding));
-            Setting { parameter, value, linear }
-        };
-        Model {
-            id: entry.declaration.id,
-            declaration: entry.declaration,
-            settings: entry.parameters.iter().map(setting).collect(),
-            interpreted: entry.is_interpreted(),
-            trouble: entry.not_on_cpu(),
         }
     }
 
@@ -132,21 +114,29 @@ impl Explain<'_> {
     }
 }
 
-impl Geometry {
-    fn new(l: Vec3, point: &Loop) -> Self {
-        let Loop { v, frame, .. } = point;
-        let (h, r) = (half_vector(l, *v), mirror(l, frame.n));
-        let cosines = [
-            ("N·L", frame.n.dot(l)),
-            ("N·V", frame.n.dot(*v)),
-            ("N·H", frame.n.dot(h)),
-            ("V·H", v.dot(h)),
-            ("R·V", r.dot(*v)),
-            ("L·H", l.dot(h)),
-            ("L·V", l.dot(*v)),
-            ("H·T", h.dot(frame.t)),
-            ("H·B", h.dot(frame.b)),
-        ];
-        Self { l, h, r, cosines }
+impl Model {
+    /// A model with the parameters of an object, and its surface for them.
+    #[must_use]
+    pub fn of(entry: &ModelEntry, values: &Values, encoding: Encoding, surface: Arc<dyn Surface>) -> Self {
+        let setting = |parameter: &'static Parameter| {
+            let value = values.get(parameter);
+            let linear = matches!(value, Value::Colour(_) | Value::Triple(_))
+                .then(|| values.colour(parameter, encoding));
+            Setting { parameter, value, linear }
+        };
+        Self {
+            id: entry.declaration.id,
+            declaration: entry.declaration,
+            settings: entry.parameters.iter().map(setting).collect(),
+            surface: Asked(surface),
+            interpreted: entry.is_interpreted(),
+            trouble: entry.not_on_cpu(),
+        }
+    }
+
+    /// True if the parameter of that name has one of these choices.
+    pub(super) fn chooses(&self, name: &str, ids: &[&str]) -> bool {
+        let setting = self.settings.iter().find(|setting| setting.parameter.name == name);
+        setting.is_some_and(|setting| matches!(&setting.value, Value::Choice(id) if ids.contains(&&**id)))
     }
 }

@@ -3,8 +3,11 @@
 use glam::Vec3;
 use serde_json::{Value as Json, json};
 
-use super::{Explanation, Lit, Model, Part, Place, Seen, Setting, Spot, angle};
+use super::{Explanation, Influence, Lit, Model, Part, Place, Seen, Setting, Spot, angle};
 use crate::{light::Factor, optics::Terms, parameter, text::number as finite};
+
+/// The digits of numbers that are put in: all that 32 bits have.
+const FULL: usize = 9;
 
 /// A number; JSON has none for values that are not finite, which are texts: `"NaN"`, `"Infinity"`, `"-Infinity"`.
 fn number(v: f32) -> Json {
@@ -13,6 +16,14 @@ fn number(v: f32) -> Json {
         v if v.is_nan() => "NaN".into(),
         v if v > 0.0 => "Infinity".into(),
         _ => "-Infinity".into(),
+    }
+}
+
+/// A number with 64 bits, with the digits of 32 where those suffice.
+fn exact(v: f64) -> Json {
+    match v as f32 {
+        short if f64::from(short) == v || !v.is_finite() => number(short),
+        _ => v.into(),
     }
 }
 
@@ -50,6 +61,23 @@ impl Explanation {
                 "encoded": triple(steps.encoded),
                 "code": steps.codes,
             },
+        })
+    }
+}
+
+impl Influence {
+    /// The influence as JSON.
+    #[must_use]
+    pub fn to_json(&self) -> Json {
+        json!({
+            "symbol": self.symbol,
+            "label": self.label,
+            "unit": self.unit,
+            "value": exact(self.value),
+            "tried": self.tried.map(exact),
+            "light": self.light.map(triple),
+            "derivative": triple(self.derivative()),
+            "effect": number(self.effect()),
         })
     }
 }
@@ -148,13 +176,17 @@ impl Lit {
                 "from": from.collect::<Json>(),
             })
         };
-        let lines = self.lines(model);
+        let lines = self.rounded_lines(model, FULL);
         let line = |line: &super::Line| {
             json!({
                 "term": line.symbol(),
                 "text": line.text,
                 "numbers": line.numbers,
-                "value": line.value.map(triple),
+                "value": line.value.map(|value| value.rgb.map(exact)),
+                "defines": line.defines(),
+                "unit": line.value.map(|value| if value.degrees == 1 { "°" } else { "" }),
+                "quantity": line.quantity.map(|quantity| quantity.label),
+                "source": line.quantity.map(|quantity| quantity.source),
             })
         };
         let Terms { ambient, diffuse, specular } = self.response;

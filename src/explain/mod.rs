@@ -31,16 +31,29 @@ use crate::{
     shading,
 };
 
+mod arriving;
 mod collect;
-mod equation;
+mod factor_curve;
 pub mod finite;
+mod geometry;
+mod influence;
 mod json;
+mod lines;
 mod numbers;
+mod pairs;
+mod put;
 mod text;
+mod workings;
 
+pub use arriving::Step;
 use collect::Explain;
-pub use equation::{Line, Symbols, put_in};
-pub use numbers::{number, rounded, rounded_triple, triple};
+pub use factor_curve::{Along, FactorCurve};
+pub use geometry::Geometry;
+pub use influence::{Influence, Knob};
+pub use lines::{Line, agrees, reading};
+pub use numbers::{number, of_value, rounded, rounded_triple, triple};
+pub use pairs::{Pair, pairs};
+pub use put::{Put, Symbols, put, put_in};
 
 /// The reason why a pixel cannot be explained.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -123,8 +136,6 @@ pub struct Seen {
     pub per_pixel: Option<Spot>,
     /// The light of the pixel: the result of the shading model.
     pub light: Vec3,
-    /// Its reflection model with its parameters, to be asked for other directions.
-    pub surface: Asked,
 }
 
 /// A reflection model with its parameters.
@@ -146,6 +157,8 @@ pub struct Model {
     pub declaration: &'static Declaration,
     /// Its parameters.
     pub settings: Vec<Setting>,
+    /// The model with these parameters, to be asked for other directions and for quantities of its equation.
+    pub surface: Asked,
     /// True if the CPU interprets its WGSL.
     pub interpreted: bool,
     /// The reason why the CPU cannot run it, if any. Then it gives no light here, and the explanation is not that of the
@@ -246,19 +259,6 @@ pub struct Lit {
     pub contribution: Vec3,
 }
 
-/// Directions at a point, and their cosines.
-#[derive(Clone, Copy, Debug)]
-pub struct Geometry {
-    /// To the light.
-    pub l: Vec3,
-    /// Halfway between light and observer.
-    pub h: Vec3,
-    /// The mirror direction of `l`.
-    pub r: Vec3,
-    /// Scalar products by name, `N·L` first.
-    pub cosines: [(&'static str, f32); 9],
-}
-
 impl Explanation {
     /// The code of the pixel: red, green and blue, 0–255.
     #[must_use]
@@ -311,14 +311,6 @@ impl Lit {
     pub fn is_finite(&self) -> bool {
         let Terms { ambient, diffuse, specular } = self.response;
         [ambient, diffuse, specular, self.arriving, self.contribution].iter().all(|v| v.is_finite())
-    }
-}
-
-impl Geometry {
-    /// The scalar product of that name, such as `N·L`; NaN for another name.
-    #[must_use]
-    pub fn cosine(&self, name: &str) -> f32 {
-        self.cosines.iter().find(|(known, _)| *known == name).map_or(f32::NAN, |(_, cosine)| *cosine)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::text::expression::Value;
+
 /// Digits that tell: codes have eight bits.
 pub(super) const DIGITS: usize = 4;
 
@@ -13,8 +15,13 @@ pub fn number(v: f32) -> String {
 
 /// The same with so many significant digits.
 #[must_use]
-pub fn rounded(v: f32, digits: usize) -> String {
-    let digits = digits.max(1);
+pub fn rounded(v: impl Into<f64>, digits: usize) -> String {
+    let (v, digits) = (v.into(), digits.max(1));
+    // Of a number with 32 bits the shortest digits that tell it from others, as scene files have it.
+    let v = match v as f32 {
+        short if digits > 7 && f64::from(short) == v => short.to_string().parse().unwrap_or(v),
+        _ => v,
+    };
     if v.is_nan() {
         return "NaN".to_owned();
     }
@@ -55,6 +62,17 @@ pub fn triple(v: Vec3) -> String {
 pub fn rounded_triple(v: Vec3, digits: usize) -> String {
     let [x, y, z] = v.to_array().map(|v| rounded(v, digits));
     format!("({x}, {y}, {z})")
+}
+
+/// A value of an equation: a number, an angle with its unit, or a colour.
+#[must_use]
+pub fn of_value(value: &Value, digits: usize) -> String {
+    let unit = if value.degrees == 1 { "°" } else { "" };
+    if !value.is_colour {
+        return format!("{}{unit}", rounded(value.rgb[0], digits));
+    }
+    let [r, g, b] = value.rgb.map(|v| rounded(v, digits));
+    format!("({r}, {g}, {b})")
 }
 
 /// A number if red, green and blue are the same, and otherwise the three.

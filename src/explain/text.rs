@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Explanation, Lit, Part, Place, Seen, Spot, angle, equation, number, numbers::number_or_triple, triple,
+    Explanation, Influence, Line, Lit, Part, Place, Seen, Spot, angle, lines, number,
+    numbers::{DIGITS, number_or_triple, of_value},
+    pairs, rounded, triple,
 };
 use crate::{
     optics::{TermSelection, colour::Encoding},
@@ -19,11 +21,100 @@ impl Explanation {
     /// way from light to the code.
     #[must_use]
     pub fn to_text(&self) -> String {
-        let mut out = Writer::default();
+        self.written(Form::Text)
+    }
+
+    /// The same as Markdown: a heading for each part, lists, and mathematics as code.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        self.written(Form::Markdown)
+    }
+
+    /// The numbers of the scene that move the pixel most, as text or Markdown.
+    #[must_use]
+    pub fn influences_to_text(influences: &[Influence], markdown: bool) -> String {
+        let form = if markdown { Form::Markdown } else { Form::Text };
+        let mut out = Writer { text: String::new(), form };
+        out.heading("What would move this pixel most, by differences");
+        if influences.is_empty() {
+            out.line(1, "No number of the material or of a light changes this pixel.");
+        }
+        for influence in influences {
+            let Influence { symbol, label, unit, value, tried, .. } = influence;
+            let space = if matches!(*unit, "" | "°") { "" } else { " " };
+            let [low, high] = tried.map(|v| rounded(v, DIGITS));
+            let what = format!("{symbol} = {}{space}{unit}", rounded(*value, DIGITS));
+            let derivative = triple(influence.derivative());
+            out.line(
+                1,
+                format_args!(
+                    "{what}, {label}: Δ light/Δ {symbol} = {derivative} between {low} and {high}; luminance {} for 1 % of \
+                     the range",
+                    signed(influence.effect())
+                ),
+            );
+        }
+        out.text
+    }
+
+    /// What differs between the explanations of one pixel in two views, light by light, as text or Markdown.
+    #[must_use]
+    pub fn differences_to_text(&self, other: &Self, names: [&str; 2], markdown: bool) -> String {
+        let form = if markdown { Form::Markdown } else { Form::Text };
+        let mut out = Writer { text: String::new(), form };
+        let [a, b] = names;
+        out.heading(&format!("View {a} beside view {b}"));
+        for (name, explained) in [(a, self), (b, other)] {
+            let [red, green, blue] = explained.code();
+            let model = explained.seen.as_ref().map_or("background", |seen| seen.model.declaration.name);
+            out.line(1, format_args!("{name}: {model}, red {red}, green {green}, blue {blue}"));
+        }
+        let (Some(first), Some(second)) = (&self.seen, &other.seen) else { return out.text };
+        let spots = first.spots.iter().zip(&second.spots);
+        for (one, two) in spots {
+            for lit in &one.lights {
+                let Some(against) = two.lights.iter().find(|l| l.light.index == lit.light.index) else {
+                    continue;
+                };
+                out.subheading(format_args!(
+                    "{}, {}, {}: lines that differ",
+                    named("lights", &lit.light),
+                    lit.light.type_name,
+                    heading(first, one).to_lowercase()
+                ));
+                let all = pairs(&lit.lines(&first.model), &against.lines(&second.model));
+                for pair in all.iter().filter(|pair| pair.differs()) {
+                    for (name, line) in [(a, &pair.a), (b, &pair.b)] {
+                        match line {
+                            Some(line) => {
+                                let value =
+                                    line.value.as_ref().map(|v| format!(" = {}", of_value(v, DIGITS)));
+                                let numbers = line.right().map(|n| format!(" = {n}")).unwrap_or_default();
+                                let value = value.unwrap_or_default();
+                                out.mathematics(
+                                    2,
+                                    &format!("{name}: "),
+                                    &format!("{}{numbers}{value}", line.text),
+                                    "",
+                                );
+                            }
+                            None => out.line(2, format_args!("{name}: {} does not occur", pair.defines())),
+                        }
+                    }
+                }
+                let same = all.iter().filter(|pair| !pair.differs()).count();
+                out.line(2, format_args!("{} the same in both", plural(same, "line")));
+            }
+        }
+        out.text
+    }
+
+    fn written(&self, form: Form) -> String {
+        let mut out = Writer { text: String::new(), form };
         let [x, y] = self.pixel;
         let [width, height] = self.size;
         let [r, g, b] = self.code();
-        out.line(0, format_args!("Pixel {x},{y} of {width}×{height}: red {r}, green {g}, blue {b}"));
+        out.title(format_args!("Pixel {x},{y} of {width}×{height}: red {r}, green {g}, blue {b}"));
         if self.terms != TermSelection::All {
             out.line(0, format_args!("Only the {} term is shown.", self.terms.id()));
         }
@@ -42,6 +133,7 @@ impl Explanation {
     fn object(&self, out: &mut Writer, seen: &Seen) {
         let part = named("objects", &seen.object);
         out.line(0, format_args!("{part}, {}, polygon {}", seen.object.type_name, seen.polygon));
+        out.gap();
         model(out, seen);
         shading(out, seen);
         for spot in &seen.spots {
@@ -103,8 +195,7 @@ impl Explanation {
     }
 
     fn light(&self, out: &mut Writer, seen: &Seen, lit: &Lit) {
-        out.line(0, "");
-        out.line(1, format_args!("{}, {}", named("lights", &lit.light), lit.light.type_name));
+        out.subheading(format_args!("{}, {}", named("lights", &lit.light), lit.light.type_name));
         if let (Some(position), Some(distance)) = (lit.position, lit.distance) {
             out.line(2, format_args!("position {} m, distance d = {} m", triple(position), number(distance)));
         }
@@ -133,20 +224,7 @@ impl Explanation {
             out.line(2, "Light from everywhere: the model answers it as a whole, with its ambient term.");
         }
         for line in lit.lines(&seen.model) {
-            let value = line.value.map(triple);
-            match (line.text, &value) {
-                ("", Some(value)) => out.line(2, format_args!("{} = {value}", line.symbol())),
-                (text, _) => out.line(2, text),
-            }
-            if let Some(numbers) = &line.numbers {
-                // What is defined stands on the left once.
-                out.line(3, numbers.find(" = ").map_or(numbers.as_str(), |at| &numbers[at + 1..]));
-            }
-            if let Some(value) = value.filter(|_| !line.text.is_empty()) {
-                // A formula alone would not be 0 then.
-                let none = lit.is_behind() && line.term != Term::Ambient && line.value == Some(Vec3::ZERO);
-                out.line(3, format_args!("= {value}{}", if none { ", since N·L ≤ 0" } else { "" }));
-            }
+            equation(out, &line);
         }
         let left_out = |term: Term, value: Vec3| {
             let shown = self.terms == TermSelection::All || term.alone() == Some(self.terms);
@@ -163,13 +241,20 @@ impl Explanation {
             .filter(|(term, value, _)| *value != Vec3::ZERO && !left_out(*term, *value))
             .map(|(_, _, symbol)| *symbol)
             .collect();
-        let sum = match shown.as_slice() {
+        let terms: Vec<_> = terms.iter().filter(|(.., symbol)| shown.contains(symbol)).collect();
+        let of = |texts: Vec<String>| match texts.as_slice() {
             [] => "0".to_owned(),
-            [one] => (*one).to_owned(),
+            [one] => one.clone(),
             several => format!("({})", several.join(" + ")),
         };
-        let contribution = triple(lit.contribution);
-        out.line(2, format_args!("light to the observer: {sum} × {} = {contribution}", triple(lit.arriving)));
+        let symbols = of(terms.iter().map(|(.., symbol)| (*symbol).to_owned()).collect());
+        let numbers = of(terms.iter().map(|(_, value, _)| triple(*value)).collect());
+        let (arriving, contribution) = (triple(lit.arriving), triple(lit.contribution));
+        out.line(2, format_args!("light to the observer: {symbols} × {arriving}"));
+        if !terms.is_empty() {
+            out.mathematics(3, "= ", &format!("{numbers} × {arriving}"), "");
+        }
+        out.mathematics(3, "= ", &contribution, "");
         if !lit.is_finite() {
             out.line(2, "Some of these are not finite numbers.");
         }
@@ -207,9 +292,45 @@ impl Explanation {
             out.line(1, "what is beyond 0–1 is clipped");
         }
         out.line(1, format_args!("sRGB encoding: {}", triple(steps.encoded)));
+        let encoded = steps.mapped.to_array().into_iter().zip(steps.encoded.to_array());
+        for (channel, (linear, encoded)) in ["red", "green", "blue"].into_iter().zip(encoded) {
+            // As the display takes it: the formula of IEC 61966-2-1.
+            let x = if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) };
+            let numbers = match x {
+                x if x > 0.003_130_8 => format!("1.055 × {}^(1/2.4) − 0.055", number(x)),
+                x => format!("12.92 × {}", number(x)),
+            };
+            out.mathematics(2, "", &format!("{channel}: {numbers} = {}", number(encoded)), "");
+        }
         let [r, g, b] = steps.codes;
         out.line(1, format_args!("× 255, rounded: {r}, {g}, {b}"));
     }
+}
+
+/// A line of the equation: as it is written, with numbers, and its value.
+fn equation(out: &mut Writer, line: &Line) {
+    let value = line.value.as_ref().map(|value| of_value(value, DIGITS));
+    let about = line.quantity.map_or_else(String::new, |quantity| match quantity.source {
+        "" => format!(": {}", quantity.label),
+        source => format!(": {}, {source}", quantity.label),
+    });
+    match (&value, line.text.contains('=')) {
+        (Some(value), false) => out.mathematics(2, "", &format!("{} = {value}", line.defines()), &about),
+        _ => {
+            out.mathematics(2, "", &line.text, &about);
+            if let Some(numbers) = line.right() {
+                out.mathematics(3, "= ", numbers, "");
+            }
+            if let Some(value) = value {
+                out.mathematics(3, "= ", &value, "");
+            }
+        }
+    }
+}
+
+/// A number with its sign.
+fn signed(v: f32) -> String {
+    if v > 0.0 { format!("+{}", number(v)) } else { number(v) }
 }
 
 /// A part of the scene as messages name it.
@@ -225,10 +346,10 @@ fn model(out: &mut Writer, seen: &Seen) {
     let author = if d.author.is_empty() { String::new() } else { format!(" ({})", d.author) };
     out.heading(&format!("Reflection model: {}{author}", d.name));
     for part in d.equation {
-        out.line(1, part.text);
+        out.mathematics(1, "", part.text, "");
     }
     for setting in &seen.model.settings {
-        out.line(1, equation::setting(setting));
+        out.line(1, lines::setting(setting));
     }
     if seen.model.interpreted {
         out.line(1, "The CPU interprets the WGSL of this model.");
@@ -281,7 +402,16 @@ fn result(out: &mut Writer, seen: &Seen) {
 fn arriving(out: &mut Writer, lit: &Lit) {
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
         let (symbol, value) = (factor.symbol, number_or_triple(factor.value));
-        out.line(2, format_args!("{symbol} = {value} for {}: {}", factor.givens(number), factor.meaning));
+        let about = format!(" for {}: {}", factor.givens(number), factor.meaning);
+        let steps = factor.steps(DIGITS);
+        if steps.is_empty() {
+            out.mathematics(2, "", &format!("{symbol} = {value}"), &about);
+        }
+        for (i, step) in steps.iter().enumerate() {
+            out.mathematics(2, "", &step.text, if i == 0 { &about } else { "" });
+            out.mathematics(3, "= ", &step.numbers, "");
+            out.mathematics(3, "= ", &of_value(&step.value, DIGITS), "");
+        }
     }
     let factors = lit.factors.iter().map(|factor| {
         let value = number_or_triple(factor.value);
@@ -289,33 +419,77 @@ fn arriving(out: &mut Writer, lit: &Lit) {
     });
     let factors = factors.collect::<Vec<_>>().join(" × ");
     let intensity = number_or_triple(lit.intensity);
-    let equation = if lit.equation.is_empty() { "I(p)" } else { lit.equation };
-    if lit.factors.len() > 1 {
-        out.line(2, format_args!("{equation} = {factors} = {intensity}"));
-    } else {
-        out.line(2, format_args!("{equation} = {factors}"));
-    }
+    let equation = lit.arrival();
+    let all = if lit.factors.len() > 1 { format!("{factors} = {intensity}") } else { factors };
+    out.mathematics(2, "", &format!("{equation} = {all}"), "");
     if lit.colour != Vec3::ONE && lit.intensity != Vec3::ZERO {
         let (colour, arriving) = (triple(lit.colour), triple(lit.arriving));
-        out.line(2, format_args!("times the colour of the light: {intensity} × {colour} = {arriving}"));
+        let all = format!("{intensity} × {colour} = {arriving}");
+        out.mathematics(2, "", &all, ": times the colour of the light");
     }
 }
 
+/// The form of the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// Lines with their indentation.
+    Text,
+    /// Headings and nested lists.
+    Markdown,
+}
+
 /// Lines with their indentation.
-#[derive(Default)]
 struct Writer {
     text: String,
+    form: Form,
 }
 
 impl Writer {
     fn line(&mut self, depth: usize, what: impl std::fmt::Display) {
-        let line = format!("{:width$}{what}", "", width = 2 * depth);
+        let line = match (self.form, depth) {
+            (Form::Text, _) => format!("{:width$}{what}", "", width = 2 * depth),
+            (Form::Markdown, 0) => what.to_string(),
+            (Form::Markdown, _) => format!("{:width$}- {what}", "", width = 2 * (depth - 1)),
+        };
         // Writing to a text does not fail.
         let _ = writeln!(self.text, "{}", line.trim_end());
     }
 
+    /// Mathematics, with a sign before it and words behind it.
+    fn mathematics(&mut self, depth: usize, before: &str, what: &str, behind: &str) {
+        let quote = if self.form == Form::Markdown { "`" } else { "" };
+        self.line(depth, format_args!("{quote}{before}{what}{quote}{behind}"));
+    }
+
+    /// An empty line, which lists in Markdown need before them.
+    fn gap(&mut self) {
+        if self.form == Form::Markdown {
+            self.text.push('\n');
+        }
+    }
+
+    fn title(&mut self, what: impl std::fmt::Display) {
+        let mark = if self.form == Form::Markdown { "# " } else { "" };
+        self.line(0, format_args!("{mark}{what}"));
+        self.gap();
+    }
+
     fn heading(&mut self, what: &str) {
+        let mark = if self.form == Form::Markdown { "## " } else { "" };
         self.line(0, "");
-        self.line(0, what);
+        self.line(0, format_args!("{mark}{what}"));
+        self.gap();
+    }
+
+    /// The title of a light, above its lines.
+    fn subheading(&mut self, what: impl std::fmt::Display) {
+        self.line(0, "");
+        match self.form {
+            Form::Text => self.line(1, what),
+            Form::Markdown => {
+                self.line(0, format_args!("### {what}"));
+                self.gap();
+            }
+        }
     }
 }

@@ -17,13 +17,17 @@ pub struct Factor {
     pub value: Vec3,
     /// The numbers that it follows from: symbol, value, unit.
     pub from: Vec<(&'static str, f32, &'static str)>,
+    /// How it follows from them, in the notation of [`expression`](crate::text::expression): the right side of its
+    /// definition, then definitions of what stands there, with commas between: `x^2, x = cos θ`. Empty for a factor that is
+    /// given or read from a table.
+    pub equation: &'static str,
 }
 
 impl Factor {
     /// A plain number with its notation and its meaning.
     #[must_use]
     pub fn new(symbol: &'static str, meaning: &'static str, value: f32) -> Self {
-        Self { symbol, meaning, unit: "", value: Vec3::splat(value), from: Vec::new() }
+        Self { symbol, meaning, unit: "", value: Vec3::splat(value), from: Vec::new(), equation: "" }
     }
 
     /// The same with a unit.
@@ -37,6 +41,12 @@ impl Factor {
     pub fn given(mut self, symbol: &'static str, value: f32, unit: &'static str) -> Self {
         self.from.push((symbol, value, unit));
         self
+    }
+
+    /// The same with the way in which it follows from the numbers that are given.
+    #[must_use]
+    pub fn equation(self, equation: &'static str) -> Self {
+        Self { equation, ..self }
     }
 
     /// The numbers that it follows from, as people write them: "d = 4.82 m".
@@ -61,6 +71,7 @@ impl Factor {
         Self::new("1/d^2", "the falloff with the square of the distance", value)
             .unit("1/m²")
             .given("d", distance, "m")
+            .equation("1/d^2")
     }
 }
 

@@ -78,8 +78,9 @@ impl LightType for Spot {
             Factor::intensity(light, Self::DECLARATION.unit),
             Factor::new("cone(θ, θ_c, s)", "1 inside the cone, 0 outside, smooth in its soft edge", profile)
                 .given("θ", cos_angle.clamp(-1.0, 1.0).acos().to_degrees(), "°")
-                .given("inner edge", self.cone_angle * (1.0 - self.penumbra), "°")
-                .given("outer edge", self.cone_angle, "°"),
+                .given("θ_c", self.cone_angle, "°")
+                .given("s", self.penumbra, "")
+                .equation("x^2 (3 − 2 x), x = clamp((cos θ − cos θ_c)/(cos((1 − s) θ_c) − cos θ_c), 0, 1)"),
             Factor::inverse_square(inverse_square(to_light), to_light.length()),
         ]
     }

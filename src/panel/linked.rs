@@ -36,7 +36,12 @@ struct Links {
     next: Option<Pointed>,
     /// That of the widgets that are shown now.
     domain: Domain,
+    /// What was asked for by a click, until when it lights, and true until its knob has come into sight.
+    held: Option<(Pointed, f64, bool)>,
 }
+
+/// By so long lights what was asked for, seconds.
+const HELD: f64 = 2.5;
 
 fn memory() -> Id {
     Id::new("linked symbols")
@@ -48,7 +53,32 @@ fn links<R>(ctx: &Context, f: impl FnOnce(&mut Links) -> R) -> R {
 
 /// A frame begins: what was pointed at in the one before lights.
 pub(super) fn begin(ctx: &Context) {
-    links(ctx, |links| links.lit = links.next.take());
+    let now = ctx.input(|i| i.time);
+    links(ctx, |links| {
+        links.held = links.held.take().filter(|(_, until, _)| now < *until);
+        let held = links.held.as_ref().map(|(held, ..)| held.clone());
+        links.lit = links.next.take().or(held);
+    });
+}
+
+/// Shows where a symbol of a surface comes from: all that stands for it lights for a while, and its knob comes into sight.
+pub(super) fn seek(ctx: &Context, symbols: &[&str]) {
+    let symbols = symbols.iter().map(|s| (*s).to_owned()).collect();
+    let until = ctx.input(|i| i.time) + HELD;
+    let held = Pointed { domain: Domain::Surface, symbols, by_pointer: true };
+    links(ctx, |links| links.held = Some((held, until, true)));
+    ctx.request_repaint_after_secs(HELD as f32 + 0.05);
+    ctx.request_repaint();
+}
+
+/// True once for the knob of a symbol that is to come into sight.
+pub(super) fn is_sought(ctx: &Context, symbol: &str) -> bool {
+    links(ctx, |links| {
+        let domain = links.domain;
+        let Some((held, _, waits)) = &mut links.held else { return false };
+        let mine = held.domain == domain && held.symbols.iter().any(|s| same_symbol(s, symbol));
+        mine && std::mem::take(waits)
+    })
 }
 
 /// A frame is over. There is another one if something else is to light.

@@ -84,6 +84,19 @@ impl Set {
         })
     }
 
+    /// The cells of numbers, in the order of the text: where they are.
+    pub fn numbers(&self) -> impl Iterator<Item = (Vec2, Vec2)> {
+        self.ink.iter().filter_map(|(place, size, ink)| {
+            let Ink::Atom(laid, None, _) = ink else { return None };
+            let first = laid.pieces.first()?;
+            first
+                .galley
+                .text()
+                .starts_with(|c: char| c.is_ascii_digit())
+                .then(|| (*place + vec2(-1.0, -0.86 * size), vec2(first.galley.size().x + 2.0, 1.24 * size)))
+        })
+    }
+
     /// Paints it with the left end of its baseline here.
     pub fn paint(&self, ui: &Ui, at: Pos2, colour: Color32) {
         let painter = ui.painter();

@@ -89,15 +89,14 @@ impl ReflectionModel for AshikhminShirley {
             },
             EquationPart {
                 term: Term::Specular,
-                text: "I_s = √((n_u + 1)(n_v + 1))/8 (N·H)^n F N·L / (H·L max(N·L, N·V))",
+                text: "I_s = √((n_u + 1)(n_v + 1))/8 (N·H)^n F N·L / (cos θ_d max(N·L, N·V))",
             },
+            EquationPart { term: Term::Specular, text: "n = n_u cos^2 φ_h + n_v sin^2 φ_h" },
             EquationPart {
-                term: Term::Specular, text: "n = (n_u (H·T)^2 + n_v (H·B)^2) / (1 − (N·H)^2)"
-            },
-            EquationPart {
-                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − H·L)^5, F_0 = k_s C_s"
+                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − cos θ_d)^5, F_0 = k_s C_s"
             },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: true,

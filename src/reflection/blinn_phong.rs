@@ -59,6 +59,7 @@ impl ReflectionModel for BlinnPhong {
             EquationPart { term: Term::Diffuse, text: "I_d = k_d max(0, N·L) C_b" },
             EquationPart { term: Term::Specular, text: "I_s = k_s max(0, N·H)^α C_s" },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Formula,
         anisotropic: false,

@@ -66,6 +66,7 @@ impl ReflectionModel for BlinnPhongNormalised {
                 text: "I_s = k_s C_s (α + 2)(α + 4)/(8 (2^{−α/2} + α)) (N·H)^α max(0, N·L)",
             },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

@@ -1,6 +1,9 @@
 //! Declarations of reflection models, step by step: another field of [`Declaration`] changes none of them.
 
-use super::declaration::{Ambient, Declaration, EquationPart, Family, Laws, Term};
+use super::{
+    declaration::{Ambient, Declaration, EquationPart, Family, Laws, Term},
+    quantity::Quantity,
+};
 use crate::shader::Source;
 
 impl Declaration {
@@ -26,6 +29,7 @@ impl Declaration {
             summary: "",
             synonyms: &[],
             equation: &[],
+            quantities: &[],
             laws: Laws::NONE,
             ambient: Ambient::Formula,
             anisotropic: false,
@@ -73,6 +77,12 @@ impl Declaration {
     #[must_use]
     pub const fn equation(self, equation: &'static [EquationPart]) -> Self {
         Self { equation, ..self }
+    }
+
+    /// The same with the quantities of its equation.
+    #[must_use]
+    pub const fn quantities(self, quantities: &'static [Quantity]) -> Self {
+        Self { quantities, ..self }
     }
 
     /// The same with the claim that light may go backwards.

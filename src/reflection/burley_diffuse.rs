@@ -56,6 +56,7 @@ impl ReflectionModel for BurleyDiffuse {
             },
             EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (H·L)^2" },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

@@ -3,8 +3,8 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Quantity, Readout, ReflectionModel,
+    Term, preset,
 };
 use crate::{
     optics::{
@@ -39,6 +39,30 @@ const SLOPE: Parameter = Parameter {
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.2 },
     used_when: None,
 };
+
+/// The Fresnel equations for n + ik at the angle between L and H: `R_s` and `R_p`, of which F is the mean.
+pub(super) const EXACT_FRESNEL: &[Quantity] = &[
+    Quantity::new(
+        "R_s = (w − q + cos^2 θ_d)/(w + q + cos^2 θ_d)",
+        "reflectance for light polarised perpendicular to the plane of incidence",
+    )
+    .source(CONDUCTOR),
+    Quantity::new(
+        "R_p = R_s (w cos^2 θ_d − q sin^2 θ_d + sin^4 θ_d)/(w cos^2 θ_d + q sin^2 θ_d + sin^4 θ_d)",
+        "reflectance for light polarised in the plane of incidence",
+    )
+    .source(CONDUCTOR),
+    Quantity::new(
+        "q = cos θ_d √(2 max(0, w + u))",
+        "2 cos θ_d times the real part of the root of (n + ik)² − sin² θ_d",
+    )
+    .source(CONDUCTOR),
+    Quantity::new("w = √(u^2 + 4 n^2 k^2)", "modulus of (n + ik)² − sin² θ_d").source(CONDUCTOR),
+    Quantity::new("u = n^2 − k^2 − sin^2 θ_d", "real part of (n + ik)² − sin² θ_d").source(CONDUCTOR),
+];
+
+/// The source of the Fresnel equations of conductors in this form.
+pub(super) const CONDUCTOR: &str = "M. Born, E. Wolf 1959; S. Lagarde 2013";
 
 parameters! {
     /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which give metals
@@ -106,8 +130,9 @@ impl ReflectionModel for CookTorrance {
             EquationPart {
                 term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
             },
-            EquationPart { term: Term::Specular, text: "F = Fresnel(n + i k, V·H)" },
+            EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
         ],
+        quantities: EXACT_FRESNEL,
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

@@ -1,5 +1,6 @@
 //! The declaration of a reflection model: name, source, equation, laws.
 
+use super::quantity::Quantity;
 use crate::{optics::TermSelection, shader::Source};
 
 /// The name, the source and the claims of a model.
@@ -22,6 +23,8 @@ pub struct Declaration {
     pub synonyms: &'static [&'static str],
     /// The equation, one part per term so that the window can colour them.
     pub equation: &'static [EquationPart],
+    /// The quantities that the equation names and does not define, each with its own equation.
+    pub quantities: &'static [Quantity],
     /// The physical laws that the model keeps for all directions and legal parameters.
     pub laws: Laws,
     /// The response to uniform light.

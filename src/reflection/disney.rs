@@ -3,8 +3,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Readout, ReflectionModel,
-    Term, preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Quantity, Readout,
+    ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{
@@ -89,6 +89,9 @@ const CLEARCOAT_GLOSS: Parameter = fraction(
     1.0,
     "From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.",
 );
+
+const SCHLICK: &str = "C. Schlick 1994";
+const SMITH: &str = "B. Smith 1967; B. Walter and others 2007";
 
 parameters! {
     /// **Disney** — B. Burley's "principled" model: few intuitive parameters, all from 0 to 1, every combination
@@ -223,18 +226,59 @@ impl ReflectionModel for Disney {
             EquationPart {
                 term: Term::Diffuse, text: "f_d = (1 + (F_{90} − 1) F_L)(1 + (F_{90} − 1) F_V)"
             },
-            EquationPart {
-                term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (L·H)^2, F_X = (1 − cos θ_X)^5"
-            },
+            EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (L·H)^2, F_H = (1 − L·H)^5" },
             EquationPart { term: Term::Specular, text: "I_s = π (D_s F_s G_s + c D_r F_r G_r / 4) (N·L)" },
             EquationPart {
                 term: Term::Specular,
                 text: "D_s = 1 / (π α_x α_y ((H·T)^2/α_x^2 + (H·B)^2/α_y^2 + (N·H)^2)^2)",
             },
+            EquationPart { term: Term::Specular, text: "F_s = C_0 + (1 − C_0) F_H" },
             EquationPart {
-                term: Term::Specular,
-                text: "F_s = C_0 + (1 − C_0) F_H, C_0 = 0.08 (1 − m) s + m C_b",
+                term: Term::Specular, text: "C_0 = 0.08 (1 − m) s (1 − s_t + s_t C_t) + m C_b"
             },
+        ],
+        quantities: &[
+            Quantity::new("F_L = (1 − N·L)^5", "Schlick's weight for the light").source(SCHLICK),
+            Quantity::new("F_V = (1 − N·V)^5", "Schlick's weight for the observer").source(SCHLICK),
+            Quantity::new(
+                "f_s = 1.25 ((1 + (F_{ss} − 1) F_L)(1 + (F_{ss} − 1) F_V)(1/(N·L + N·V) − 1/2) + 1/2)",
+                "flat diffuse term in place of subsurface scattering",
+            )
+            .source("P. Hanrahan, W. Krueger 1993; B. Burley 2012"),
+            Quantity::new("F_{ss} = r (L·H)^2", "grazing factor of the flat diffuse term"),
+            Quantity::new("C_h = 1 − h_t + h_t C_t", "colour of the sheen"),
+            Quantity::new("C_t = C_b/Y if Y > 0 else 1", "hue of the base colour: at luminance 1"),
+            Quantity::new("Y = 3 mean((0.3, 0.6, 0.1) C_b)", "luminance of the base colour"),
+            Quantity::new("α_x = max(0.001, r^2/q)", "roughness along the tangent"),
+            Quantity::new("α_y = max(0.001, r^2 q)", "roughness across the tangent"),
+            Quantity::new(
+                "q = √(1 − 0.9 a)",
+                "root of the ratio of the roughness across and along the tangent",
+            ),
+            Quantity::new("G_s = g_L g_V", "masking of the base, over 4 (N·L)(N·V)").source(SMITH),
+            Quantity::new(
+                "g_L = 1/(N·L + √((N·L)^2 + α_x^2 (L·T)^2 + α_y^2 (L·B)^2))",
+                "masking from the light, over 2 N·L",
+            )
+            .source(SMITH),
+            Quantity::new(
+                "g_V = 1/(N·V + √((N·V)^2 + α_x^2 (V·T)^2 + α_y^2 (V·B)^2))",
+                "masking from the observer, over 2 N·V",
+            )
+            .source(SMITH),
+            Quantity::new(
+                "D_r = (w^2 − 1)/(π ln(w^2) (sin^2 θ_h + w^2 cos^2 θ_h))",
+                "distribution of the facets of the clear coat",
+            ),
+            Quantity::new("w = 0.1 (1 − c_g) + 0.001 c_g", "roughness of the clear coat"),
+            Quantity::new("F_r = 0.04 + 0.96 F_H", "Fresnel reflectance of the clear coat").source(SCHLICK),
+            Quantity::new("G_r = g(N·L) g(N·V)", "masking of the clear coat, over 4 (N·L)(N·V)")
+                .source(SMITH),
+            Quantity::new(
+                "g(μ) = 1/(μ + √(μ^2 + 0.25^2 (1 − μ^2)))",
+                "masking of the clear coat from one direction, with α = 0.25",
+            )
+            .source(SMITH),
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms, diffuse::eon},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
@@ -59,10 +59,20 @@ impl ReflectionModel for Eon {
             },
             EquationPart {
                 term: Term::Diffuse,
-                text: "s = L·V − N·L N·V, t = max(N·L, N·V), or 1 where s < 0",
+                text: "s = L·V − N·L N·V, t = max(N·L, N·V) if s > 0 else 1",
             },
             EquationPart { term: Term::Diffuse, text: "A = 1 / (1 + (1/2 − 2/(3π)) r)" },
             EquationPart { term: Term::Diffuse, text: "ρ_m = C_b^2 E_m / (1 − C_b (1 − E_m))" },
+        ],
+        quantities: &[
+            Quantity::new("E_L = E(θ_i)", "albedo of single reflection for the direction of the light"),
+            Quantity::new("E_V = E(θ_r)", "albedo of single reflection for the direction of the observer"),
+            Quantity::new("E(θ) = A (1 + r/π G(θ))", "albedo of single reflection at an angle"),
+            Quantity::new(
+                "G(θ) = sin θ (θ π/180° − sin θ cos θ) + 2/3 (tan θ (1 − sin^3 θ) − sin θ)",
+                "how that albedo varies with the angle",
+            ),
+            Quantity::new("E_m = A (1 + (2/3 − 28/(15π)) r)", "mean albedo of single reflection"),
         ],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,

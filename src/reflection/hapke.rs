@@ -2,7 +2,7 @@ use std::f32::consts::{FRAC_2_PI, PI};
 
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms},
     parameter::{BASE_COLOUR, Parameter, ParameterKind},
@@ -213,14 +213,57 @@ impl ReflectionModel for Hapke {
         summary: "Regolith: the flat disc of the full Moon, and the surge of brightness when the light is behind the observer.",
         synonyms: &["Moon", "asteroid", "dust", "opposition effect"],
         equation: &[
-            EquationPart { term: Term::Diffuse, text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) M S(θ_m)" },
+            EquationPart { term: Term::Diffuse, text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) M S" },
             EquationPart { term: Term::Diffuse, text: "M = (1 + B) P + H(μ_l) H(μ_v) − 1" },
-            EquationPart { term: Term::Diffuse, text: "B = B_0/(1 + tan(g/2)/h), cos g = L·V" },
+            EquationPart { term: Term::Diffuse, text: "B = B_0/(1 + tan(g/2)/h), g = 2 θ_d" },
             EquationPart { term: Term::Diffuse, text: "H(μ) = (1 + 2 μ)/(1 + 2 μ √(1 − w C_b))" },
             EquationPart {
                 term: Term::Diffuse,
                 text: "P = (1 + c)/2 (1 − b^2)/(1 − 2 b cos g + b^2)^{3/2} + (1 − c)/2 (1 − b^2)/(1 + 2 b cos g + b^2)^{3/2}",
             },
+        ],
+        quantities: &[
+            Quantity::new(
+                "μ_l = N·L if θ_m = 0 else μ_β if θ_i ≤ θ_r else μ_α",
+                "effective cosine of the light",
+            ),
+            Quantity::new(
+                "μ_v = N·V if θ_m = 0 else μ_α if θ_i ≤ θ_r else μ_β",
+                "effective cosine of the observer",
+            ),
+            Quantity::new(
+                "S = 1 if θ_m = 0 else N·L/η(α) μ_v/η(β) χ/(1 − f + f χ cos β/η(β))",
+                "shadows of slopes on others, and slopes hidden from the observer",
+            ),
+            Quantity::new(
+                "μ_β = χ (cos β + sin β tan θ_m (cos ψ E_2(α) + sin^2(ψ/2) E_2(β))/Z)",
+                "effective cosine of the higher of light and observer",
+            ),
+            Quantity::new(
+                "μ_α = χ (cos α + sin α tan θ_m (E_2(α) − sin^2(ψ/2) E_2(β))/Z)",
+                "effective cosine of the lower of light and observer",
+            ),
+            Quantity::new(
+                "Z = 2 − E_1(α) − ψ/180° E_1(β)",
+                "normalisation for the slopes neither in shadow nor hidden",
+            ),
+            Quantity::new(
+                "η(x) = χ (cos x + sin x tan θ_m E_2(x)/(2 − E_1(x)))",
+                "effective cosine of a direction alone, whatever the other",
+            ),
+            Quantity::new(
+                "E_1(x) = exp(−2/(π tan θ_m tan x))",
+                "effect of steep slopes on the area that a direction reaches",
+            ),
+            Quantity::new(
+                "E_2(x) = exp(−1/(π tan^2 θ_m tan^2 x))",
+                "fraction of slopes steep enough to turn away from a direction",
+            ),
+            Quantity::new("χ = 1/√(1 + π tan^2 θ_m)", "mean cosine of the slopes"),
+            Quantity::new("f = exp(−2 tan(ψ/2))", "fraction of the shadows that is hidden from the observer"),
+            Quantity::new("α = max(θ_i, θ_r)", "larger angle of light and observer to the normal"),
+            Quantity::new("β = min(θ_i, θ_r)", "smaller angle of light and observer to the normal"),
+            Quantity::new("ψ = arccos(cos(φ_l − φ_v))", "azimuth between light and observer, at most 180°"),
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

@@ -37,6 +37,7 @@ impl ReflectionModel for Lambert {
         summary: "The ideal matte surface: equally bright from every direction. The reference for all others.",
         synonyms: &["matte", "diffuse reflector"],
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Formula,
         anisotropic: false,

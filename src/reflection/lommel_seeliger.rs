@@ -47,6 +47,7 @@ impl ReflectionModel for LommelSeeliger {
         summary: "Single scattering in a dark powder, such as the ground of the Moon: under full light a ball looks like a flat disc.",
         synonyms: &["Moon", "asteroid", "dust"],
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = C_b/2 N·L/(N·L + N·V)" }],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

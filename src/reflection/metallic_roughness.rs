@@ -3,8 +3,8 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    preset,
+    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Quantity, Readout, ReflectionModel,
+    Term, preset,
 };
 use crate::{
     optics::{
@@ -25,7 +25,7 @@ parameters! {
     ///
     /// ```text
     /// f_r = (1 − F)(1 − m) C_b/π + D F G / (4 (N·L)(N·V))
-    /// D = α² / (π ((N·H)²(α² − 1) + 1)²),   α = r²
+    /// D = α² / (π (α² cos² θ_h + sin² θ_h)²),   α = r²
     /// G = 1 / (1 + Λ(L) + Λ(V)),   Λ(X) = (√(1 + α² tan² θ_X) − 1)/2
     /// F = F_0 + (1 − F_0)(1 − V·H)⁵,   F_0 = (1 − m) 0.16 s² + m C_b
     /// ```
@@ -99,15 +99,21 @@ impl ReflectionModel for MetallicRoughness {
         ],
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − F)(1 − m) C_b (N·L)" },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − m)(1 − F) C_b (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = π D F G / (4 (N·V))" },
             EquationPart {
-                term: Term::Specular, text: "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2"
+                term: Term::Specular,
+                text: "D = α^2 / (π (α^2 cos^2 θ_h + sin^2 θ_h)^2), α = max(0.001, r^2)",
             },
-            EquationPart { term: Term::Specular, text: "G = 1 / (1 + Λ(L) + Λ(V))" },
+            EquationPart { term: Term::Specular, text: "G = 1 / (1 + Λ(θ_i) + Λ(θ_r))" },
             EquationPart { term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − V·H)^5" },
             EquationPart { term: Term::Specular, text: "F_0 = 0.16 (1 − m) s^2 + m C_b" },
         ],
+        quantities: &[Quantity::new(
+            "Λ(θ) = (√(1 + α^2 tan^2 θ) − 1)/2",
+            "hidden area of the facets per visible area, from this angle",
+        )
+        .source("B. Smith 1967; B. Walter and others 2007")],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

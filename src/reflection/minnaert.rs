@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms},
     parameter::{BASE_COLOUR, Parameter, ParameterKind},
@@ -63,8 +63,16 @@ impl ReflectionModel for Minnaert {
         summary: "Powers of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
         synonyms: &["Moon", "velvet"],
         equation: &[EquationPart {
-            term: Term::Diffuse, text: "I_d = C_b (k + 1)/2 (N·L)^k (N·V)^{k − 1}"
+            term: Term::Diffuse,
+            text: "I_d = C_b (k + 1)/2 N·L μ_i^{k − 1} μ_o^{k − 1}",
         }],
+        quantities: &[
+            Quantity::new(
+                "μ_i = max(N·L, 0.001)",
+                "cosine of the light, at least 0.001 so that rims stay finite",
+            ),
+            Quantity::new("μ_o = max(N·V, 0.001)", "cosine of the observer, likewise at least 0.001"),
+        ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

@@ -58,6 +58,7 @@ impl ReflectionModel for ModLambert {
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
         }],
+        quantities: &[],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Formula,
         anisotropic: false,

@@ -76,6 +76,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
         None
     }
 
+    /// A quantity that the [equation](Declaration::equation) names and no line of it defines, such as an albedo from a
+    /// table: by its symbol, and the arguments of a function, `E(N·L)`. `None` for any other.
+    fn quantity(&self, _symbol: &str, _arguments: &[f32]) -> Option<Vec3> {
+        None
+    }
+
     /// The parameters that turn the surface into a measured material; `None` if the model cannot represent it.
     fn preset(_material: &Measured) -> Vec<(&'static str, Value)> {
         Vec::new()

@@ -64,6 +64,7 @@ impl ReflectionModel for ModifiedPhong {
                 term: Term::Specular, text: "I_s = k_s C_s (α + 2)/2 max(0, R·V)^α max(0, N·L)"
             },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

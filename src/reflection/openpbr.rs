@@ -3,7 +3,7 @@ use std::{f32::consts::PI, sync::LazyLock};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, OnPages, Readout,
+    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, OnPages, Quantity, Readout,
     ReflectionModel, Term, preset,
 };
 use crate::{
@@ -451,6 +451,285 @@ impl OpenPbr {
     }
 }
 
+const EON: &str = "J. Portsmouth, P. Kutz, S. Hill 2024";
+const SHEEN: &str = "T. Zeltner, B. Burley, M. Chiang 2022";
+const GGX: &str = "B. Walter and others 2007";
+const SMITH: &str = "B. Smith 1967; B. Walter and others 2007";
+const FILM: &str = "F. Abelès 1950";
+const METAL_INDEX: &str = "O. Gulbrandsen 2014";
+const FRESNEL: &str = "A. Fresnel 1823";
+const KULLA: &str = "C. Kulla, A. Conty 2017";
+const KELEMEN: &str = "C. Kelemen, L. Szirmay-Kalos 2001";
+const F82: &str = "P. Kutz, M. Hašan, D. Edmondson 2021";
+const HITCHHIKER: &str = "E. d'Eon 2021";
+
+/// From the layers at the top down to the body.
+const QUANTITIES: &[Quantity] = &[
+    // The fuzz.
+    Quantity::new("E_f(μ)", "albedo of the fuzz, from the table for r_f").source(SHEEN),
+    Quantity::new("f_f = E_f(N·V) a_f(N·V)^2/(π l_f^2)", "BRDF of the fuzz").source(SHEEN),
+    Quantity::new(
+        "l_f = (a_f(N·V) x_f + b_f(N·V) (N·L))^2 + (a_f(N·V) y_f)^2 + (N·L)^2",
+        "square of the length of L, stretched by the shape of the fuzz",
+    )
+    .source(SHEEN),
+    Quantity::new("x_f = sin θ_i cos(φ_l − φ_v)", "part of L along the surface, towards V"),
+    Quantity::new("y_f = sin θ_i sin(φ_l − φ_v)", "part of L along the surface, beside V"),
+    Quantity::new("a_f(μ)", "stretch of the fuzz, from the table for r_f").source(SHEEN),
+    Quantity::new("b_f(μ)", "shear of the fuzz, from the table for r_f").source(SHEEN),
+    // The coat.
+    Quantity::new("E_c(μ)", "albedo of the coat, integrated"),
+    Quantity::new(
+        "T_L = 1 − C + C max(10^{−9}, C_c)^{1/(2 c_L)}",
+        "share of the light that passes the coat on its way in",
+    ),
+    Quantity::new(
+        "T_V = 1 − C + C max(10^{−9}, C_c)^{1/(2 c_V)}",
+        "share of the light that passes the coat on its way out",
+    ),
+    Quantity::new(
+        "c_L = √(max(0.0001, 1 − (sin θ_i/n_c)^2))",
+        "cosine of the light within the coat, by Snell's law",
+    ),
+    Quantity::new(
+        "c_V = √(max(0.0001, 1 − (sin θ_o/n_c)^2))",
+        "cosine of the observer within the coat, by Snell's law",
+    ),
+    Quantity::new("f_c = D_c G_c F_c/(4 (N·L)(N·V))", "BRDF of the coat"),
+    Quantity::new(
+        "D_c = 1/(π α_{cx} α_{cy} cos^4 θ_h (1 + tan^2 θ_h ((cos φ_h/α_{cx})^2 + (sin φ_h/α_{cy})^2))^2)",
+        "distribution of the facets of the coat, GGX",
+    )
+    .source(GGX),
+    Quantity::new("G_c = G_{cL} G_{cV}", "masking and shadowing on the coat, each by itself").source(SMITH),
+    Quantity::new(
+        "G_{cL} = 2/(1 + √(1 + tan^2 θ_i ((α_{cx} cos φ_l)^2 + (α_{cy} sin φ_l)^2)))",
+        "share of the facets of the coat that the light reaches",
+    )
+    .source(SMITH),
+    Quantity::new(
+        "G_{cV} = 2/(1 + √(1 + tan^2 θ_o ((α_{cx} cos φ_v)^2 + (α_{cy} sin φ_v)^2)))",
+        "share of the facets of the coat that the observer sees",
+    )
+    .source(SMITH),
+    Quantity::new("F_c = F_i(n_c)", "Fresnel reflectance of the coat").source(FRESNEL),
+    Quantity::new(
+        "α_{cx} = max(0.001, r_k^2 √(2/(1 + (1 − a_c)^2)))",
+        "width of the distribution of the coat along the tangent",
+    ),
+    Quantity::new(
+        "α_{cy} = max(0.001, (1 − a_c) r_k^2 √(2/(1 + (1 − a_c)^2)))",
+        "width of the distribution of the coat across the tangent",
+    ),
+    Quantity::new(
+        "r_k = (1 − F_z) r_c + F_z min(1, r_c^4 + 0.005 mean(C_f) r_f^5)^{1/4}",
+        "roughness of the coat, raised by the fuzz",
+    ),
+    // Darkening: the coat returns light to the base.
+    Quantity::new("Δ = 1 + C δ (Δ_1 − 1)", "darkening by the coat, by its weight"),
+    Quantity::new(
+        "Δ_1 = (1 − K)/(1 − E_b K)",
+        "darkening by a coat over all of the base: a series of reflections between both",
+    )
+    .source(HITCHHIKER),
+    Quantity::new(
+        "K = clamp((1 − s_b) F_h(n_c) + s_b F_k, 0, 0.9999)",
+        "share of the light from the base that the coat returns to it",
+    ),
+    Quantity::new(
+        "F_k = 1 − (1 − F_h(n_c))/n_c^2",
+        "share of scattered light that the coat returns, from within",
+    )
+    .source(HITCHHIKER),
+    Quantity::new(
+        "s_b = 1 + ((1 − m) F_h(η) + m) (r_b − 1)",
+        "share of the light that the base scatters in all directions",
+    ),
+    Quantity::new(
+        "E_b = min(1, m ξ F_{82m} + (1 − m) (ρ_0 + (1 − ρ_0) F_h(η)))",
+        "albedo of the base, estimated",
+    ),
+    Quantity::new("F_h(n)", "mean Fresnel reflectance over the hemisphere, integrated"),
+    // The lobe of the base.
+    Quantity::new(
+        "D = 1/(π α_x α_y cos^4 θ_h (1 + tan^2 θ_h ((cos φ_h/α_x)^2 + (sin φ_h/α_y)^2))^2)",
+        "distribution of the facets, GGX",
+    )
+    .source(GGX),
+    Quantity::new("G = G_L G_V", "masking and shadowing, each by itself").source(SMITH),
+    Quantity::new(
+        "G_L = 2/(1 + √(1 + tan^2 θ_i ((α_x cos φ_l)^2 + (α_y sin φ_l)^2)))",
+        "share of the facets that the light reaches",
+    )
+    .source(SMITH),
+    Quantity::new(
+        "G_V = 2/(1 + √(1 + tan^2 θ_o ((α_x cos φ_v)^2 + (α_y sin φ_v)^2)))",
+        "share of the facets that the observer sees",
+    )
+    .source(SMITH),
+    Quantity::new(
+        "α_x = max(0.001, r_b^2 √(2/(1 + (1 − a)^2)))",
+        "width of the distribution along the tangent",
+    ),
+    Quantity::new(
+        "α_y = max(0.001, (1 − a) r_b^2 √(2/(1 + (1 − a)^2)))",
+        "width of the distribution across the tangent",
+    ),
+    Quantity::new(
+        "r_b = (1 − C) r + C min(1, r^4 + s_c r_k^4)^{1/4}",
+        "roughness of the base, raised by the coat",
+    ),
+    Quantity::new("s_c = 1 − min(n_c, 1/n_c)", "spread of light by the coat"),
+    // Its reflectance: dielectric and metal.
+    Quantity::new(
+        "F_d = (1 − w_f) F_i(η) + w_f R_t(n_b, 0)",
+        "Fresnel reflectance of the dielectric base, with its film",
+    ),
+    Quantity::new(
+        "F_m = (1 − w_f) F_{82} + w_f R_t(n_m, k_m)",
+        "Fresnel reflectance of metal, with its film",
+    ),
+    Quantity::new(
+        "F_i(n) = (((c − g(n))/(c + g(n)))^2 + ((n^2 c − g(n))/(n^2 c + g(n)))^2)/2",
+        "Fresnel reflectance of a boundary, the mean of both polarisations",
+    )
+    .source(FRESNEL),
+    Quantity::new(
+        "g(n) = √(max(0, n^2 − 1 + c^2))",
+        "index times the cosine of the refracted light; 0 at total reflection",
+    )
+    .source(FRESNEL),
+    Quantity::new("c = cos θ_d", "cosine of the light to the facet"),
+    Quantity::new(
+        "η = n_a/n_b if C > 0 and n_a > n_b and n_b ≥ 1 else n_b/n_a",
+        "ratio of the indices at the base; inverted under a denser coat",
+    ),
+    Quantity::new("n_a = 1 + C (n_c − 1)", "refractive index above the base"),
+    Quantity::new(
+        "n_b = n_a (1 + ε)/(1 − ε)",
+        "refractive index of the base, with the specular strength in it",
+    ),
+    Quantity::new(
+        "ε = clamp(√(ξ) (n_s − n_a)/(n_s + n_a), −0.99995, 0.99995)",
+        "amplitude that the base reflects at normal incidence",
+    ),
+    Quantity::new(
+        "F_{82} = clamp(ρ_0 + (1 − ρ_0) (1 − c)^5 − b_{82} c (1 − c)^6, 0, 1)",
+        "reflectance of metal, with its tint at 82°",
+    )
+    .source(F82),
+    Quantity::new(
+        "b_{82} = (1 − C_s) (ρ_0 + (1 − ρ_0) (6/7)^5)/(1/7 (6/7)^6)",
+        "amount of the tint: at cos 82° = 1/7 it takes 1 − C_s of the reflectance",
+    )
+    .source(F82),
+    Quantity::new(
+        "ρ_0 = w_b C_b",
+        "base colour with its weight; of metal, the reflectance at normal incidence",
+    ),
+    // Light between the facets of metal.
+    Quantity::new(
+        "f_m = m min(1, ξ F_{82m}) F_{82m} min(1/(N·L), U(N·L) U(N·V)/max(10^{−6}, U_m))/π if r_b^2 ≥ 0.0016 else 0",
+        "light that bounces several times between the facets of metal",
+    )
+    .source(KULLA),
+    Quantity::new(
+        "F_{82m} = clamp(ρ_0 + (1 − ρ_0)/21 − b_{82}/126, 0, 1)",
+        "mean of this reflectance over the hemisphere",
+    )
+    .source(F82),
+    Quantity::new(
+        "U(μ)",
+        "share of light lost between facets that reflect all of it: 1 less their albedo, integrated",
+    )
+    .source(KULLA),
+    Quantity::new("U_m", "mean of this share over the hemisphere, integrated").source(KULLA),
+    // The film.
+    Quantity::new("w_f = w_t s_t^2 (3 − 2 s_t)", "share of the film, which fades below 0.03 µm"),
+    Quantity::new("s_t = clamp(d/0.03, 0, 1)", "thickness of the film over 0.03 µm, at most 1"),
+    Quantity::new(
+        "R_t(n, k) = 1 if n_a sin θ_d ≥ n_t else (R_s(n, k) + R_p(n, k))/2",
+        "reflectance of the film over the index n + i k: the mean of both polarisations, and 1 at total reflection",
+    )
+    .source(FILM),
+    Quantity::new(
+        "R_s(n, k) = ((a_s (b_s + q_y(n, k) t) − b_s q_x(n, k))^2 + (t (a_s q_x(n, k) − b_s^2) + b_s q_y(n, k))^2)/((a_s (b_s + q_y(n, k) t) + b_s q_x(n, k))^2 + (t (a_s q_x(n, k) + b_s^2) − b_s q_y(n, k))^2)",
+        "the same for light that swings across the plane of incidence: all reflections at both boundaries, with their phases",
+    )
+    .source(FILM),
+    Quantity::new(
+        "R_p(n, k) = ((a_p (b_p + p_y(n, k) t) − b_p p_x(n, k))^2 + (t (a_p p_x(n, k) − b_p^2) + b_p p_y(n, k))^2)/((a_p (b_p + p_y(n, k) t) + b_p p_x(n, k))^2 + (t (a_p p_x(n, k) + b_p^2) − b_p p_y(n, k))^2)",
+        "the same for light that swings in the plane of incidence",
+    )
+    .source(FILM),
+    Quantity::new("a_s = n_a c", "admittance above the film, across the plane of incidence").source(FILM),
+    Quantity::new("a_p = n_a/c", "admittance above the film, in the plane of incidence").source(FILM),
+    Quantity::new("b_s = n_t c_t", "admittance of the film, across the plane of incidence").source(FILM),
+    Quantity::new("b_p = n_t/c_t", "admittance of the film, in the plane of incidence").source(FILM),
+    Quantity::new("t = tan δ_t", "tangent of that phase").source(FILM),
+    Quantity::new("δ_t = 2 π n_t d c_t/λ", "phase of light that crosses the film once, in radians")
+        .source(FILM),
+    Quantity::new("λ = (0.62, 0.54, 0.45)", "wavelengths of red, green and blue in µm")
+        .source("Adobe, openpbr-bsdf 2026"),
+    Quantity::new("c_t = √(1 − (n_a sin θ_d/n_t)^2)", "cosine of the light within the film, by Snell's law"),
+    Quantity::new(
+        "q_x(n, k) = √(max(0, v(n, k) + u(n, k))/2)",
+        "admittance below the film, across the plane of incidence: the real part of √((n + i k)² − (n_a sin θ_d)²)",
+    )
+    .source(FILM),
+    Quantity::new("q_y(n, k) = √(max(0, v(n, k) − u(n, k))/2)", "its imaginary part").source(FILM),
+    Quantity::new("u(n, k) = n^2 − k^2 − (n_a sin θ_d)^2", "real part of (n + i k)² − (n_a sin θ_d)²"),
+    Quantity::new("v(n, k) = √(u(n, k)^2 + (2 n k)^2)", "magnitude of (n + i k)² − (n_a sin θ_d)²"),
+    Quantity::new(
+        "p_x(n, k) = ((n^2 − k^2) q_x(n, k) + 2 n k q_y(n, k))/v(n, k)",
+        "admittance below the film, in the plane of incidence: the real part of (n + i k)²/(q_x + i q_y)",
+    )
+    .source(FILM),
+    Quantity::new("p_y(n, k) = (2 n k q_x(n, k) − (n^2 − k^2) q_y(n, k))/v(n, k)", "its imaginary part")
+        .source(FILM),
+    Quantity::new("n_m = C_s n_l + (1 − C_s) n_g", "refractive index of metal, from its colours")
+        .source(METAL_INDEX),
+    Quantity::new(
+        "k_m = √(C_s (n_g − n_l) (n_m − 1/n_g))",
+        "extinction coefficient of metal, from its colours",
+    )
+    .source(METAL_INDEX),
+    Quantity::new("n_l = (1 − F_g)/(1 + F_g)", "least refractive index with this reflectance")
+        .source(METAL_INDEX),
+    Quantity::new("n_g = (1 + √(F_g))/(1 − √(F_g))", "greatest refractive index with this reflectance")
+        .source(METAL_INDEX),
+    Quantity::new("F_g = min(0.99, ρ_0)", "reflectance of metal at normal incidence, below 1")
+        .source(METAL_INDEX),
+    // The body.
+    Quantity::new("f_b = f_e T_d(N·L) T_d(N·V)/max(10^{−6}, T_h)", "BRDF of the body below its boundary")
+        .source(KELEMEN),
+    Quantity::new("f_e = ρ (A (1 + σ Q) + σ M)/π", "BRDF of a rough body alone").source(EON),
+    Quantity::new("ρ = (1 − m) ρ_0", "albedo of the facets of the body"),
+    Quantity::new("A = 1/(1 + (1/2 − 2/(3 π)) σ)", "brightness of single reflection").source(EON),
+    Quantity::new("Q = S/max(N·L, N·V) if S > 0 else S", "brightening towards the light").source(EON),
+    Quantity::new("S = L·V − (N·L)(N·V)", "cosine between light and view, less that from their heights")
+        .source(EON),
+    Quantity::new(
+        "M = A ρ E_e/(1 − ρ (1 − E_e)) M_1(θ_i) M_1(θ_o)/(6/(5 π) − 1/6)",
+        "light that bounces several times between the facets of the body",
+    )
+    .source(EON),
+    Quantity::new("E_e = A (1 + (2/3 − 28/(15 π)) σ)", "mean albedo of single reflection").source(EON),
+    Quantity::new("M_1(θ) = 1/2 − 2/(3 π) − X(θ)/π", "light that single reflection loses, over A σ")
+        .source(EON),
+    Quantity::new(
+        "X(θ) = sin θ (θ π/180° − sin θ cos θ) + 2/3 (tan θ (1 − sin^3 θ) − sin θ)",
+        "the integral of single reflection",
+    )
+    .source(EON),
+    Quantity::new(
+        "T_d(μ)",
+        "share of light that passes the boundary of the base: 1 less its albedo, integrated",
+    )
+    .source(KELEMEN),
+    Quantity::new("T_h", "mean of this share over the hemisphere, integrated").source(KELEMEN),
+];
+
 impl ReflectionModel for OpenPbr {
     const DECLARATION: Declaration = Declaration {
         id: "openpbr",
@@ -477,13 +756,15 @@ impl ReflectionModel for OpenPbr {
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {
-                term: Term::Total, text: "Z = 1 − F_z E_f(θ_o), W = T_L T_V (1 − C E_c(θ_o)) Δ"
+                term: Term::Total,
+                text: "Z = 1 − F_z E_f(N·V), W = max(0, 1 − C E_c(N·V)) T_L T_V Δ if C > 0 else 1",
             },
-            EquationPart { term: Term::Diffuse, text: "I_d = π Z W f_b (N·L)" },
+            EquationPart { term: Term::Diffuse, text: "I_d = π f_b W Z (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + W f_g)) (N·L)" },
             EquationPart { term: Term::Specular, text: "f_g = D G F / (4 (N·L)(N·V)) + f_m" },
-            EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m min(1, ξ F_{82})" },
+            EquationPart { term: Term::Specular, text: "F = (1 − m) C_s F_d + m min(1, ξ F_m)" },
         ],
+        quantities: QUANTITIES,
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: true,
@@ -579,6 +860,23 @@ impl ReflectionModel for OpenPbr {
             specular = specular * below + self.fuzz_weight * lobe * l.z * self.fuzz_colour;
         }
         Terms { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
+    fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
+        let x = arguments.first().copied();
+        let missing = |albedo: f32| (1.0 - albedo).max(0.0);
+        Some(Vec3::splat(match symbol {
+            "U" => missing(self.boundaries.at(x?).x),
+            "U_m" => missing(self.boundaries.mean().x),
+            "T_d" => missing(self.boundaries.at(x?).y),
+            "T_h" => missing(self.boundaries.mean().y),
+            "E_c" => self.boundaries.at(x?).z,
+            "E_f" => self.fuzz.at(x?).z,
+            "a_f" => self.fuzz.at(x?).x,
+            "b_f" => self.fuzz.at(x?).y,
+            "F_h" => mean_fresnel(x?),
+            _ => return None,
+        }))
     }
 
     fn readouts(&self) -> Vec<Readout> {

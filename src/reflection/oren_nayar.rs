@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
     optics::{
         Frame, Terms,
@@ -74,16 +74,40 @@ impl ReflectionModel for OrenNayar {
             EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L S" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "S = C_1 + cos φ C_2 tan β + (1 − |cos φ|) C_3 tan((α + β)/2) + 0.17 C_b C_4",
+                text: "S = C_1 + C_2 cos φ tan β + C_3 (1 − |cos φ|) tan((α + β)/2) + 0.17 C_4 C_b",
             },
-            EquationPart { term: Term::Diffuse, text: "C_1 = 1 − 0.5 σ^2/(σ^2 + 0.33)" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − b), b = (2β/π)^3 where cos φ < 0, else 0",
-            },
-            EquationPart { term: Term::Diffuse, text: "C_3 = 0.125 σ^2/(σ^2 + 0.09) (4 α β/π^2)^2" },
-            EquationPart { term: Term::Diffuse, text: "C_4 = σ^2/(σ^2 + 0.13) (1 − cos φ (2β/π)^2)" },
             EquationPart { term: Term::Diffuse, text: "α = max(θ_i, θ_r), β = min(θ_i, θ_r)" },
+        ],
+        quantities: &[
+            Quantity::new("C_1 = 1 − 0.5 s^2/(s^2 + 0.33)", "reflection whatever the azimuth"),
+            Quantity::new("C_2 = 0.45 s^2/(s^2 + 0.09) (sin α − b)", "brightening on the side of the light")
+                .when(&[("oren_nayar_form", &["full"])]),
+            Quantity::new(
+                "C_2 = 0.45 s^2/(s^2 + 0.09) sin α if cos φ > 0 else 0",
+                "brightening on the side of the light",
+            )
+            .when(&[("oren_nayar_form", &["qualitative"])]),
+            Quantity::new(
+                "b = (β/90°)^3 if cos φ < 0 else 0",
+                "correction where light and observer are on opposite sides",
+            )
+            .when(&[("oren_nayar_form", &["full"])]),
+            Quantity::new(
+                "C_3 = 0.125 s^2/(s^2 + 0.09) (α/90° β/90°)^2",
+                "brightening where the light comes from the side",
+            )
+            .when(&[("oren_nayar_form", &["full"])]),
+            Quantity::new("C_3 = 0", "left out in the short form")
+                .when(&[("oren_nayar_form", &["qualitative"])]),
+            Quantity::new(
+                "C_4 = s^2/(s^2 + 0.13) (1 − cos φ (β/90°)^2)",
+                "light reflected by two facets in turn",
+            )
+            .when(&[("oren_nayar_form", &["full"])]),
+            Quantity::new("C_4 = 0", "left out in the short form, reflection by two facets in turn")
+                .when(&[("oren_nayar_form", &["qualitative"])]),
+            Quantity::new("s = σ π/180°", "slope deviation in radians"),
+            Quantity::new("φ = φ_l − φ_v", "azimuth between light and observer"),
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

@@ -123,7 +123,9 @@ impl ReflectionModel for Strauss {
             EquationPart {
                 term: Term::Diffuse, text: "I_d = (1 − s^3)(1 − t)(1 − m s) C_b max(0, N·L)"
             },
-            EquationPart { term: Term::Specular, text: "I_s = r_j C_s max(0, R·V)^{3/(1 − s)}" },
+            EquationPart {
+                term: Term::Specular, text: "I_s = r_j C_s max(0, R·V)^{min(30000, 3/(1 − s))}"
+            },
             EquationPart { term: Term::Specular, text: "C_s = 1 + m (1 − F(α))(C_b − 1)" },
             EquationPart {
                 term: Term::Specular,
@@ -137,8 +139,9 @@ impl ReflectionModel for Strauss {
                 term: Term::Specular,
                 text: "G(x) = (1/0.01^2 − 1/(x − 1.01)^2) / (1/0.01^2 − 1/1.01^2)",
             },
-            EquationPart { term: Term::Specular, text: "α = 2 θ_i / π, γ = 2 θ_r / π" },
+            EquationPart { term: Term::Specular, text: "α = 2 θ_i/180°, γ = 2 θ_r/180°" },
         ],
+        quantities: &[],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

@@ -32,6 +32,19 @@ pub trait Surface: Send + Sync {
         None
     }
 
+    /// A quantity of the equation that no line defines; see [`ReflectionModel::quantity`]. Custom models also know the
+    /// values of their WGSL for these directions.
+    fn quantity(
+        &self,
+        _symbol: &str,
+        _arguments: &[f32],
+        _l: Vec3,
+        _v: Vec3,
+        _frame: &Frame,
+    ) -> Option<Vec3> {
+        None
+    }
+
     /// The light that leaves towards `v` under some lights: the sum of the responses. Each model has its own copy of this
     /// loop, from which the compiler moves what depends on the object or on the view alone.
     fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
@@ -88,6 +101,10 @@ impl<M: ReflectionModel> Surface for M {
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         ReflectionModel::factor(self, factor)
     }
+
+    fn quantity(&self, symbol: &str, arguments: &[f32], _: Vec3, _: Vec3, _: &Frame) -> Option<Vec3> {
+        ReflectionModel::quantity(self, symbol, arguments)
+    }
 }
 
 /// A model that calculates its curve once, at the first call, and then uses it: for pictures.
@@ -126,6 +143,10 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         ReflectionModel::factor(&self.model, factor)
+    }
+
+    fn quantity(&self, symbol: &str, arguments: &[f32], _: Vec3, _: Vec3, _: &Frame) -> Option<Vec3> {
+        ReflectionModel::quantity(&self.model, symbol, arguments)
     }
 }
 

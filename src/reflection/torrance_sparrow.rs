@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    cook_torrance::{SPECULAR_WEIGHT, conductor_preset},
+    cook_torrance::{EXACT_FRESNEL, SPECULAR_WEIGHT, conductor_preset},
 };
 use crate::{
     optics::{
@@ -97,12 +97,13 @@ impl ReflectionModel for TorranceSparrow {
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
-            EquationPart { term: Term::Specular, text: "D = exp(−θ_h^2 / β^2) / (π β^2)" },
+            EquationPart { term: Term::Specular, text: "D = exp(−θ_h^2 / β^2) / (π (β π/180°)^2)" },
             EquationPart {
                 term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
             },
-            EquationPart { term: Term::Specular, text: "F = Fresnel(n + i k, V·H)" },
+            EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
         ],
+        quantities: EXACT_FRESNEL,
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

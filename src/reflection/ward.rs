@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms, geometry::half_slope},
     parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR},
@@ -77,9 +77,16 @@ impl ReflectionModel for Ward {
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s) C_b N·L" },
             EquationPart {
                 term: Term::Specular,
-                text: "I_s = k_s C_s exp(−(x^2/α_x^2 + y^2/α_y^2)) / (4 α_x α_y) √(N·L / N·V)",
+                text: "I_s = k_s C_s exp(−(x^2/α_x^2 + y^2/α_y^2)) / (4 α_x α_y) c",
             },
-            EquationPart { term: Term::Specular, text: "x = H·T / H·N, y = H·B / H·N" },
+            EquationPart { term: Term::Specular, text: "x = tan θ_h cos φ_h, y = tan θ_h sin φ_h" },
+        ],
+        quantities: &[
+            Quantity::new("c = √(N·L / N·V)", "division by the roots of both cosines, times N·L")
+                .when(&[("ward_form", &["ward"])]),
+            Quantity::new("c = 1/N·V", "division by both cosines, times N·L")
+                .source("A. Dür 2006")
+                .when(&[("ward_form", &["duer"])]),
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

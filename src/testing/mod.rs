@@ -5,6 +5,7 @@
 //!
 //! // In the tests of your crate, with your types:
 //! testing::assert_laws::<reflection::Lambert>();
+//! testing::assert_equation::<reflection::Lambert>();
 //! testing::assert_parity::<reflection::Lambert>();
 //! testing::assert_light::<light::Spot>();
 //! testing::assert_shading::<shading::Gouraud>();
@@ -14,6 +15,7 @@
 //! Each also tries the registration, and panics with the id and the first thing that is wrong, where, and by how much. The
 //! functions in [`laws`], [`parity`], [`lights`], [`shadings`] and [`meshes`] do parts of it for entries of a registry.
 
+pub mod equations;
 pub mod laws;
 pub mod lights;
 pub mod meshes;
@@ -63,6 +65,17 @@ fn registered_model<M: ReflectionModel>() -> Outcome {
 #[track_caller]
 pub fn assert_laws<M: ReflectionModel>() {
     assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| laws::all(&ModelEntry::of::<M>())));
+}
+
+/// Asserts that the equation of a reflection model can be followed by hand: every line of an explanation gives its own
+/// value from the numbers that it shows, for many directions and parameters.
+///
+/// # Panics
+/// If one does not.
+#[track_caller]
+pub fn assert_equation<M: ReflectionModel>() {
+    let followed = || equations::followed(&ModelEntry::of::<M>());
+    assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| followed()));
 }
 
 /// Asserts that a reflection model is the same in Rust and in WGSL, which the CPU interprets: to 1e-4, for many

@@ -150,6 +150,64 @@ pub fn parse(text: &str) -> Vec<Atom> {
     atoms
 }
 
+/// The definitions of a part of an equation, which has commas between them.
+#[must_use]
+pub fn definitions(text: &str) -> Vec<&str> {
+    let (mut pieces, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (i, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 && defines(&text[i + 1..]) => {
+                pieces.push(text[start..i].trim());
+                start = i + 1;
+            }
+            _ => {}
+        }
+    }
+    pieces.push(text[start..].trim());
+    pieces
+}
+
+/// True if a text begins with one thing and an equals sign: `F_0 = …`, `cos g = …`.
+fn defines(text: &str) -> bool {
+    text.split_once('=').is_some_and(|(head, _)| {
+        !head.contains([',', '+', '−', '·', '/', '<', '>'])
+            && (1..=2).contains(&head.split_whitespace().count())
+    })
+}
+
+/// A symbol as programs compare it: without the braces that group its index.
+#[must_use]
+pub fn plain_symbol(symbol: &str) -> String {
+    symbol.replace(['{', '}'], "")
+}
+
+/// Atoms as they are written.
+#[must_use]
+pub fn write(atoms: &[Atom]) -> String {
+    let mut out = String::new();
+    for atom in atoms {
+        if *atom == Atom::Space {
+            out.push(' ');
+            continue;
+        }
+        out.push_str(atom.base());
+        for (mark, script) in [('_', atom.sub()), ('^', atom.sup())] {
+            match script.chars().count() {
+                0 => {}
+                1 => out.extend([mark].into_iter().chain(script.chars())),
+                _ => {
+                    out.extend([mark, '{']);
+                    out.push_str(script);
+                    out.push('}');
+                }
+            }
+        }
+    }
+    out.trim().to_owned()
+}
+
 /// True for a variable: one letter. Several are a word, such as `max`.
 #[must_use]
 pub fn is_variable(text: &str) -> bool {
@@ -157,16 +215,30 @@ pub fn is_variable(text: &str) -> bool {
     chars.next().is_some_and(char::is_alphabetic) && chars.next().is_none()
 }
 
-/// A superscript or subscript: a group in braces, a number, or one character.
+/// A superscript or subscript: a group in braces or brackets, a number, perhaps with a sign, or one character.
 fn script(chars: &[char], start: usize) -> (String, usize) {
     match chars.get(start) {
         Some('{') => {
             let end = chars[start..].iter().position(|c| *c == '}').map_or(chars.len(), |n| start + n);
             (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
         }
-        Some(c) if c.is_ascii_digit() => {
-            let n = chars[start..].iter().take_while(|c| c.is_ascii_digit()).count();
-            (chars[start..start + n].iter().collect(), start + n)
+        Some('(') => {
+            let mut depth = 0;
+            let closes = |c: &char| {
+                depth += i32::from(*c == '(') - i32::from(*c == ')');
+                depth == 0
+            };
+            let end = chars[start..].iter().position(closes).map_or(chars.len(), |n| start + n);
+            (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
+        }
+        Some(c) if c.is_ascii_digit() || *c == '−' => {
+            let digit = |i: usize| chars.get(i).is_some_and(char::is_ascii_digit);
+            let mut end = start + 1;
+            // A point belongs to a number if a digit is behind it.
+            while digit(end) || chars.get(end) == Some(&'.') && digit(end + 1) {
+                end += 1;
+            }
+            (chars[start..end].iter().collect(), end)
         }
         Some(c) => (c.to_string(), start + 1),
         None => (String::new(), start),
@@ -184,8 +256,7 @@ pub fn parse_symbol(symbol: &str) -> Atom {
 /// The same symbol, however it is written.
 #[must_use]
 pub fn same_symbol(a: &str, b: &str) -> bool {
-    let plain = |s: &str| s.replace(['{', '}'], "");
-    plain(a) == plain(b)
+    a == b || plain_symbol(a) == plain_symbol(b)
 }
 
 #[cfg(test)]
@@ -230,6 +301,28 @@ mod tests {
         let line = "x".repeat(LONGEST_LINE);
         assert_eq!(beyond_limits(&format!("{line}\n{line}")), None);
         assert_eq!(beyond_limits(&format!("{line}\n{line}x")).map(|(at, _)| at), Some(2 * LONGEST_LINE + 1));
+    }
+
+    #[test]
+    fn a_part_is_split_where_another_definition_begins() {
+        assert_eq!(
+            definitions("a = max(x, y = z), cos g = L·V , y_{ab} = 2"),
+            ["a = max(x, y = z)", "cos g = L·V", "y_{ab} = 2"]
+        );
+        assert_eq!(definitions("t = max(a, b), or 1 where s < 0"), ["t = max(a, b), or 1 where s < 0"]);
+        assert_eq!(definitions("x = ), y = 1"), ["x = ), y = 1"]);
+    }
+
+    #[test]
+    fn atoms_are_written_as_they_were() {
+        for (text, power) in
+            [("x^(1/(2 a)) y", "1/(2 a)"), ("x^1.98 + 1", "1.98"), ("x^2.", "2"), ("x^−2", "−2")]
+        {
+            assert_eq!(parse(text)[0].sup(), power, "{text}");
+        }
+        for text in ["I_d = k_d max(0, N·L)^α", "F_{90} = 2^{a + 1} x_0^2", "tan^2 θ_h/π"] {
+            assert_eq!(write(&parse(text)), text);
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Words for messages, and JSON whose values know their place.
 
+pub mod expression;
 pub mod identifier;
 pub mod json;
 mod list;

@@ -277,7 +277,7 @@ fn each_light_has_its_own_formula() {
     let text = explained.to_text();
     for expected in [
         "I(p) = I cone(θ, θ_c, s) / d^2 = ",
-        "outer edge = 30°",
+        "θ_c = 30°",
         "γ = ",
         "Light from everywhere",
         "sum over 5 lights",

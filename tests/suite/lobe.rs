@@ -98,7 +98,7 @@ fn towards_the_observer_its_length_is_the_number_that_is_explained() {
         assert_eq!(drawn.len(), 1, "{model}");
         let lit = spot.lights.iter().find(|lit| lit.light.index == drawn[0].light).expect("of its lights");
         let seen = explained(&bench.ctx).and_then(|e| e.explanation.seen.clone()).expect("the sphere");
-        let f = value(&*seen.surface.0, drawn[0].l, spot.view, &spot.frame, TermSelection::All);
+        let f = value(&*seen.model.surface.0, drawn[0].l, spot.view, &spot.frame, TermSelection::All);
         let geometry = lit.geometry.expect("a direction");
         let right =
             (lit.response.diffuse + lit.response.specular) / (std::f32::consts::PI * geometry.cosine("N·L"));
@@ -108,7 +108,8 @@ fn towards_the_observer_its_length_is_the_number_that_is_explained() {
         let nearest = (0..lobe.ways.len())
             .max_by(|a, b| lobe.ways[*a].dot(spot.view).total_cmp(&lobe.ways[*b].dot(spot.view)))
             .expect("not empty");
-        let there = value(&*seen.surface.0, drawn[0].l, lobe.ways[nearest], &spot.frame, TermSelection::All);
+        let there =
+            value(&*seen.model.surface.0, drawn[0].l, lobe.ways[nearest], &spot.frame, TermSelection::All);
         assert_eq!(lobe.values[nearest], Channel::Luminance.of(there), "{model}");
     }
 }

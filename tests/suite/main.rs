@@ -33,6 +33,7 @@ mod features;
 mod files;
 mod finite;
 mod focus;
+mod followed;
 mod foreign;
 mod formats;
 mod golden;

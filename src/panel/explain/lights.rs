@@ -4,12 +4,12 @@ use bevy_egui::egui::{Context, Id, Label, Ui};
 use glam::Vec3;
 
 use super::{
-    pairs,
-    probe::{self, Choice, Unfolded},
+    factors, pairs,
+    probe::{self, Choice, Level, Unfolded},
     rows,
 };
 use crate::{
-    explain::{Explanation, Lit, Place, Seen, Spot, angle},
+    explain::{Explanation, Line, Lit, Place, Seen, Spot, angle, of_value},
     optics::TermSelection,
     panel::{
         linked::{self, Domain, linked},
@@ -171,26 +171,32 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
             .map(|s| format!("{}: {}", s.parameter.label, s.parameter.help))
             .or_else(|| maths::meaning(symbol).map(str::to_owned))
     };
-    for line in lit.rounded_lines(&seen.model, rows::DIGITS) {
-        let head = if line.text.is_empty() { format!("{} =", line.symbol()) } else { line.text.to_owned() };
-        let bare = line.text.is_empty();
-        if !bare {
-            rows::equation(ui, line.term, &head, false, name);
+    let lines = lit.rounded_lines(&seen.model, rows::DIGITS);
+    let name = |symbol: &str| {
+        let quantity = lines.iter().find(|line| maths::same_symbol(line.defines(), symbol));
+        name(symbol).or_else(|| quantity?.quantity.map(|quantity| quantity.label.to_owned()))
+    };
+    let mut clicked = None;
+    let factors = probe::choice(ui.ctx()).level == Level::Factors;
+    // The sum of the terms stands in the light to the observer.
+    let is_sum = |line: &Line| {
+        line.term == Term::Total && line.is_term() && lines.iter().any(|l| l.term != Term::Total)
+    };
+    for line in lines.iter().filter(|line| !is_sum(line)) {
+        // The second level has the equation, whose symbols have their numbers; the third has all.
+        let factor = !line.is_term() && (line.quantity.is_some() || factors);
+        if factor {
+            if factors {
+                let found = factors::factor(ui, &seen.model, lit.geometry.as_ref(), line, &name);
+                clicked = clicked.or(found);
+            }
+            continue;
         }
-        if let Some(numbers) = &line.numbers {
-            // What is defined stands on the left once.
-            let numbers = numbers.find(" = ").map_or(numbers.as_str(), |at| &numbers[at + 1..]);
-            rows::equation(ui, Term::Total, numbers, true, |_| None);
-        }
-        if let Some(value) = line.value {
-            let none = lit.is_behind() && line.term != Term::Ambient && value == Vec3::ZERO && !bare;
-            rows::inset(ui, |ui| {
-                rows::light(ui, if bare { &head } else { "=" }, value, false);
-                if none {
-                    rows::note(ui, "since N·L ≤ 0");
-                }
-            });
-        }
+        let found = written(ui, line, &name);
+        clicked = clicked.or(found);
+    }
+    if let Some(symbol) = clicked {
+        origin(ui, &symbol, &lines);
     }
     ui.add_space(2.0);
     rows::note(ui, "light to the observer");
@@ -199,6 +205,33 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
     if !lit.is_finite() {
         rows::note(ui, "Some of these are not finite numbers.");
+    }
+}
+
+/// A line of the equation as it is written, with numbers, and its value. Returns the symbol of a number that was clicked.
+fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> Option<String> {
+    let bare = !line.text.contains('=');
+    let head = if bare { format!("{} =", line.defines()) } else { line.text.clone() };
+    if !bare {
+        rows::equation(ui, line.term, &head, false, name);
+    }
+    let clicked = line.right().and_then(|numbers| rows::calculation(ui, numbers, &line.symbols, name));
+    if let (Some(value), Some(rgb)) = (&line.value, line.rgb()) {
+        rows::inset(ui, |ui| match (line.is_term() || value.is_colour, bare) {
+            (true, true) => drop(rows::light(ui, &head, rgb, false)),
+            (true, false) => drop(rows::light(ui, "=", rgb, false)),
+            (false, _) => drop(ui.label(format!("= {}", of_value(value, rows::DIGITS)))),
+        });
+    }
+    clicked
+}
+
+/// Shows where a number comes from: the row of the quantity, or the knob, the vector or the light of the symbol.
+fn origin(ui: &Ui, symbol: &str, lines: &[Line]) {
+    let plain = |text: &str| text.replace([' ', '{', '}'], "");
+    match lines.iter().find(|line| !line.is_term() && plain(line.defines()) == plain(symbol)) {
+        Some(line) => probe::seek(ui.ctx(), line.defines()),
+        None => linked::seek(ui.ctx(), &symbol.split('·').collect::<Vec<_>>()),
     }
 }
 
@@ -250,7 +283,7 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
         let from = format!("{} m, at {} m", rows::short(distance), rows::short_triple(position));
         rows::value(ui, "d", &from, &rows::all(distance));
     }
-    let equation = if lit.equation.is_empty() { "I(p)" } else { lit.equation };
+    let equation = lit.arrival();
     let name = |symbol: &str| {
         let factor = lit.factors.iter().find(|f| maths::same_symbol(f.symbol, symbol));
         factor.map(|f| f.meaning.to_owned()).or_else(|| maths::meaning(symbol).map(str::to_owned))
@@ -258,8 +291,15 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
     rows::equation(ui, Term::Total, equation, false, name);
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
         rows::note(ui, &format!("{} for {}", factor.meaning, factor.givens(rows::short)));
-        let line = format!("{} = {}", factor.symbol, rows::formula(factor.value));
-        rows::equation(ui, Term::Total, &line, true, name);
+        let steps = factor.steps(rows::DIGITS);
+        for step in &steps {
+            let line = format!("{} = {} = {}", step.text, step.numbers, of_value(&step.value, rows::DIGITS));
+            rows::equation(ui, Term::Total, &line, true, name);
+        }
+        if steps.is_empty() {
+            let line = format!("{} = {}", factor.symbol, rows::formula(factor.value));
+            rows::equation(ui, Term::Total, &line, true, name);
+        }
     }
     let factors: Vec<_> = lit.factors.iter().map(|factor| rows::short_or_triple(factor.value)).collect();
     let units = lit.factors.iter().filter(|f| !matches!(f.unit, "" | "×")).map(|f| f.unit);

@@ -194,7 +194,7 @@ fn start(
 ) -> Receiver<Vec<LightLobe>> {
     let (sender, receiver) = mpsc::channel();
     let terms = question.explained.explanation.terms;
-    let (surface, frame, ctx) = (seen.surface.0.clone(), spot.frame, ctx.clone());
+    let (surface, frame, ctx) = (seen.model.surface.0.clone(), spot.frame, ctx.clone());
     let of = |index: &usize| {
         let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
         Some((*index, name(*index), lit.geometry?.l))

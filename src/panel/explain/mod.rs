@@ -12,6 +12,7 @@ use bevy_egui::egui::{
 
 use super::{
     Panel, PanelContext, Place, icon, knob,
+    segmented::segmented,
     state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ThemeChoice, ViewChange},
     theme::{self, Palette},
 };
@@ -24,7 +25,9 @@ use crate::{
     text::listed,
 };
 
+mod beside;
 mod display;
+mod factors;
 mod lights;
 mod lobe;
 mod pairs;
@@ -34,15 +37,19 @@ mod rows;
 mod sentence;
 mod surface;
 mod vectors;
+mod what_if;
 
 pub(super) use lobe::entries as lobe_entries;
 pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown};
+use probe::Level;
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;
 
 /// The least width of a column, points; in less there are fewer.
 const COLUMN: f32 = 272.0;
+/// Size of the letters of a sentence that stands alone, points.
+const SENTENCE: f32 = 20.0;
 /// Between columns, points.
 const GAP: f32 = 24.0;
 
@@ -82,12 +89,28 @@ impl Panel for Explain {
         header(ui, session, &explained, actions);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
         let sentence = sentence::sentence(&explained.explanation, &name);
-        ui.add(egui::Label::new(theme::strong(ui, sentence)).wrap().selectable(true));
+        let level = probe::choice(ui.ctx()).level;
+        let mut sentence = theme::strong(ui, sentence);
+        if level == Level::Sentence {
+            // For those at the back of the room.
+            sentence = sentence.size(SENTENCE * theme::scale_here(ui));
+        }
+        ui.add(egui::Label::new(sentence).wrap().selectable(true));
         for (severity, text) in remarks(&explained, session) {
             remark(ui, severity, &text);
         }
+        if level == Level::Sentence {
+            return;
+        }
         ui.add_space(2.0);
-        columns(ui, &explained, session, registry);
+        match probe::other(ui.ctx()) {
+            Some(other) => {
+                let mut sides = [&*explained, &*other];
+                sides.sort_by_key(|side| side.view);
+                beside::beside(ui, sides, session, registry);
+            }
+            None => columns(ui, &explained, session, registry, actions),
+        }
     }
 }
 
@@ -132,8 +155,39 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
             lobe::button(ui, session, actions);
+            levels(ui);
+            if !session.document.variants.is_empty() {
+                beside_button(ui, explained.view);
+            }
         });
     });
+}
+
+/// Explains another view beside this one.
+fn beside_button(ui: &mut Ui, view: usize) {
+    let choice = probe::choice(ui.ctx());
+    let other = if view == 0 { LETTERS[1] } else { LETTERS[0] };
+    let tip = format!("Explain the same point in view {other} beside it, with marks where the lines differ");
+    let button = ui.add(Button::selectable(choice.beside, format!("Beside {other}"))).on_hover_text(tip);
+    if button.clicked() {
+        probe::choose(ui.ctx(), probe::Choice { beside: !choice.beside, ..choice });
+    }
+}
+
+/// How far the explanation goes.
+fn levels(ui: &mut Ui) {
+    let choice = probe::choice(ui.ctx());
+    let names = ["Sentence", "Equation", "Every factor"];
+    let tips = [
+        "What happened, in a sentence",
+        "The equation of the model with the numbers put in, light by light",
+        "Each factor too, with its own equation, its plot and its source",
+    ];
+    let chosen = Level::ALL.iter().position(|level| *level == choice.level);
+    let tip = |ui: &mut Ui, i: usize| drop(ui.label(tips[i]));
+    if let Some(i) = segmented(ui, "Level", &names, chosen, tip) {
+        probe::choose(ui.ctx(), probe::Choice { level: Level::ALL[i], ..choice });
+    }
 }
 
 /// What is to be said before the numbers.
@@ -205,11 +259,26 @@ type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 
 /// The explanation in columns, as light goes: from the surface and the lights to the display. In less room the lights
 /// stand beside the two others, and in little room one is below the other.
-fn columns(ui: &mut Ui, explained: &Arc<Explained>, session: &Session, registry: &Registry) {
+fn columns(
+    ui: &mut Ui,
+    explained: &Arc<Explained>,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
     let explanation = &explained.explanation;
     let choice = probe::choice(ui.ctx());
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
-    let end: Part = (0.28, Box::new(|ui| display::display(ui, explanation)));
+    let end: Part = (
+        0.28,
+        Box::new(|ui| {
+            display::display(ui, explanation);
+            if explanation.seen.is_some() {
+                ui.add_space(8.0);
+                what_if::what_if(ui, explained, session, registry, actions);
+            }
+        }),
+    );
     let parts: Vec<Part> = match &explanation.seen {
         Some(seen) => vec![
             (0.3, Box::new(|ui| surface(ui, seen, session, registry))),

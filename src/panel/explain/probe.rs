@@ -1,13 +1,16 @@
 //! The pixel that is explained: which one it is, and the explanation, calculated when something has changed and only
 //! while it is in sight.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::{
+    collections::HashSet,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
 
 use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::{
     document::Revision,
-    explain::{Explainer, Explanation, Lit, Place, Seen, Spot},
+    explain::{Explainer, Explanation, Influence, Lit, Place, Seen, Spot},
     library::status::Reloaded,
     optics::TermSelection,
     panel::{
@@ -45,9 +48,29 @@ pub(super) enum Unfolded {
     None,
 }
 
+/// How far an explanation goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Level {
+    /// What happened, in a sentence.
+    Sentence,
+    /// The equation with numbers.
+    #[default]
+    Equation,
+    /// Each factor with its own equation, its plot and its source.
+    Factors,
+}
+
+impl Level {
+    pub(super) const ALL: [Self; 3] = [Self::Sentence, Self::Equation, Self::Factors];
+}
+
 /// The choice of what is shown of an explanation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Choice {
+    /// How far it goes.
+    pub(super) level: Level,
+    /// True if another view is explained beside it.
+    pub(super) beside: bool,
     /// The point, among those of [`spots`]; the one that counts most if none was chosen.
     pub(super) spot: Option<usize>,
     pub(super) light: Unfolded,
@@ -71,15 +94,27 @@ struct Question {
 struct Probe {
     /// The place that the pointer was at last.
     pointed: Option<Pin>,
+    /// The pin that is explained.
+    pin: Option<Pin>,
     /// It is there now.
     hovered: bool,
     asked: Option<Question>,
     answer: Option<Arc<Explained>>,
+    /// The same point in another view, where both are explained beside each other.
+    other: Option<Arc<Explained>>,
     calculations: u64,
     explainer: Explainer,
     /// The scene of a view, without the camera of the window.
     scene: Option<(Revision, usize, Scene)>,
     choice: Choice,
+    /// The quantities that are unfolded.
+    unfolded: HashSet<String>,
+    /// The quantity that is to come into sight.
+    sought: Option<String>,
+    /// The pixel before its numbers were changed here: its code, and the pin that it belongs to.
+    before: Option<(Pin, [u8; 3])>,
+    /// The numbers that move the pixel, for one explanation.
+    influences: Option<(u64, Arc<Vec<Influence>>)>,
 }
 
 type Shared = Arc<Mutex<Probe>>;
@@ -96,6 +131,11 @@ fn lock(probe: &Shared) -> MutexGuard<'_, Probe> {
 #[must_use]
 pub fn explained(ctx: &Context) -> Option<Arc<Explained>> {
     lock(&shared(ctx)).answer.clone()
+}
+
+/// The explanation of the same point in another view, if both are shown beside each other.
+pub(super) fn other(ctx: &Context) -> Option<Arc<Explained>> {
+    lock(&shared(ctx)).other.clone()
 }
 
 /// The number of explanations calculated so far.
@@ -116,6 +156,91 @@ pub(super) fn choice(ctx: &Context) -> Choice {
 pub(super) fn choose(ctx: &Context, choice: Choice) {
     lock(&shared(ctx)).choice = choice;
     ctx.request_repaint();
+}
+
+/// True if a quantity is unfolded.
+pub(super) fn unfolds(ctx: &Context, quantity: &str) -> bool {
+    lock(&shared(ctx)).unfolded.contains(quantity)
+}
+
+/// Unfolds a quantity, or folds it.
+pub(super) fn unfold(ctx: &Context, quantity: &str, open: bool) {
+    let shared = shared(ctx);
+    let unfolded = &mut lock(&shared).unfolded;
+    if open {
+        unfolded.insert(quantity.to_owned());
+    } else {
+        unfolded.remove(quantity);
+    }
+    ctx.request_repaint();
+}
+
+/// Unfolds a quantity among all others, and brings it into sight.
+pub(super) fn seek(ctx: &Context, quantity: &str) {
+    unfold(ctx, quantity, true);
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    probe.sought = Some(quantity.to_owned());
+    probe.choice.level = Level::Factors;
+}
+
+/// True once for the quantity that is to come into sight.
+pub(super) fn is_sought(ctx: &Context, quantity: &str) -> bool {
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    let found = probe.sought.as_deref() == Some(quantity);
+    if found {
+        probe.sought = None;
+    }
+    found
+}
+
+/// The code of the pixel before its numbers were changed here.
+pub(super) fn before(ctx: &Context) -> Option<[u8; 3]> {
+    let shared = shared(ctx);
+    let probe = lock(&shared);
+    let pin = probe.pin?;
+    probe.before.filter(|(of, _)| *of == pin).map(|(_, code)| code)
+}
+
+/// Keeps the code of the pixel as it is before a change, unless one is kept.
+pub(super) fn keep_before(ctx: &Context) {
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    let (Some(pin), Some(code)) = (probe.pin, probe.answer.as_ref().map(|a| a.explanation.code())) else {
+        return;
+    };
+    if probe.before.is_none_or(|(of, _)| of != pin) {
+        probe.before = Some((pin, code));
+    }
+}
+
+/// Forgets the pixel before the changes.
+pub(super) fn forget_before(ctx: &Context) {
+    lock(&shared(ctx)).before = None;
+}
+
+/// The numbers of the scene that move the pixel most, calculated once for each explanation.
+pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influence>> {
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    let probe = &mut *probe;
+    if let Some((of, known)) = &probe.influences
+        && *of == probe.calculations
+    {
+        return known.clone();
+    }
+    let found = match (&probe.asked, &probe.scene) {
+        (Some(question), Some((.., scene))) => {
+            let [width, height] = question.size;
+            let settings = Settings { width, height, samples: 1, terms: question.terms };
+            probe.explainer.influences(scene, registry, &settings, question.pixel).unwrap_or_default()
+        }
+        _ => Vec::new(),
+    };
+    let found = Arc::new(found);
+    probe.influences = Some((probe.calculations, found.clone()));
+    found
 }
 
 /// The rectangle of a view, points.
@@ -212,6 +337,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
         (probe.asked, probe.answer) = (None, None);
         return;
     };
+    probe.pin = Some(pin);
     let (size, _) = pixels(ctx, rect);
     let question = Question {
         revision: session.document.revision(),
@@ -222,9 +348,18 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
         terms: session.terms_of(pin.view),
         reloaded: session.shaders.last.clone(),
     };
+    let beside = probe.choice.beside && !session.document.variants.is_empty();
+    if probe.other.is_some() != beside {
+        probe.asked = None;
+    }
     if probe.asked.as_ref() == Some(&question) {
         return;
     }
+    // The other view first: the scene of the one in sight is kept for the next question.
+    let view = if question.view == 0 { 1 } else { 0 };
+    let terms = session.terms_of(view);
+    let other = Question { view, terms, ..question.clone() };
+    probe.other = if beside { probe.explain(&other, session, registry).map(Arc::new) } else { None };
     probe.answer = probe.explain(&question, session, registry).map(Arc::new);
     probe.asked = Some(question);
     probe.calculations += 1;

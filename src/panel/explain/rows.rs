@@ -247,6 +247,22 @@ pub(super) fn equation(
     });
 }
 
+/// What an equation becomes with numbers, each of which shows where it comes from. Returns the symbol of one that was clicked.
+pub(super) fn calculation(
+    ui: &mut Ui,
+    numbers: &str,
+    symbols: &[Option<String>],
+    name: impl Fn(&str) -> Option<String>,
+) -> Option<String> {
+    let mut clicked = None;
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.add_space(INDENT);
+        ui.vertical(|ui| clicked = maths::calculation(ui, &format!("= {numbers}"), symbols, name));
+    });
+    clicked
+}
+
 /// Sets in what follows from the line above.
 pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.horizontal_top(|ui| {

@@ -66,6 +66,9 @@ pub(super) fn head<R>(
         };
         let height = galley.size().y.max(22.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+        if !caption.symbol.is_empty() && linked::is_sought(ui.ctx(), caption.symbol) {
+            response.scroll_to_me(None);
+        }
         if linked::is_lit(ui.ctx(), caption.symbol) {
             ui.painter().add(linked::row_ground(rect.expand2(vec2(4.0, 0.0)), &palette));
         }

@@ -1,7 +1,7 @@
 //! The meanings of symbols, for tooltips.
 
 use crate::reflection::{EquationPart, Term};
-use crate::text::mathematics::{Atom, parse, same_symbol};
+use crate::text::mathematics::{self, Atom, parse, same_symbol};
 
 /// The meaning of a symbol that all equations share.
 #[must_use]
@@ -25,12 +25,15 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("Λ", "Smith's function: hidden area of microfacets per visible area"),
         ("F", "the Fresnel reflectance: how much a smooth surface mirrors at this angle"),
         ("F_0", "the Fresnel reflectance when looking straight at the surface"),
+        ("R_s", "the reflectance for light polarised perpendicular to the plane of incidence"),
+        ("R_p", "the reflectance for light polarised in the plane of incidence"),
         ("F_90", "the Fresnel reflectance at grazing incidence"),
         ("F_L", "Schlick's weight for the light: (1 − N·L)⁵, 0 straight on and 1 at grazing incidence"),
         ("F_V", "Schlick's weight for the observer: (1 − N·V)⁵"),
         ("F_H", "Schlick's weight at the half vector: (1 − L·H)⁵"),
         ("C_0", "the colour of the reflection when looking straight at the surface"),
         ("C_h", "the colour of the sheen: white, or the hue of the base colour"),
+        ("C_t", "the hue of the base colour: that colour at luminance 1"),
         ("D_r", "the distribution of the clear coat"),
         ("F_r", "the Fresnel reflectance of the clear coat"),
         ("G_r", "masking of the clear coat"),
@@ -53,6 +56,7 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("f_m", "light that bounces several times between the facets of metal"),
         ("F_d", "the Fresnel reflectance of a dielectric, such as glass or plastic"),
         ("F_82", "the reflectance of metal: Schlick’s approximation with a tint at 82°"),
+        ("F_m", "the Fresnel reflectance of metal"),
         ("ρ", "the albedo: how much of the light is reflected, by colour"),
         ("α", "the width of the distribution of the microfacets: small for a mirror, 1 for a matt surface"),
         ("σ", "the spread of the slopes of the facets"),
@@ -85,6 +89,8 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("β", "the smaller of the angles of light and observer to the normal"),
         ("φ", "the angle about the normal, between light and observer"),
         ("φ_h", "the angle of the half vector about the normal, from the tangent"),
+        ("φ_l", "the angle of the light about the normal, from the tangent"),
+        ("φ_v", "the angle of the observer about the normal, from the tangent"),
     ];
     MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
 }
@@ -92,32 +98,10 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
 /// The parts of an equation, one for each definition: a part may have several, with commas between.
 #[must_use]
 pub fn definitions(parts: &[EquationPart]) -> Vec<(Term, &'static str)> {
-    parts.iter().flat_map(|part| split(part.text).into_iter().map(|text| (part.term, text))).collect()
-}
-
-fn split(text: &str) -> Vec<&str> {
-    let (mut pieces, mut start, mut depth) = (Vec::new(), 0, 0);
-    for (i, c) in text.char_indices() {
-        match c {
-            '(' | '[' | '{' => depth += 1,
-            ')' | ']' | '}' => depth -= 1,
-            ',' if depth == 0 && defines(&text[i + 1..]) => {
-                pieces.push(text[start..i].trim());
-                start = i + 1;
-            }
-            _ => {}
-        }
-    }
-    pieces.push(text[start..].trim());
-    pieces
-}
-
-/// True if a text begins with one thing and an equals sign: `F_0 = …`, `cos g = …`.
-fn defines(text: &str) -> bool {
-    text.split_once('=').is_some_and(|(head, _)| {
-        !head.contains([',', '+', '−', '·', '/', '<', '>'])
-            && (1..=2).contains(&head.split_whitespace().count())
-    })
+    parts
+        .iter()
+        .flat_map(|part| mathematics::definitions(part.text).into_iter().map(|text| (part.term, text)))
+        .collect()
 }
 
 /// True if an equation has a symbol that fits.
@@ -143,16 +127,6 @@ pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_part_is_split_where_another_definition_begins() {
-        assert_eq!(
-            split("a = max(x, y = z), cos g = L·V , y_{ab} = 2"),
-            ["a = max(x, y = z)", "cos g = L·V", "y_{ab} = 2"]
-        );
-        assert_eq!(split("t = max(a, b), or 1 where s < 0"), ["t = max(a, b), or 1 where s < 0"]);
-        assert_eq!(split("x = ), y = 1"), ["x = ), y = 1"]);
-    }
 
     #[test]
     fn every_symbol_of_every_equation_is_explained() {

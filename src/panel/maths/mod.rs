@@ -3,7 +3,7 @@
 //!
 //! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
-use bevy_egui::egui::{Color32, Pos2, Rect, Response, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use bevy_egui::egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
 use super::{
     formula, linked,
@@ -94,6 +94,61 @@ pub fn equation_of(
         line.paint(ui, at, *colour);
     }
     response
+}
+
+/// A calculation: numbers that stand for symbols, each with its symbol, whose meaning `name` gives. A number lights what its symbol
+/// stands for; returns the symbol of one that was clicked.
+pub(super) fn calculation(
+    ui: &mut Ui,
+    text: &str,
+    symbols: &[Option<String>],
+    name: impl Fn(&str) -> Option<String>,
+) -> Option<String> {
+    let palette = Palette::here(ui);
+    let width = ui.available_width();
+    let (lines, height) = set(ui, &[(Term::Total, text)], Sizes { column: true, even: true }, width);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text.to_owned()));
+    let mut clicked = None;
+    let mut symbols = symbols.iter();
+    for (line, baseline, colour) in &lines {
+        let at = pos2(rect.left(), rect.top() + baseline);
+        for (corner, size) in line.numbers() {
+            let Some(symbol) = symbols.next().and_then(Option::as_ref) else { continue };
+            let cell = Rect::from_min_size(at + corner, size);
+            let here = ui.interact(
+                cell,
+                response.id.with(("number", corner.x as i32, corner.y as i32, symbol)),
+                Sense::click(),
+            );
+            here.widget_info(|| {
+                WidgetInfo::labeled(WidgetType::Button, true, format!("where {symbol} comes from"))
+            });
+            let ends: Vec<&str> = symbol.split('·').collect();
+            if here.hovered() {
+                linked::point(ui.ctx(), &ends);
+                ui.painter().hline(cell.x_range(), cell.bottom(), Stroke::new(1.0, palette.accent));
+            }
+            if ends.iter().any(|symbol| linked::is_lit(ui.ctx(), symbol)) && ends.len() == 1 {
+                ui.painter().add(linked::ground(cell, &palette));
+            }
+            if here.clicked() {
+                clicked = Some(symbol.clone());
+            }
+            let meaning = name(symbol).map_or_else(String::new, |meaning| format!(": {meaning}"));
+            here.on_hover_text(format!("{symbol}{meaning}\nClick to see where it comes from."));
+        }
+        line.paint(ui, at, *colour);
+    }
+    clicked
+}
+
+/// One line of an equation in the colour of text, at a place; returns its width. `baseline` is where it stands.
+pub(super) fn paint_line(ui: &Ui, left_baseline: Pos2, text: &str, size: f32, colour: Color32) -> f32 {
+    let setter = Setter { ui, size, colour, stacked: false, shrinks: false };
+    let line = setter.row(&formula::tree(text));
+    line.paint(ui, left_baseline, colour);
+    line.width
 }
 
 /// Lines that are set, each with its baseline and its colour, and how high they are.

@@ -6,8 +6,8 @@
 use std::{collections::HashMap, rc::Rc};
 
 use naga::{
-    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Statement, TypeInner,
-    front::Typifier, proc::ResolveContext,
+    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Scalar, Statement,
+    TypeInner, front::Typifier, proc::ResolveContext,
 };
 
 use super::{
@@ -45,6 +45,8 @@ pub(super) struct Place {
 /// A function being inlined.
 pub(super) struct Frame<'m> {
     pub(super) function: &'m Function,
+    /// True for the function that is run, false for those that it calls.
+    pub(super) is_outermost: bool,
     pub(super) types: Rc<Typifier>,
     pub(super) arguments: Vec<Value>,
     pub(super) values: Vec<Option<Value>>,
@@ -71,6 +73,10 @@ pub(super) struct Lowering<'m> {
     pub(super) initial: Vec<(u16, u32)>,
     /// The buffer used as input, and its first register.
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
+    /// The `let`s of the outermost function whose values are kept, and their registers.
+    pub(super) watched: HashMap<Handle<Expression>, Vec<u16>>,
+    /// True once the outermost function has begun.
+    is_inside: bool,
 }
 
 /// The bits of a number; `None` if it is not 32 bits wide.
@@ -116,6 +122,8 @@ impl<'m> Lowering<'m> {
             globals: HashMap::new(),
             initial: Vec::new(),
             row: None,
+            watched: HashMap::new(),
+            is_inside: false,
         };
         for (_, expression) in module.global_expressions.iter() {
             let value = lowering.constant_expression(expression);
@@ -223,6 +231,20 @@ impl<'m> Lowering<'m> {
         Ok(types)
     }
 
+    /// The number of words of an expression of a function, if it is a float or a vector of them.
+    pub(super) fn floats_of(
+        &mut self,
+        function: Handle<Function>,
+        handle: Handle<Expression>,
+    ) -> Result<Option<usize>> {
+        let types = self.types(function)?;
+        Ok(match types.get(handle, &self.module.types) {
+            TypeInner::Scalar(scalar) if *scalar == Scalar::F32 => Some(1),
+            TypeInner::Vector { size, scalar } if *scalar == Scalar::F32 => Some(*size as usize),
+            _ => None,
+        })
+    }
+
     /// Inlines a call; returns the words of the result.
     pub(super) fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Rc<[Operand]>> {
         let function = &self.module.functions[handle];
@@ -233,8 +255,10 @@ impl<'m> Lowering<'m> {
             None => 0,
         };
         let results = if returns_last(function) { None } else { Some(self.builder.variable(count)?) };
+        let is_outermost = !std::mem::replace(&mut self.is_inside, true);
         let mut frame = Frame {
             function,
+            is_outermost,
             types,
             arguments,
             values: vec![None; function.expressions.len()],
@@ -245,6 +269,11 @@ impl<'m> Lowering<'m> {
             around: Vec::new(),
         };
         self.locals(&mut frame)?;
+        // Literals and arguments have their values without a statement.
+        let named = if is_outermost { self.watched.keys().copied().collect() } else { Vec::new() };
+        for handle in named.into_iter().filter(|handle| function.expressions[*handle].needs_pre_emit()) {
+            self.watch(&mut frame, handle)?;
+        }
         let scope = self.builder.scope();
         self.block(&mut frame, &function.body)?;
         self.builder.land(&frame.returns);
@@ -252,6 +281,19 @@ impl<'m> Lowering<'m> {
         let Some(base) = results else { return Ok(frame.returned) };
         self.builder.forget(scope);
         Ok((0..count).map(|i| Operand::Register(base + i as u16)).collect())
+    }
+
+    /// Keeps the value of a `let` that is watched. What is calculated on no way that was taken stays NaN.
+    pub(super) fn watch(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<()> {
+        if !frame.is_outermost {
+            return Ok(());
+        }
+        let Some(registers) = self.watched.get(&handle).cloned() else { return Ok(()) };
+        let words = self.words(frame, handle)?;
+        for (register, word) in registers.iter().zip(words.iter()) {
+            self.builder.store(*register, *word)?;
+        }
+        Ok(())
     }
 
     /// Gives local variables their registers and initial values.

@@ -43,6 +43,9 @@ pub struct Unsupported {
     pub what: String,
 }
 
+/// The names of `let`s, each with its number of words.
+pub type Lets = Vec<(String, usize)>;
+
 /// A program ran longer than [`STEPS`], perhaps forever; its results are undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it did not end within {STEPS} steps of its loops")]
@@ -92,7 +95,7 @@ impl Program {
     /// # Errors
     /// If there is no such function, or it uses something that only a GPU has.
     pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
-        Self::build(module, function, None)
+        Self::build(module, function, None, |_| false).map(|(program, _)| program)
     }
 
     /// The same for a function that may read a table in a buffer: a read-only array of that name, of which
@@ -101,10 +104,29 @@ impl Program {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self, Unsupported> {
-        Self::build(module, function, Some(table))
+        Self::build(module, function, Some(table), |_| false).map(|(program, _)| program)
     }
 
-    fn build(module: &Module, name: &str, table: Option<&str>) -> Result<Self, Unsupported> {
+    /// A program whose results are the values of `let`s of the function, those whose names are wanted, one after the other:
+    /// each with its name and its number of words. Of a `let` that a run does not reach, the words are NaN.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn lets(
+        module: &Module,
+        function: &str,
+        table: Option<&str>,
+        wanted: impl Fn(&str) -> bool,
+    ) -> Result<(Self, Lets), Unsupported> {
+        Self::build(module, function, table, wanted)
+    }
+
+    fn build(
+        module: &Module,
+        name: &str,
+        table: Option<&str>,
+        wanted: impl Fn(&str) -> bool,
+    ) -> Result<(Self, Lets), Unsupported> {
         let found = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
         let Some((handle, function)) = found else {
             return unsupported(format!("there is no function {name}"));
@@ -129,10 +151,24 @@ impl Program {
             let base = lowering.builder.input(row_words)?;
             lowering.row = Some((handle, base));
         }
+        let mut lets = Vec::new();
+        let mut kept = Vec::new();
+        for (expression, name) in function.named_expressions.iter().filter(|(_, name)| wanted(name)) {
+            let Some(words) = lowering.floats_of(handle, *expression)? else { continue };
+            let base = lowering.builder.variable(words)?;
+            let registers: Vec<_> = (0..words as u16).map(|i| base + i).collect();
+            lowering.initial.extend(registers.iter().map(|register| (*register, f32::NAN.to_bits())));
+            kept.extend(registers.iter().copied());
+            lowering.watched.insert(*expression, registers);
+            lets.push((name.clone(), words));
+        }
         let results = lowering.call(handle, arguments)?;
-        let results: Box<[_]> =
-            results.iter().map(|word| lowering.builder.register(*word)).collect::<Result<_, _>>()?;
-        Ok(Self {
+        let own = if kept.is_empty() { &results[..] } else { &[] };
+        let mut results: Vec<_> =
+            own.iter().map(|word| lowering.builder.register(*word)).collect::<Result<_, _>>()?;
+        results.extend(kept);
+        let results: Box<[_]> = results.into();
+        let program = Self {
             code: optimise::shortened(&mut lowering.builder, &results).into(),
             constants: lowering.builder.constants.into(),
             initial: lowering.initial.into(),
@@ -140,7 +176,8 @@ impl Program {
             row_words,
             results,
             id: PROGRAMS.fetch_add(1, Ordering::Relaxed),
-        })
+        };
+        Ok((program, lets))
     }
 
     /// The number of words of the arguments.

@@ -52,6 +52,7 @@ impl<'m> Lowering<'m> {
                     self.builder.work()?;
                     let value = self.expression(frame, handle)?;
                     frame.values[handle.index()] = Some(value);
+                    self.watch(frame, handle)?;
                 }
                 Ok(())
             }
@@ -83,6 +84,7 @@ impl<'m> Lowering<'m> {
                 let words = self.call(*function, values)?;
                 if let Some(result) = result {
                     frame.values[result.index()] = Some(Value::Words(words));
+                    self.watch(frame, *result)?;
                 }
                 Ok(())
             }

@@ -1,0 +1,94 @@
+//! The light that arrives at a point, factor by factor: each as its equation, with numbers, and its value.
+
+use super::{
+    Lit,
+    lines::{agrees, reading},
+    numbers::of_value,
+    put::{Symbols, put_in},
+};
+use crate::{
+    light::Factor,
+    text::{
+        expression::{Expression, Scope, Value},
+        mathematics::{definitions, same_symbol},
+    },
+};
+
+/// A step from the numbers that are given to a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The equation as it is written: `1/d^2`, or `x = cos θ`.
+    pub text: String,
+    /// The right side with numbers.
+    pub numbers: String,
+    /// Its value.
+    pub value: Value,
+}
+
+struct Known(Vec<(String, Value)>);
+
+impl Scope for Known {
+    fn value(&mut self, symbol: &str) -> Result<Value, String> {
+        let found = self.0.iter().find(|(known, _)| same_symbol(known, symbol));
+        found.map(|(_, value)| *value).ok_or_else(|| format!("{symbol} is not given"))
+    }
+
+    fn call(&mut self, name: &str, _: &[String]) -> Result<Value, String> {
+        Err(format!("{name} is not given"))
+    }
+}
+
+impl Factor {
+    /// The way from the numbers that are given to the factor, the factor itself first; empty if it says none, or one that
+    /// does not lead there.
+    #[must_use]
+    pub fn steps(&self, digits: usize) -> Vec<Step> {
+        let given = self.from.iter().map(|(symbol, value, unit)| {
+            let value = f64::from(*value);
+            ((*symbol).to_owned(), if *unit == "°" { Value::angle(value) } else { Value::number(value) })
+        });
+        let mut known = Known(given.collect());
+        let mut steps = Vec::new();
+        if self.equation.is_empty() {
+            return steps;
+        }
+        // What is defined last is needed by what stands before.
+        for text in definitions(self.equation).into_iter().rev() {
+            let (head, body) =
+                text.split_once('=').map_or(("", text), |(head, body)| (head.trim(), body.trim()));
+            let Ok(value) = Expression::read(body).and_then(|e| e.value(&mut known)) else {
+                return Vec::new();
+            };
+            let numbers = with_numbers(body, &known, &value, digits);
+            let text = match head {
+                "" if self.symbol == body => body.to_owned(),
+                "" => format!("{} = {body}", self.symbol),
+                head => format!("{head} = {body}"),
+            };
+            known.0.push((head.to_owned(), value));
+            steps.insert(0, Step { text, numbers, value });
+        }
+        steps
+    }
+}
+
+/// An expression with numbers, of as many digits as it takes.
+fn with_numbers(body: &str, known: &Known, value: &Value, digits: usize) -> String {
+    let with = |digits: usize| {
+        let mut symbols = Symbols::default();
+        for (name, value) in &known.0 {
+            symbols.put(name, of_value(value, digits));
+        }
+        put_in(body, &symbols).unwrap_or_else(|| body.to_owned())
+    };
+    let fits = |text: &String| reading(text).is_ok_and(|read| agrees(&read, value, digits));
+    (digits..=12).map(with).find(fits).unwrap_or_else(|| with(digits))
+}
+
+impl Lit {
+    /// The equation of the arriving light: `I(p) = …`.
+    #[must_use]
+    pub fn arrival(&self) -> &'static str {
+        if self.equation.is_empty() { "I(p)" } else { self.equation }
+    }
+}

@@ -1,0 +1,212 @@
+//! The numbers of a scene that would move a pixel most, by differences.
+
+use glam::Vec3;
+
+use super::{ExplainError, Explainer};
+use crate::{
+    optics::colour::luminance,
+    parameter::{ParameterKind, Value},
+    reference::Settings,
+    registry::Registry,
+    scene::{Scene, limits},
+};
+
+/// The part of its range by which a number is changed up and down.
+const STEP: f64 = 0.01;
+
+/// A number of the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Knob {
+    /// A parameter of the reflection model of the object at the pixel, by its name.
+    Material {
+        /// The object, by its place in the list.
+        object: usize,
+        /// The name of the parameter.
+        name: &'static str,
+    },
+    /// The intensity or the luminous flux of a light.
+    Intensity {
+        /// The light, by its place in the list.
+        light: usize,
+    },
+}
+
+/// How a pixel follows a number of the scene: a difference quotient between two values around the present one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influence {
+    /// The number.
+    pub knob: Knob,
+    /// Its symbol.
+    pub symbol: &'static str,
+    /// Its name in words.
+    pub label: String,
+    /// Its unit; often none.
+    pub unit: &'static str,
+    /// Its present value.
+    pub value: f64,
+    /// The two values that were tried: a hundredth of its range below and above, where that is legal.
+    pub tried: [f64; 2],
+    /// The light of the pixel for these two.
+    pub light: [Vec3; 2],
+    /// A hundredth of its range.
+    pub hundredth: f64,
+}
+
+impl Influence {
+    /// `Δ light / Δ value`: red, green and blue per unit of the number.
+    #[must_use]
+    pub fn derivative(&self) -> Vec3 {
+        let [low, high] = self.tried;
+        if high > low { (self.light[1] - self.light[0]) / (high - low) as f32 } else { Vec3::ZERO }
+    }
+
+    /// The change of the luminance of the light for a hundredth of the range.
+    #[must_use]
+    pub fn effect(&self) -> f32 {
+        luminance(self.derivative()) * self.hundredth as f32
+    }
+}
+
+impl Explainer {
+    /// The numbers of a scene that a pixel depends on, that with the largest [effect](Influence::effect) first: those of the
+    /// material of its object and the intensities of the lights. Each takes two renderings of the pixel, so this is for the
+    /// asking, not for every frame.
+    ///
+    /// # Errors
+    /// If the pixel is not in the picture.
+    pub fn influences(
+        &mut self,
+        scene: &Scene,
+        registry: &Registry,
+        settings: &Settings,
+        pixel: [u32; 2],
+    ) -> Result<Vec<Influence>, ExplainError> {
+        let explanation = self.pixel(scene, registry, settings, pixel)?;
+        let Some(seen) = explanation.seen else { return Ok(Vec::new()) };
+        let object = seen.object.index;
+        let mut knobs = Vec::new();
+        for setting in &seen.model.settings {
+            let parameter = setting.parameter;
+            if let (ParameterKind::Number { min, max, .. }, Value::Number(v)) =
+                (&parameter.kind, &setting.value)
+            {
+                let knob = Knob::Material { object, name: parameter.name };
+                let range = [f64::from(*min), f64::from(*max)];
+                knobs.push((
+                    knob,
+                    parameter.symbol,
+                    parameter.label.to_owned(),
+                    parameter.unit,
+                    f64::from(*v),
+                    range,
+                ));
+            }
+        }
+        for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
+            let Some(entry) = registry.light(&light.light_type) else { continue };
+            let (value, unit, limits) = match light.luminous_flux {
+                Some(flux) => (flux, "lm", limits::luminous_flux(entry.declaration)),
+                None => (light.intensity, entry.declaration.unit, limits::intensity(entry.declaration)),
+            };
+            let name = light.name.clone().unwrap_or_else(|| format!("{} {}", entry.declaration.name, i + 1));
+            let range = [0.0, limits.slider_max];
+            let label = format!("intensity of {name}");
+            knobs.push((Knob::Intensity { light: i }, "I", label, unit, f64::from(value), range));
+        }
+        let mut found = Vec::new();
+        let mut changed = scene.clone();
+        for (knob, symbol, label, unit, value, [min, max]) in knobs {
+            let hundredth = STEP * (max - min);
+            // A light may be brighter than its slider.
+            let tried = [(value - hundredth).max(min), (value + hundredth).min(max.max(value))];
+            let mut light = [Vec3::ZERO; 2];
+            for (light, tried) in light.iter_mut().zip(tried) {
+                knob.set(&mut changed, tried as f32);
+                *light = self.pixel(&changed, registry, settings, pixel)?.steps.light;
+            }
+            knob.restore(&mut changed, scene);
+            let influence = Influence { knob, symbol, label, unit, value, tried, light, hundredth };
+            if influence.derivative() != Vec3::ZERO {
+                found.push(influence);
+            }
+        }
+        let size = |influence: &Influence| influence.effect().abs();
+        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        Ok(found)
+    }
+}
+
+impl Knob {
+    fn set(&self, scene: &mut Scene, value: f32) {
+        match *self {
+            Self::Material { object, name } => {
+                if let Some(object) = scene.objects.get_mut(object) {
+                    object.material.set(name, Value::Number(value));
+                }
+            }
+            Self::Intensity { light } => {
+                if let Some(light) = scene.lights.get_mut(light) {
+                    match &mut light.luminous_flux {
+                        Some(flux) => *flux = value,
+                        None => light.intensity = value,
+                    }
+                }
+            }
+        }
+    }
+
+    fn restore(&self, scene: &mut Scene, from: &Scene) {
+        match *self {
+            Self::Material { object, .. } => {
+                scene.objects[object].material = from.objects[object].material.clone()
+            }
+            Self::Intensity { light } => scene.lights[light] = from.lights[light].clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Light, Object};
+
+    #[test]
+    fn the_light_of_a_lambertian_surface_is_proportional_to_its_coefficient_and_the_intensity() {
+        let registry = Registry::builtin();
+        let settings = Settings { width: 64, height: 36, ..Settings::default() };
+        let scene = Scene::default();
+        let mut explainer = Explainer::default();
+        let light = explainer.pixel(&scene, &registry, &settings, [32, 18]).expect("inside").steps.light;
+        let found = explainer.influences(&scene, &registry, &settings, [32, 18]).expect("inside");
+        let of =
+            |symbol: &str| found.iter().find(|i| i.symbol == symbol).unwrap_or_else(|| panic!("{symbol}"));
+        for symbol in ["k_d", "I"] {
+            let influence = of(symbol);
+            let expected = light / influence.value as f32;
+            let off = (influence.derivative() - expected).length() / expected.length();
+            assert!(off < 1e-3, "{symbol}: {:?}, not {expected:?}", influence.derivative());
+        }
+        assert!(found.windows(2).all(|two| two[0].effect().abs() >= two[1].effect().abs()));
+    }
+
+    #[test]
+    fn what_a_pixel_does_not_depend_on_is_left_out() {
+        let registry = Registry::builtin();
+        let settings = Settings { width: 64, height: 36, ..Settings::default() };
+        let mut scene = Scene::default();
+        scene.lights.push(Light { enabled: false, ..scene.lights[0].clone() });
+        scene.objects.push(Object {
+            position: glam::Vec3::new(0.5, 0.5, 0.5),
+            size: 0.1,
+            ..Object::default()
+        });
+        let found = Explainer::default().influences(&scene, &registry, &settings, [32, 18]).expect("inside");
+        assert!(
+            found
+                .iter()
+                .all(|i| !matches!(i.knob, Knob::Intensity { light: 1 } | Knob::Material { object: 1, .. }))
+        );
+        let none = Explainer::default().influences(&scene, &registry, &settings, [0, 0]).expect("inside");
+        assert_eq!(none, []);
+    }
+}

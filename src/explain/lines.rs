@@ -1,0 +1,328 @@
+//! The equation of a model for one light, line by line: as it is written, with numbers, and its value.
+
+use glam::Vec3;
+
+use super::{
+    Geometry, Lit, Model, Setting, number,
+    numbers::{DIGITS, of_value},
+    put::{Put, Symbols, put},
+    triple,
+    workings::{Definition, Workings, sides},
+};
+use crate::{
+    optics::{TermSelection, Terms},
+    parameter::{Parameter, ParameterKind, Value as Given},
+    reflection::{Quantity, Term},
+    text::{
+        expression::{Expression, Scope, Value},
+        mathematics,
+    },
+};
+
+/// The most digits of a number in a line; enough for any that the program has.
+const MOST_DIGITS: usize = 12;
+
+/// A line of the equation of a model for one light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// The term that it belongs to.
+    pub term: Term,
+    /// As the model writes it, with the arguments of functions in their places; the name alone for a quantity that the
+    /// model gives without an equation; empty for a term about which its equation says nothing.
+    pub text: String,
+    /// The same with numbers, if there are any to put in: as many digits as it takes to get the value from them.
+    pub numbers: Option<String>,
+    /// Of each number on the right side, in their order, the symbol in whose place it stands; see [`Put`].
+    pub symbols: Vec<Option<String>>,
+    /// Its value, where it is known.
+    pub value: Option<Value>,
+    /// The declaration of a quantity; none for a part of the equation itself.
+    pub quantity: Option<&'static Quantity>,
+}
+
+impl Line {
+    /// The symbol of its term: `I_d`.
+    #[must_use]
+    pub fn symbol(&self) -> &'static str {
+        match self.term {
+            Term::Total => "I",
+            Term::Ambient => "I_a",
+            Term::Diffuse => "I_d",
+            Term::Specular => "I_s",
+        }
+    }
+
+    /// What it defines: `I_d`, or `H(N·L)`.
+    #[must_use]
+    pub fn defines(&self) -> &str {
+        match sides(&self.text) {
+            Some((head, _)) => head,
+            None if self.text.is_empty() => self.symbol(),
+            None => &self.text,
+        }
+    }
+
+    /// True if it defines its term.
+    #[must_use]
+    pub fn is_term(&self) -> bool {
+        self.defines() == self.symbol()
+    }
+
+    /// The value as red, green and blue.
+    #[must_use]
+    pub fn rgb(&self) -> Option<Vec3> {
+        self.value.map(|value| Vec3::from_array(value.rgb.map(|v| v as f32)))
+    }
+
+    /// The right side with numbers, without what is defined.
+    #[must_use]
+    pub fn right(&self) -> Option<&str> {
+        let numbers = self.numbers.as_deref()?;
+        Some(sides(numbers).map_or(numbers, |(_, body)| body))
+    }
+}
+
+/// Numbers as they are written know no names.
+struct Nameless;
+
+impl Scope for Nameless {
+    fn value(&mut self, symbol: &str) -> Result<Value, String> {
+        Err(format!("{symbol} has no number"))
+    }
+
+    fn call(&mut self, name: &str, _: &[String]) -> Result<Value, String> {
+        Err(format!("{name} has no number"))
+    }
+}
+
+/// The value of a line as it stands: of the right side, or of the whole if there is no equals sign.
+///
+/// # Errors
+/// If it is no calculation, in words.
+pub fn reading(numbers: &str) -> Result<Value, String> {
+    let body = sides(numbers).map_or(numbers, |(_, body)| body);
+    Expression::read(body)?.value(&mut Nameless)
+}
+
+/// True if two values agree to so many significant digits, or both are next to nothing.
+#[must_use]
+pub fn agrees(a: &Value, b: &Value, digits: usize) -> bool {
+    let most = b.rgb.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let near = |(a, b): (&f64, &f64)| {
+        let bound = 0.5 * 10f64.powi(1 - digits as i32) * b.abs().max(1e-3 * most) + 1e-9;
+        (a - b).abs() <= bound || a == b || a.is_nan() && b.is_nan()
+    };
+    a.rgb.iter().zip(&b.rgb).all(near)
+}
+
+impl Lit {
+    /// The equation of the model for this light, line by line: each term with its value, then the quantities that it
+    /// needs, in the order in which they are met. Every term that is not zero has a line with its value.
+    #[must_use]
+    pub fn lines(&self, model: &Model) -> Vec<Line> {
+        self.rounded_lines(model, DIGITS)
+    }
+
+    /// The same with so many significant digits, and more where the value would not follow from so few.
+    #[must_use]
+    pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
+        model.lines(self.geometry.as_ref(), &self.response, digits)
+    }
+}
+
+impl Model {
+    /// The lines of the equation for light from a direction, or for light from everywhere, and the answer of the model: see
+    /// [`Lit::rounded_lines`].
+    #[must_use]
+    pub fn lines(&self, geometry: Option<&Geometry>, response: &Terms, digits: usize) -> Vec<Line> {
+        let workings = Workings::new(self, geometry, response);
+        let mut lines = Lines { model: self, geometry, workings, digits, lines: Vec::new() };
+        for (term, value) in [
+            (Term::Ambient, response.ambient),
+            (Term::Diffuse, response.diffuse),
+            (Term::Specular, response.specular),
+        ] {
+            lines.term(term, value);
+        }
+        // A model may have one formula for all of its light.
+        let total = response.select(TermSelection::All);
+        for text in parts(self, Term::Total).filter(|_| geometry.is_some()) {
+            lines.total(text, total);
+        }
+        lines.lines
+    }
+}
+
+/// The definitions of a term in the equation.
+fn parts(model: &Model, term: Term) -> impl Iterator<Item = &'static str> {
+    let of_term = model.declaration.equation.iter().filter(move |part| part.term == term);
+    of_term.flat_map(|part| mathematics::definitions(part.text))
+}
+
+struct Lines<'a> {
+    model: &'a Model,
+    geometry: Option<&'a Geometry>,
+    workings: Workings<'a>,
+    digits: usize,
+    lines: Vec<Line>,
+}
+
+impl Lines<'_> {
+    fn term(&mut self, term: Term, light: Vec3) {
+        let value = Value::colour(light.to_array().map(f64::from));
+        // An equation is for light from a direction, except for its ambient term.
+        let said = term == Term::Ambient || self.geometry.is_some();
+        let before = self.lines.len();
+        let blank = Line {
+            term,
+            text: String::new(),
+            numbers: None,
+            symbols: Vec::new(),
+            value: Some(value),
+            quantity: None,
+        };
+        let texts: Vec<_> = parts(self.model, term).filter(|_| said).collect();
+        let is_head = |text: &str| sides(text).is_some_and(|(head, _)| head == blank.symbol());
+        for text in texts.iter().filter(|text| is_head(text)) {
+            let start = self.workings.worked.len();
+            match self.workings.evaluate(text) {
+                Ok(worked) if light == Vec3::ZERO && !agrees(&worked, &value, self.digits) => {
+                    self.workings.worked.truncate(start);
+                    let gate = self.geometry.and_then(|geometry| gate(geometry, blank.symbol()));
+                    self.push(term, gate.unwrap_or(text), Some(value), None);
+                }
+                Ok(worked) => {
+                    // The digits are those that the equation needs, whose last ones differ from those of 32 bits.
+                    self.push_with(term, text, (Some(value), Some(&worked)), None);
+                    self.quantities(term, start);
+                }
+                // Mathematics that nobody can calculate, such as an integral: as it is written.
+                Err(_) => {
+                    self.push(term, text, Some(value), None);
+                    self.quantities(term, start);
+                    for text in texts.iter().filter(|text| !is_head(text)) {
+                        if !self.lines[before..].iter().any(|line| line.text == **text) {
+                            self.push(term, text, None, None);
+                        }
+                    }
+                }
+            }
+        }
+        if self.lines.len() == before && (light != Vec3::ZERO || !texts.is_empty()) {
+            self.lines.push(blank);
+            let worked = self.workings.worked.len();
+            for text in texts {
+                let value = self.workings.evaluate(text).ok();
+                self.push(term, text, value, None);
+            }
+            self.quantities(term, worked);
+        }
+    }
+
+    /// The line about the sum of the terms, if it has numbers.
+    fn total(&mut self, text: &'static str, total: Vec3) {
+        if self.lines.iter().any(|line| line.text == text) {
+            return;
+        }
+        let start = self.workings.worked.len();
+        let defines = sides(text).is_some_and(|(head, _)| head == "I");
+        let worked = self.workings.evaluate(text).ok();
+        let value = if defines { Some(Value::colour(total.to_array().map(f64::from))) } else { worked };
+        let before = self.lines.len();
+        self.push(Term::Total, text, value, None);
+        if self.lines[before].numbers.is_none() {
+            self.lines.truncate(before);
+        }
+        self.quantities(Term::Total, start);
+    }
+
+    /// The lines of the quantities that were worked out since then.
+    fn quantities(&mut self, term: Term, start: usize) {
+        for worked in self.workings.worked.split_off(start) {
+            let Definition { term: own, quantity, .. } =
+                worked.definition.unwrap_or(Definition { term, text: "", quantity: None });
+            let term = if own == Term::Total { term } else { own };
+            self.push(term, &worked.text, Some(worked.value), quantity);
+        }
+    }
+
+    fn push(&mut self, term: Term, text: &str, value: Option<Value>, quantity: Option<&'static Quantity>) {
+        self.push_with(term, text, (value, value.as_ref()), quantity);
+    }
+
+    /// A line with its value, and the value that its numbers are to give.
+    fn push_with(
+        &mut self,
+        term: Term,
+        text: &str,
+        (value, given): (Option<Value>, Option<&Value>),
+        quantity: Option<&'static Quantity>,
+    ) {
+        let put = self.numbers(text, given);
+        let (numbers, symbols) = put.map_or((None, Vec::new()), |put| (Some(put.text), put.symbols));
+        self.lines.push(Line { term, text: text.to_owned(), numbers, symbols, value, quantity });
+    }
+
+    /// A text with numbers, of as many digits as it takes to get the value from them.
+    fn numbers(&self, text: &str, value: Option<&Value>) -> Option<Put> {
+        sides(text)?;
+        let with = |digits: usize| {
+            let mut symbols = Symbols::default();
+            for (name, value) in self.workings.values().filter(|(_, value)| value.degrees < 2) {
+                symbols.put(name, of_value(&value, digits));
+            }
+            put(text, &symbols)
+        };
+        let first = with(self.digits)?;
+        let Some(value) = value else { return Some(first) };
+        let fits = |put: &Put| reading(&put.text).is_ok_and(|read| agrees(&read, value, self.digits));
+        if fits(&first) {
+            return Some(first);
+        }
+        let more = (self.digits + 1..=MOST_DIGITS).filter_map(with).find(fits);
+        // What cannot be calculated is written with few digits.
+        more.or_else(|| if reading(&first.text).is_ok() { with(MOST_DIGITS) } else { Some(first) })
+    }
+}
+
+/// The reason why a term is 0 though its equation is not.
+fn gate(geometry: &Geometry, symbol: &str) -> Option<&'static str> {
+    let behind = geometry.cosine("N·L") <= 0.0;
+    (behind || geometry.cosine("N·V") <= 0.0).then_some(match (symbol, behind) {
+        ("I_d", true) => "I_d = 0 if N·L ≤ 0",
+        ("I_d", false) => "I_d = 0 if N·V ≤ 0",
+        ("I_s", true) => "I_s = 0 if N·L ≤ 0",
+        ("I_s", false) => "I_s = 0 if N·V ≤ 0",
+        (_, true) => "I_a = 0 if N·L ≤ 0",
+        (_, false) => "I_a = 0 if N·V ≤ 0",
+    })
+}
+
+/// A parameter in an explanation: `k_d = 0.8, diffuse coefficient`.
+pub(super) fn setting(setting: &Setting) -> String {
+    let p = setting.parameter;
+    let value = match (&setting.value, setting.linear) {
+        (Given::Number(v), _) => number(*v),
+        (Given::Colour([r, g, b]), Some(linear)) => {
+            return format!("{} = {}, {}, {r},{g},{b} in sRGB", p.symbol, triple(linear), p.label);
+        }
+        (_, Some(linear)) => triple(linear),
+        (Given::Choice(id), _) => choice(p, id).to_owned(),
+        (value, _) => value.to_string(),
+    };
+    let space = if p.unit.is_empty() || p.unit == "°" { "" } else { " " };
+    match p.symbol {
+        "" => format!("{}: {value}{space}{}", p.label, p.unit),
+        symbol => format!("{symbol} = {value}{space}{}, {}", p.unit, p.label),
+    }
+}
+
+/// The name of a choice.
+fn choice<'a>(parameter: &Parameter, id: &'a str) -> &'a str {
+    match &parameter.kind {
+        ParameterKind::Choice { options, .. } => {
+            options.iter().find(|(known, _)| *known == id).map_or(id, |(_, name)| name)
+        }
+        _ => id,
+    }
+}

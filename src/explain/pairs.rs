@@ -1,0 +1,86 @@
+//! Two explanations of one point beside each other: the lines that belong together, and those that differ.
+
+use super::{Line, agrees};
+
+/// A line of one explanation, the line of the other that defines the same, or both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// The line of the first.
+    pub a: Option<Line>,
+    /// That of the second.
+    pub b: Option<Line>,
+}
+
+impl Pair {
+    /// True if one has no such line, another equation, or another value.
+    #[must_use]
+    pub fn differs(&self) -> bool {
+        match (&self.a, &self.b) {
+            (Some(a), Some(b)) => {
+                let same = match (&a.value, &b.value) {
+                    (Some(a), Some(b)) => agrees(a, b, super::numbers::DIGITS),
+                    (a, b) => a.is_none() && b.is_none(),
+                };
+                a.text != b.text || !same
+            }
+            _ => true,
+        }
+    }
+
+    /// What it defines.
+    #[must_use]
+    pub fn defines(&self) -> &str {
+        self.a.as_ref().or(self.b.as_ref()).map_or("", Line::defines)
+    }
+}
+
+/// The lines of two explanations for one light, in pairs: in the order of the first, each line that only the second has behind
+/// the one that it follows there.
+#[must_use]
+pub fn pairs(a: &[Line], b: &[Line]) -> Vec<Pair> {
+    let is = |a: &Line, b: &Line| a.defines() == b.defines() && a.term == b.term;
+    let mut out: Vec<Pair> = Vec::new();
+    let mut taken = vec![false; b.len()];
+    for line in a {
+        let other = b.iter().enumerate().position(|(i, other)| !taken[i] && is(line, other));
+        if let Some(i) = other {
+            taken[i] = true;
+        }
+        out.push(Pair { a: Some(line.clone()), b: other.map(|i| b[i].clone()) });
+    }
+    for (i, line) in b.iter().enumerate().filter(|(i, _)| !taken[*i]) {
+        let before = b[..i].last();
+        let at =
+            before.and_then(|before| out.iter().position(|p| p.b.as_ref().is_some_and(|b| is(b, before))));
+        out.insert(at.map_or(out.len(), |at| at + 1), Pair { a: None, b: Some(line.clone()) });
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{reflection::Term, text::expression::Value};
+
+    fn line(text: &str, value: f64) -> Line {
+        Line {
+            term: Term::Diffuse,
+            text: text.to_owned(),
+            numbers: None,
+            symbols: Vec::new(),
+            value: Some(Value::number(value)),
+            quantity: None,
+        }
+    }
+
+    #[test]
+    fn lines_that_define_the_same_stand_beside_each_other() {
+        let a = [line("I_d = k", 1.0), line("k = 2 x", 1.0), line("x = 3", 3.0)];
+        let b = [line("I_d = k", 1.0), line("k = 3 x", 1.0), line("y = 1", 1.0), line("x = 3", 3.000_01)];
+        let all = pairs(&a, &b);
+        let names: Vec<_> = all.iter().map(|pair| (pair.defines(), pair.differs())).collect();
+        assert_eq!(names, [("I_d", false), ("k", true), ("y", true), ("x", false)]);
+        assert!(all[2].a.is_none() && all[2].b.is_some());
+        assert_eq!(pairs(&a, &[]).iter().filter(|pair| pair.differs()).count(), 3);
+    }
+}

@@ -1,0 +1,302 @@
+//! The equation of a model at a point, calculated from its text: the values of all quantities that it names, in the order
+//! in which a reader needs them.
+//!
+//! The terms themselves are those of the renderer. The quantities between the parameters and them follow from the
+//! definitions in the model's declaration, so that each line can be followed by hand; a test compares what they give with
+//! the terms, for every model.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{Geometry, Model, Setting};
+use crate::{
+    optics::Terms,
+    parameter::Value as Parameter,
+    reflection::{Quantity, Term},
+    text::{
+        expression::{Expression, Scope, Value},
+        mathematics::{self, Atom, same_symbol},
+    },
+};
+
+/// The most quantities of one equation, and the deepest chain of them.
+const MOST: usize = 400;
+const DEEPEST: usize = 60;
+
+/// A definition of the declaration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Definition {
+    pub(super) term: Term,
+    pub(super) text: &'static str,
+    /// Name and source of the quantity; none for a part of the equation.
+    pub(super) quantity: Option<&'static Quantity>,
+}
+
+/// A quantity with its value.
+#[derive(Clone, Debug)]
+pub(super) struct Worked {
+    /// Its definition, with the arguments of a call in their places; its name alone if the model gives it.
+    pub(super) text: String,
+    pub(super) value: Value,
+    pub(super) definition: Option<Definition>,
+}
+
+/// What is known at a point, and what followed from it.
+pub(super) struct Workings<'a> {
+    model: &'a Model,
+    geometry: Option<&'a Geometry>,
+    definitions: Vec<Definition>,
+    known: Vec<(String, Value)>,
+    /// Everything that was asked for, by its name without spaces and braces.
+    found: HashMap<String, Result<Value, String>>,
+    running: HashSet<String>,
+    /// Quantities in the order in which they were asked for.
+    pub(super) worked: Vec<Worked>,
+}
+
+/// A name without what may be written or not.
+fn bare(name: &str) -> String {
+    name.replace(['{', '}', ' '], "")
+}
+
+/// What stands before the equals sign of a definition, and behind it.
+pub(super) fn sides(text: &str) -> Option<(&str, &str)> {
+    let (head, body) = text.split_once('=')?;
+    // That of a condition is none: 1 if θ = 0 else 2.
+    (!head.contains(" if ")).then_some((head.trim(), body.trim()))
+}
+
+/// The name and the arguments of a head: `H(μ)`.
+fn signature(head: &str) -> (&str, Vec<&str>) {
+    match head.split_once('(') {
+        Some((name, rest)) => (name.trim(), rest.trim_end_matches(')').split(',').map(str::trim).collect()),
+        None => (head, Vec::new()),
+    }
+}
+
+fn number(v: f32) -> Value {
+    Value::number(f64::from(v))
+}
+
+impl<'a> Workings<'a> {
+    pub(super) fn new(model: &'a Model, geometry: Option<&'a Geometry>, terms: &Terms) -> Self {
+        let mut known = Vec::new();
+        for Setting { parameter, value, linear } in &model.settings {
+            let value = match (value, linear) {
+                (_, Some(linear)) => Value::colour(linear.to_array().map(f64::from)),
+                // Equations take angles as angles: σ = 20°.
+                (Parameter::Number(v), _) if parameter.unit == "°" => Value::angle(f64::from(*v)),
+                (Parameter::Number(v), _) => number(*v),
+                (Parameter::Integer(v), _) => Value::number(*v as f64),
+                _ => continue,
+            };
+            if !parameter.symbol.is_empty() {
+                known.push((parameter.symbol.to_owned(), value));
+            }
+        }
+        if let Some(geometry) = geometry {
+            known.extend(geometry.products().map(|(name, cosine)| (name, Value::number(cosine))));
+            known.extend(geometry.angles().map(|(name, angle)| (name.to_owned(), Value::angle(angle))));
+        }
+        for (symbol, value) in [("I_a", terms.ambient), ("I_d", terms.diffuse), ("I_s", terms.specular)] {
+            known.push((symbol.to_owned(), Value::colour(value.to_array().map(f64::from))));
+        }
+        let declaration = model.declaration;
+        let parts = declaration.equation.iter().flat_map(|part| {
+            let of = |text| Definition { term: part.term, text, quantity: None };
+            mathematics::definitions(part.text).into_iter().map(of)
+        });
+        let holds = |quantity: &&Quantity| quantity.when.iter().all(|(name, ids)| model.chooses(name, ids));
+        let quantities = declaration.quantities.iter().filter(holds).map(|quantity| Definition {
+            term: Term::Total,
+            text: quantity.text,
+            quantity: Some(quantity),
+        });
+        Self {
+            model,
+            geometry,
+            definitions: parts.chain(quantities).collect(),
+            known,
+            found: HashMap::new(),
+            running: HashSet::new(),
+            worked: Vec::new(),
+        }
+    }
+
+    /// Symbols with values, for putting them in: what is given, and what was asked for.
+    pub(super) fn values(&self) -> impl Iterator<Item = (&str, Value)> {
+        let found =
+            self.found.iter().filter_map(|(name, value)| Some((name.as_str(), *value.as_ref().ok()?)));
+        self.known.iter().map(|(name, value)| (name.as_str(), *value)).chain(found)
+    }
+
+    /// The value of the right side of a definition.
+    pub(super) fn evaluate(&mut self, text: &str) -> Result<Value, String> {
+        let body = sides(text).map_or(text, |(_, body)| body);
+        Expression::read(body)?.value(self)
+    }
+
+    fn given(&self, symbol: &str) -> Option<Value> {
+        let known = |(name, _): &&(String, Value)| match name.split_once('·') {
+            // A product of two directions, in either order.
+            Some((a, b)) => symbol == name || symbol.split_once('·') == Some((b, a)),
+            None => same_symbol(name, symbol),
+        };
+        self.known.iter().find(known).map(|(_, value)| *value)
+    }
+
+    /// The definition of a symbol, or of a function with so many arguments.
+    fn definition(&self, name: &str, arguments: usize) -> Option<(Definition, Vec<&'static str>)> {
+        self.definitions.iter().find_map(|definition| {
+            let (head, _) = sides(definition.text)?;
+            let (symbol, parameters) = signature(head);
+            (same_symbol(symbol, name) && parameters.len() == arguments).then_some((*definition, parameters))
+        })
+    }
+
+    /// A quantity by its name, `F_0` or `H(N·L)`, which is looked for once.
+    fn look_up(
+        &mut self,
+        name: String,
+        find: impl FnOnce(&mut Self) -> Result<Value, String>,
+    ) -> Result<Value, String> {
+        let key = bare(&name);
+        if let Some(found) = self.found.get(&key) {
+            return found.clone();
+        }
+        if self.running.len() >= DEEPEST || self.found.len() >= MOST {
+            return Err(format!("{name} leads to too many others"));
+        }
+        if !self.running.insert(key.clone()) {
+            return Err(format!("{name} is defined by itself"));
+        }
+        let value = find(self);
+        self.running.remove(&key);
+        self.found.insert(key, value.clone());
+        value
+    }
+
+    /// Calculates a definition, and notes it before those that it needs.
+    fn work_out(&mut self, definition: Definition, text: String) -> Result<Value, String> {
+        let at = self.worked.len();
+        let value = self.evaluate(&text)?;
+        self.worked.insert(at, Worked { text, value, definition: Some(definition) });
+        Ok(value)
+    }
+
+    /// A quantity that the model itself gives.
+    fn from_model(&mut self, symbol: &str, arguments: &[f32], name: &str) -> Result<Value, String> {
+        let asked = mathematics::plain_symbol(symbol);
+        let given = match self.geometry {
+            Some(geometry) => {
+                let Geometry { l, v, frame, .. } = geometry;
+                self.model.surface.0.quantity(&asked, arguments, *l, *v, frame)
+            }
+            None => None,
+        };
+        let value = given.ok_or_else(|| format!("{name} is not defined"))?;
+        let value = if value.x == value.y && value.y == value.z {
+            number(value.x)
+        } else {
+            Value::colour(value.to_array().map(f64::from))
+        };
+        let quantity = self.model.declaration.quantities.iter().find(|q| same_symbol(q.symbol(), symbol));
+        let definition = quantity.map(|quantity| Definition {
+            term: Term::Total,
+            text: quantity.text,
+            quantity: Some(quantity),
+        });
+        self.worked.push(Worked { text: name.to_owned(), value, definition });
+        Ok(value)
+    }
+}
+
+impl Scope for Workings<'_> {
+    fn value(&mut self, symbol: &str) -> Result<Value, String> {
+        if let Some(value) = self.given(symbol) {
+            return Ok(value);
+        }
+        self.look_up(symbol.to_owned(), |this| match this.definition(symbol, 0) {
+            Some((definition, _)) => this.work_out(definition, definition.text.to_owned()),
+            None => this.from_model(symbol, &[], symbol).or_else(|why| match symbol {
+                "e" => Ok(Value::number(std::f64::consts::E)),
+                _ => Err(why),
+            }),
+        })
+    }
+
+    fn call(&mut self, name: &str, arguments: &[String]) -> Result<Value, String> {
+        let call = format!("{name}({})", arguments.join(", "));
+        self.look_up(call.clone(), |this| match this.definition(name, arguments.len()) {
+            Some((definition, parameters)) => {
+                let body = sides(definition.text).map_or("", |(_, body)| body);
+                let body = substituted(body, &parameters, arguments);
+                this.work_out(definition, format!("{call} = {body}"))
+            }
+            None => {
+                let mut values = Vec::with_capacity(arguments.len());
+                for argument in arguments {
+                    values.push(Expression::read(argument)?.value(this)?.rgb[0] as f32);
+                }
+                this.from_model(name, &values, &call)
+            }
+        })
+    }
+}
+
+/// An expression with arguments in the place of the parameters of a function; in brackets unless they are one thing.
+fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String {
+    let mut out = Vec::new();
+    for atom in mathematics::parse(body) {
+        let place = parameters.iter().position(|p| atom.symbol().is_some_and(|s| same_symbol(&s, p)));
+        let scripts = |text: &str| substituted(text, parameters, arguments);
+        match (place, atom) {
+            (Some(i), atom) => {
+                let argument = mathematics::parse(&arguments[i]);
+                let alone = argument.len() == 1 && atom.sup().is_empty();
+                // A scalar product without a power binds as one symbol does.
+                let product =
+                    atom.sup().is_empty() && matches!(argument.as_slice(), [_, dot, _] if dot.base() == "·");
+                let upright = |base: &str, sup: String| Atom::Upright {
+                    base: base.to_owned(),
+                    sub: String::new(),
+                    sup,
+                };
+                let sup = scripts(atom.sup());
+                if alone || product {
+                    out.extend(argument);
+                } else {
+                    out.push(upright("(", String::new()));
+                    out.extend(argument);
+                    out.push(upright(")", sup));
+                }
+            }
+            (None, Atom::Space) => out.push(Atom::Space),
+            (None, Atom::Symbol { base, sub, sup }) => {
+                out.push(Atom::Symbol { base, sub, sup: scripts(&sup) });
+            }
+            (None, Atom::Upright { base, sub, sup }) => {
+                out.push(Atom::Upright { base, sub, sup: scripts(&sup) });
+            }
+        }
+    }
+    mathematics::write(&out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_take_the_place_of_parameters() {
+        for (body, arguments, expected) in [
+            ("(1 + 2 μ)/(1 + 2 μ √(1 − w))", "μ_l", "(1 + 2 μ_l)/(1 + 2 μ_l √(1 − w))"),
+            ("μ^2 + 1", "N·L", "(N·L)^2 + 1"),
+            ("1 − μ", "N·L", "1 − N·L"),
+            ("2 μ", "a + b", "2 (a + b)"),
+            ("2^μ", "a", "2^a"),
+            ("μ_1 μ", "0.5", "μ_1 0.5"),
+        ] {
+            assert_eq!(substituted(body, &["μ"], &[arguments.to_owned()]), expected);
+        }
+    }
+}

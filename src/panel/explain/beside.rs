@@ -1,0 +1,147 @@
+//! Two views of one point beside each other: the lines of the equation of each, and a mark where they differ.
+
+use bevy_egui::egui::{self, Color32, Rect, Stroke, Ui, pos2, vec2};
+
+use super::{
+    probe::{self, Choice, Explained},
+    rows,
+};
+use crate::{
+    document::Selection,
+    explain::{Line, Lit, Pair, Seen, of_value, pairs},
+    panel::{
+        maths,
+        state::Session,
+        theme::{self, Palette},
+    },
+    reflection::Term,
+    registry::Registry,
+    scene::variant::LETTERS,
+};
+
+/// Between the two sides, points.
+const GAP: f32 = 20.0;
+
+/// The explanation in sight, and that of the other view.
+pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, registry: &Registry) {
+    let choice = probe::choice(ui.ctx());
+    egui::ScrollArea::vertical().id_salt("beside").auto_shrink(false).show(ui, |ui| {
+        ui.set_max_width(ui.available_width() - 10.0);
+        rows::close(ui);
+        halves(ui, false, |ui, i| head(ui, sides[i], session));
+        let seen = sides.map(|side| side.explanation.seen.as_ref());
+        let [Some(a), Some(b)] = seen else {
+            rows::note(ui, "Only one of the views shows an object here.");
+            return;
+        };
+        if a.object.index != b.object.index {
+            rows::note(ui, "The views show different objects here.");
+        }
+        let lit = [a, b].map(|seen| shown(seen, choice));
+        let [Some(first), Some(second)] = lit else {
+            rows::note(ui, "No light is switched on here.");
+            return;
+        };
+        let name = session.name_of(Selection::Light(first.light.index), registry);
+        rows::heading(ui, &format!("Light of {name}"));
+        let lines =
+            [first.rounded_lines(&a.model, rows::DIGITS), second.rounded_lines(&b.model, rows::DIGITS)];
+        let factors = choice.level == probe::Level::Factors;
+        let all = pairs(&lines[0], &lines[1]);
+        let shown = |pair: &&Pair| {
+            let line = pair.a.as_ref().or(pair.b.as_ref());
+            factors || line.is_some_and(|line| line.quantity.is_none() || line.is_term())
+        };
+        for pair in all.iter().filter(shown) {
+            halves(ui, pair.differs(), |ui, i| {
+                let (own, model) = if i == 0 { (&pair.a, a) } else { (&pair.b, b) };
+                match own {
+                    Some(line) => side(ui, line, model),
+                    None => drop(rows::note(ui, &format!("{} does not occur here", pair.defines()))),
+                }
+            });
+        }
+        halves(ui, first.contribution != second.contribution, |ui, i| {
+            rows::note(ui, "light to the observer");
+            rows::light(ui, "=", lit[i].map_or(glam::Vec3::ZERO, |lit| lit.contribution), true);
+        });
+        let count = all.iter().filter(|pair| pair.differs()).count();
+        rows::note(ui, &format!("≠ marks what differs: {count} of {} lines.", all.len()));
+    });
+}
+
+/// The light whose block is unfolded, at the point that counts most.
+fn shown(seen: &Seen, choice: Choice) -> Option<&Lit> {
+    let spot = *probe::spots(seen).get(probe::shown_spot(seen, choice))?;
+    probe::shown_light(spot, choice).or_else(|| spot.brightest().first().copied())
+}
+
+/// The name of a view, its models and its code.
+fn head(ui: &mut Ui, explained: &Explained, session: &Session) {
+    let letter = LETTERS.get(explained.view).copied().unwrap_or("?");
+    let [r, g, b] = explained.explanation.code();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        rows::chip(ui, [r, g, b], vec2(28.0, 16.0));
+        ui.label(theme::strong(ui, format!("View {letter}: red {r}, green {g}, blue {b}")));
+        if let Some(seen) = &explained.explanation.seen {
+            let models = format!("{}, {}", seen.model.declaration.name, seen.shading.name);
+            ui.label(theme::small(ui, models));
+        }
+        let named = explained.view.checked_sub(1).and_then(|i| session.document.variants.get(i));
+        if let Some(name) = named.and_then(|variant| variant.name.as_deref()) {
+            ui.label(theme::small(ui, name));
+        }
+    });
+}
+
+/// A line of one side: as it is written, with numbers, and its value.
+fn side(ui: &mut Ui, line: &Line, seen: &Seen) {
+    let name = |symbol: &str| {
+        let parameter = seen.model.settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
+        parameter.map(|s| s.parameter.label.to_owned()).or_else(|| maths::meaning(symbol).map(str::to_owned))
+    };
+    let bare = !line.text.contains('=');
+    if !bare {
+        rows::equation(ui, line.term, &line.text, false, name);
+    }
+    if let Some(numbers) = line.right() {
+        rows::calculation(ui, numbers, &line.symbols, name);
+    }
+    let head = if bare { format!("{} =", line.defines()) } else { "=".to_owned() };
+    if let (Some(value), Some(rgb)) = (&line.value, line.rgb()) {
+        rows::inset(ui, |ui| {
+            if line.term != Term::Total && line.is_term() || value.is_colour {
+                rows::light(ui, &head, rgb, false);
+            } else {
+                ui.label(format!("{head} {}", of_value(value, rows::DIGITS)));
+            }
+        });
+    }
+}
+
+/// Two halves beside each other, with a mark between them where they differ.
+fn halves(ui: &mut Ui, differ: bool, mut add: impl FnMut(&mut Ui, usize)) {
+    let room = ui.available_rect_before_wrap();
+    let width = 0.5 * (room.width() - GAP);
+    let mut bottom = room.top();
+    for i in 0..2 {
+        let left = room.left() + i as f32 * (width + GAP);
+        let place = Rect::from_min_max(pos2(left, room.top()), pos2(left + width, f32::INFINITY));
+        let mut half = ui.new_child(egui::UiBuilder::new().max_rect(place).id_salt(("half", i)));
+        half.set_max_width(width);
+        add(&mut half, i);
+        bottom = bottom.max(half.min_rect().bottom());
+    }
+    let palette = Palette::here(ui);
+    let middle = room.left() + width + 0.5 * GAP;
+    if differ {
+        let colour: Color32 = palette.accent;
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let at = pos2(middle, 0.5 * (room.top() + bottom));
+        ui.painter().text(at, egui::Align2::CENTER_CENTER, "≠", font, colour);
+    } else {
+        ui.painter().vline(middle, room.top()..=bottom, Stroke::new(1.0, palette.line));
+    }
+    ui.advance_cursor_after_rect(Rect::from_min_max(room.min, pos2(room.right(), bottom + 2.0)));
+}

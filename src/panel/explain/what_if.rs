@@ -1,0 +1,157 @@
+//! What would change the pixel: the numbers of the scene that move it most, by differences, each with its knob; and the pixel
+//! before and after a change.
+
+use bevy_egui::egui::{self, Align, Id, Layout, Ui, vec2};
+
+use super::{
+    probe::{self, Explained},
+    rows,
+};
+use crate::{
+    document::{Edit, LightField, ObjectField},
+    explain::{Influence, Knob, rounded},
+    panel::{
+        knob, maths,
+        state::{Action, Session},
+        theme,
+    },
+    parameter::Value,
+    registry::Registry,
+    scene::limits::{self, Limits},
+};
+
+/// More numbers are not listed.
+const MOST: usize = 8;
+/// The longest bar, points.
+const BAR: f32 = 56.0;
+
+/// The list, folded at first.
+pub(super) fn what_if(
+    ui: &mut Ui,
+    explained: &Explained,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    change(ui, explained, actions);
+    let id = ui.make_persistent_id("what would change this pixel");
+    let title = "What would change this pixel?";
+    let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false);
+    state
+        .show_header(ui, |ui| {
+            ui.label(theme::strong(ui, title)).on_hover_text(
+                "The numbers of the material and the intensities of the lights, the one that moves the pixel most first: by \
+                 how much the luminance of its light changes when the number changes by a hundredth of its range. \
+                 Calculated by differences: the pixel is drawn with a little less and a little more.",
+            );
+        })
+        .body(|ui| {
+            if explained.view != session.active() {
+                rows::note(ui, "Choose the view of this pixel to change its numbers.");
+                return;
+            }
+            let all = probe::influences(ui.ctx(), registry);
+            if all.is_empty() {
+                rows::note(ui, "No number of the material or of a light changes this pixel.");
+                return;
+            }
+            let most = all[0].effect().abs();
+            for influence in all.iter().take(MOST) {
+                row(ui, influence, most, session, registry, actions);
+            }
+            rows::note(ui, "Change of luminance for 1 % of the range, by differences.");
+        });
+}
+
+/// The pixel before and after changes that were made here.
+fn change(ui: &mut Ui, explained: &Explained, actions: &mut Vec<Action>) {
+    let Some(before) = probe::before(ui.ctx()) else { return };
+    let after = explained.explanation.code();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let code = |ui: &mut Ui, [r, g, b]: [u8; 3]| {
+            rows::chip(ui, [r, g, b], vec2(28.0, 16.0));
+            ui.label(theme::strong(ui, format!("{r}, {g}, {b}")));
+        };
+        ui.label("before");
+        code(ui, before);
+        ui.label("→ after");
+        code(ui, after);
+        if ui.small_button("Undo").on_hover_text("Take back the last change (Ctrl+Z)").clicked() {
+            actions.push(Action::Undo);
+        }
+        if ui.small_button("Done").on_hover_text("Keep the change, and compare from here").clicked() {
+            probe::forget_before(ui.ctx());
+        }
+    });
+}
+
+fn row(
+    ui: &mut Ui,
+    influence: &Influence,
+    most: f32,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let size = 14.0 * theme::scale_here(ui);
+        maths::symbol(ui, influence.symbol, size).on_hover_text(influence.label.as_str());
+        let limits = limits_of(influence, session, registry);
+        let id = Id::new(("what if", influence.label.as_str()));
+        let field = knob::field(ui, id, &influence.label, influence.value, &limits, 64.0);
+        if let Some(value) = field.value {
+            probe::keep_before(ui.ctx());
+            actions.push(Action::Edit(edit(influence, value as f32, session)));
+        }
+        ui.label(theme::small(ui, influence.unit));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let effect = influence.effect();
+            let sign = if effect > 0.0 { "+" } else { "" };
+            let text = ui.label(format!("{sign}{}", rounded(effect, 2)));
+            let [r, g, b] = influence.derivative().to_array().map(|v| rounded(v, rows::DIGITS));
+            text.on_hover_text(format!(
+                "Δ light/Δ {} = ({r}, {g}, {b}) between {} and {}",
+                influence.symbol,
+                rounded(influence.tried[0], 4),
+                rounded(influence.tried[1], 4)
+            ));
+            let (bar, _) = ui.allocate_exact_size(vec2(BAR, 8.0), egui::Sense::hover());
+            let part = if most > 0.0 { effect.abs() / most } else { 0.0 };
+            let palette = theme::Palette::here(ui);
+            ui.painter().rect_filled(bar, 2.0, palette.field);
+            ui.painter().rect_filled(bar.with_min_x(bar.right() - part * bar.width()), 2.0, palette.accent);
+            let room = ui.available_width();
+            let label = theme::elided(ui, &influence.label, egui::TextStyle::Small, palette.weak, room);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(label));
+        });
+    });
+}
+
+fn limits_of(influence: &Influence, session: &Session, registry: &Registry) -> Limits {
+    match influence.knob {
+        Knob::Material { object, name } => {
+            let scene = session.scene();
+            let model = scene.objects.get(object).and_then(|object| registry.model(scene.model_of(object)));
+            let parameter = model.and_then(|model| model.parameter(name));
+            parameter.and_then(knob::limits_of).unwrap_or_else(|| Limits::between(0.0, 1.0))
+        }
+        Knob::Intensity { .. } => limits::brightness(),
+    }
+}
+
+fn edit(influence: &Influence, value: f32, session: &Session) -> Edit {
+    match influence.knob {
+        Knob::Material { object, name } => {
+            Edit::Object(object, ObjectField::Material(name, Value::Number(value)))
+        }
+        Knob::Intensity { light } => {
+            let flux = session.scene().lights.get(light).is_some_and(|light| light.luminous_flux.is_some());
+            Edit::Light(
+                light,
+                if flux { LightField::LuminousFlux(value) } else { LightField::Intensity(value) },
+            )
+        }
+    }
+}

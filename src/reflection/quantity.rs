@@ -1,0 +1,52 @@
+//! The quantities of an equation, each with its own equation.
+
+/// A quantity that the equation of a model names: explanations put its value in, and show how it follows.
+///
+/// ```
+/// use lights_camera_models::reflection::Quantity;
+/// const D: Quantity = Quantity::new("D = α^2/(π (1 + (α^2 − 1) cos^2 θ_h)^2)", "distribution of the facets")
+///     .source("B. Walter and others 2007")
+///     .when(&[("distribution", &["ggx"])]);
+/// assert_eq!(D.symbol(), "D");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Quantity {
+    /// Its definition in the notation of [`expression`](crate::text::expression): `D = α^2/…`, or that of a function,
+    /// `H(μ) = (1 + 2 μ)/…`. A symbol alone, such as `E_V`, or `E(μ)`, for one that the model itself gives
+    /// ([`ReflectionModel::quantity`](super::ReflectionModel::quantity)), such as an albedo from a table.
+    pub text: &'static str,
+    /// Its name in words.
+    pub label: &'static str,
+    /// Author and year; empty where it is that of the model.
+    pub source: &'static str,
+    /// The choices for which it holds: names of parameters, each with ids.
+    pub when: &'static [(&'static str, &'static [&'static str])],
+}
+
+impl Quantity {
+    /// A quantity with its definition and its name in words.
+    #[must_use]
+    pub const fn new(text: &'static str, label: &'static str) -> Self {
+        Self { text, label, source: "", when: &[] }
+    }
+
+    /// The same with author and year.
+    #[must_use]
+    pub const fn source(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+
+    /// The same for some choices only: names of parameters, each with the ids for which it holds.
+    #[must_use]
+    pub const fn when(self, when: &'static [(&'static str, &'static [&'static str])]) -> Self {
+        Self { when, ..self }
+    }
+
+    /// The symbol, without the arguments of a function: `H` of `H(μ) = …`.
+    #[must_use]
+    pub fn symbol(&self) -> &'static str {
+        let head = self.text.split_once('=').map_or(self.text, |(head, _)| head).trim();
+        head.split_once('(').map_or(head, |(symbol, _)| symbol)
+    }
+}

@@ -1,0 +1,96 @@
+//! Equations that can be followed by hand.
+
+use std::sync::Arc;
+
+use super::{Outcome, direction, random, random_values, sample::any_direction};
+use crate::{
+    explain::{Geometry, Line, Model, agrees, reading},
+    optics::{Frame, Terms, colour::Encoding},
+    parameter::Values,
+    reflection::ModelEntry,
+};
+
+/// Digits of numbers, which a line must give; the terms themselves are calculated with 32 bits and must agree to one less.
+const DIGITS: usize = 4;
+/// Random parameters, and directions for each.
+const SURFACES: usize = 60;
+const DIRECTIONS: usize = 8;
+
+/// True if every line of the explanation of a model gives its own value, evaluated as it is printed: for many random
+/// directions, frames and parameters. A quantity that the equation names and nobody gives fails, too.
+///
+/// # Errors
+/// The first line that does not, with its numbers.
+pub fn followed(model: &ModelEntry) -> Outcome {
+    let mut seed = 29;
+    for i in 0..SURFACES {
+        let values = if i == 0 { Values::default() } else { random_values(model, &mut seed) };
+        for j in 0..DIRECTIONS {
+            let frame = Frame::new(any_direction(&mut seed), any_direction(&mut seed));
+            let to_room = |d: glam::Vec3| d.x * frame.t + d.y * frame.b + d.z * frame.n;
+            // Some near the mirror direction, where narrow lobes are, and some behind the surface.
+            let v = direction(&mut seed);
+            let mut l = match j {
+                0 => any_direction(&mut seed),
+                _ if j < 4 => direction(&mut seed),
+                _ => glam::Vec3::new(-v.x, -v.y, v.z) + 0.3 * random(&mut seed) * any_direction(&mut seed),
+            };
+            l = l.normalize();
+            let geometry = Geometry::of(to_room(l).normalize(), to_room(v).normalize(), frame);
+            at(model, &values, &geometry)?;
+        }
+    }
+    Ok(())
+}
+
+/// The same for one surface and one geometry.
+///
+/// # Errors
+/// As [`followed`].
+pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
+    let surface = model.instantiate(values, Encoding::Srgb);
+    let response = surface.response(geometry.l, geometry.v, &geometry.frame);
+    let explained = Model::of(model, values, Encoding::Srgb, Arc::clone(&surface));
+    let lines = explained.lines(Some(geometry), &response, DIGITS);
+    let wrong = |line: &Line, why: &str| {
+        let numbers = line.numbers.as_deref().unwrap_or("no numbers");
+        let all: Vec<_> =
+            lines.iter().map(|l| format!("{} | {:?} | {:?}", l.text, l.numbers, l.rgb())).collect();
+        format!("{}: {why}: {numbers}; value {:?}\n{}", line.text, line.value, all.join("\n"))
+    };
+    for line in &lines {
+        if let Err(why) = follows(line) {
+            return Err(wrong(line, &why));
+        }
+    }
+    every_term(model, &lines, &response)
+}
+
+/// True if a line gives its own value.
+///
+/// # Errors
+/// The reason why it does not.
+pub fn follows(line: &Line) -> Result<(), String> {
+    let Some(value) = &line.value else { return Err("no value".to_owned()) };
+    let calculated =
+        line.numbers.as_deref().or_else(|| Some(line.text.as_str()).filter(|text| text.contains('=')));
+    // A quantity that the model gives has no equation.
+    let Some(calculated) = calculated else { return Ok(()) };
+    let read = reading(calculated)?;
+    let digits = if line.is_term() { DIGITS - 1 } else { DIGITS };
+    if agrees(&read, value, digits) { Ok(()) } else { Err(format!("gives {:?}", read.rgb)) }
+}
+
+/// Terms about which the equation says nothing have no line that could be followed.
+fn every_term(model: &ModelEntry, lines: &[Line], response: &Terms) -> Outcome {
+    for (symbol, value) in [("I_d", response.diffuse), ("I_s", response.specular)] {
+        let said = lines.iter().any(|line| line.defines() == symbol && !line.text.is_empty());
+        if value != glam::Vec3::ZERO && !said {
+            return Err(format!(
+                "{symbol} is {value}, and the equation of {} has no line for it",
+                model.declaration.id
+            ));
+        }
+    }
+    Ok(())
+}
