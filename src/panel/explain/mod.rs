@@ -177,16 +177,17 @@ fn beside_button(ui: &mut Ui, view: usize) {
 /// How far the explanation goes.
 fn levels(ui: &mut Ui) {
     let choice = probe::choice(ui.ctx());
-    let names = ["Sentence", "Equation", "Every factor"];
+    // From right to left, as the row is laid out.
+    let names = ["Every factor", "Equation", "Sentence"];
     let tips = [
-        "What happened, in a sentence",
-        "The equation of the model with the numbers put in, light by light",
         "Each factor too, with its own equation, its plot and its source",
+        "The equation of the model with the numbers put in, light by light",
+        "What happened, in a sentence",
     ];
-    let chosen = Level::ALL.iter().position(|level| *level == choice.level);
+    let chosen = Level::ALL.iter().rev().position(|level| *level == choice.level);
     let tip = |ui: &mut Ui, i: usize| drop(ui.label(tips[i]));
     if let Some(i) = segmented(ui, "Level", &names, chosen, tip) {
-        probe::choose(ui.ctx(), probe::Choice { level: Level::ALL[i], ..choice });
+        probe::choose(ui.ctx(), probe::Choice { level: Level::ALL[names.len() - 1 - i], ..choice });
     }
 }
 
