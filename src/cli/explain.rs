@@ -54,7 +54,7 @@ pub(super) struct Arguments {
 
 /// Column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Pixel([u32; 2]);
+pub(super) struct Pixel(pub(super) [u32; 2]);
 
 impl FromStr for Pixel {
     type Err = String;

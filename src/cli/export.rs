@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, builder::PossibleValuesParser};
 
 use super::{
-    Options, Outcome, outputs, progress,
+    Options, Outcome,
+    explain::Pixel,
+    outputs, progress,
     render::Size,
     scenes::Source,
     views,
@@ -13,6 +15,7 @@ use super::{
 };
 use crate::files::Shown as _;
 use crate::{
+    explain,
     export::{
         self, ExportError, FORMS, Form, Progress, Request, view,
         write::{WriteError, inputs, may_write, write},
@@ -45,6 +48,9 @@ pub(super) struct Arguments {
     /// Size of pictures and windows in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
+    /// Say on a web page why this pixel has its colour: column and row, from 0,0 at the top left
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    explain: Option<Pixel>,
 }
 
 fn help() -> String {
@@ -55,6 +61,18 @@ fn help() -> String {
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let Some(form) = export::form(&arguments.form) else {
         return Err(Failure::Usage(format!("there is no form {}", quoted(&arguments.form))));
+    };
+    let size = [arguments.size.width, arguments.size.height];
+    let point = match arguments.explain {
+        Some(_) if !form.explains() => {
+            let said = format!("{} explains no pixel, only html does; omit --explain", form.id);
+            return Err(Failure::Usage(said));
+        }
+        Some(Pixel(pixel)) => {
+            explain::inside(pixel, size).map_err(|error| Failure::Usage(format!("--explain: {error}")))?;
+            Some(pixel)
+        }
+        None => None,
     };
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;
@@ -82,8 +100,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         scene: &scene,
         registry: &workshop.registry,
         stem: &source.stem(),
-        size: (arguments.size.width, arguments.size.height),
+        size: size.into(),
         object,
+        point,
     };
     let made = (form.make)(&request, &Progress { tell: &tell, cancelled: &|| false });
     bar.finish_and_clear();

@@ -128,6 +128,24 @@ impl Lit {
     pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
         model.lines(self.geometry.as_ref(), &self.response, digits)
     }
+
+    /// The terms that reach the observer, those that are shown and not 0, as a factor: `(I_d + I_s)`.
+    #[must_use]
+    pub fn sum(&self, terms: TermSelection) -> String {
+        let response = self.response;
+        let all = [
+            (Term::Ambient, response.ambient, "I_a"),
+            (Term::Diffuse, response.diffuse, "I_d"),
+            (Term::Specular, response.specular, "I_s"),
+        ];
+        let shown = |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
+        let some: Vec<_> = all.iter().filter(|(term, v, _)| *v != Vec3::ZERO && shown(*term)).collect();
+        match some.as_slice() {
+            [] => "0".to_owned(),
+            [(.., one)] => (*one).to_owned(),
+            several => format!("({})", several.iter().map(|(.., s)| *s).collect::<Vec<_>>().join(" + ")),
+        }
+    }
 }
 
 impl Model {

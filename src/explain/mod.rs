@@ -42,6 +42,7 @@ mod lines;
 mod numbers;
 mod pairs;
 mod put;
+mod sentence;
 mod text;
 mod workings;
 
@@ -54,6 +55,7 @@ pub use lines::{Line, agrees, reading};
 pub use numbers::{number, of_value, rounded, rounded_triple, triple};
 pub use pairs::{Pair, pairs};
 pub use put::{Put, Symbols, put, put_in};
+pub use sentence::sentence;
 
 /// The reason why a pixel cannot be explained.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -69,6 +71,17 @@ pub enum ExplainError {
         /// Width and height of the picture.
         size: [u32; 2],
     },
+}
+
+/// Refuses a pixel that is not in a picture of this size.
+///
+/// # Errors
+/// Its place, and the legal ones.
+pub fn inside(pixel: [u32; 2], size: [u32; 2]) -> Result<(), ExplainError> {
+    if pixel[0] < size[0] && pixel[1] < size[1] {
+        return Ok(());
+    }
+    Err(ExplainError::Outside { pixel, size })
 }
 
 /// The legal pixels of a picture.
@@ -267,6 +280,19 @@ impl Explanation {
     }
 }
 
+impl Seen {
+    /// The point that counts most in the pixel: of vertices, the one with the largest weight. None if the shading model did
+    /// not evaluate the reflection model.
+    #[must_use]
+    pub fn main_spot(&self) -> Option<usize> {
+        let weight = |i: &usize| match self.spots[*i].place {
+            Place::Vertex { weight, .. } => weight,
+            Place::Polygon | Place::Pixel => 1.0,
+        };
+        (0..self.spots.len()).max_by(|a, b| weight(a).total_cmp(&weight(b)))
+    }
+}
+
 impl Spot {
     /// True if the normal faces away from the observer, who is mirrored in the surface then.
     #[must_use]
@@ -370,9 +396,7 @@ fn explained(
     pixel: [u32; 2],
 ) -> Result<Explanation, ExplainError> {
     let size = [settings.width, settings.height];
-    if pixel[0] >= size[0] || pixel[1] >= size[1] {
-        return Err(ExplainError::Outside { pixel, size });
-    }
+    inside(pixel, size)?;
     let found = probe(meshes, scene, registry, settings, pixel);
     let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
     let explain = Explain { scene, registry, settings };

@@ -77,6 +77,8 @@ pub struct Request<'a> {
     pub size: (u32, u32),
     /// The index of the object for forms that hold one; it exists.
     pub object: usize,
+    /// The pixel of a picture of that size whose colour is explained, by forms that [explain](Form::explains) one.
+    pub point: Option<[u32; 2]>,
 }
 
 /// One file of an export.
@@ -146,6 +148,12 @@ pub fn form(id: &str) -> Option<&'static Form> {
 }
 
 impl Form {
+    /// True if it can explain the colour of a pixel.
+    #[must_use]
+    pub fn explains(&self) -> bool {
+        self.id == html::HTML.id
+    }
+
     /// The place of an export that the user gives no place for.
     #[must_use]
     pub fn default_path(&self, stem: &str) -> PathBuf {

@@ -83,8 +83,14 @@ pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, act
     ui.menu_button("Copy as…", |ui| {
         for form in FORMS.iter().filter(|form| shaders::is_text(form)) {
             if ui.button(form.name).clicked() {
-                let request =
-                    Request { scene: &session.document, registry, stem: "scene", size: SIZE, object };
+                let request = Request {
+                    scene: &session.document,
+                    registry,
+                    stem: "scene",
+                    size: SIZE,
+                    object,
+                    point: None,
+                };
                 match shaders::text(form, &request) {
                     Ok(text) => {
                         actions.push(Action::Copy(text));

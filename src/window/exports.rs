@@ -37,6 +37,9 @@ struct Job {
     registry: Registry,
     stem: String,
     object: usize,
+    /// The pixel that is pinned, and a remark about it.
+    point: Option<[u32; 2]>,
+    remark: Option<&'static str>,
     /// The view that is being edited.
     view: usize,
     path: PathBuf,
@@ -67,12 +70,15 @@ impl Exports {
             Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
             Err(error) => return session.say(Severity::Error, format!("{error}.")),
         };
+        let (point, remark) = if form.explains() { pinned(session) } else { (None, None) };
         let job = Job {
             form,
             scene: (*session.document).clone(),
             registry: registry.clone(),
             stem: session.stem(),
             object: object(session).unwrap_or_default(),
+            point,
+            remark,
             view: session.active(),
             path,
             before,
@@ -110,6 +116,23 @@ impl Exports {
     }
 }
 
+/// The pixel of the picture of an export that is pinned, and what is to be said about it.
+fn pinned(session: &Session) -> (Option<[u32; 2]>, Option<&'static str>) {
+    let Some(pin) = session.view.pinned else { return (None, None) };
+    let point = pin.inside(SIZE.into(), session.document.view_angle());
+    let remark = match point {
+        None => Some(
+            "The pinned pixel is beyond the edge of the page's picture, so the page does not explain it.",
+        ),
+        Some(_) if session.facts.camera_left => Some(
+            "The page explains the pinned pixel as the observer of the scene sees it; the camera of the window is \
+             elsewhere.",
+        ),
+        Some(_) => None,
+    };
+    (point, remark)
+}
+
 /// The file with the extension of the form, if the user typed none.
 fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
     match form.makes {
@@ -121,10 +144,10 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 }
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
-    let Job { form, scene, registry, stem, object, view, path, before } = job;
+    let Job { form, scene, registry, stem, object, point, remark, view, path, before } = job;
     let view = view::holds_one(form).then_some(*view);
     let (scene, of_view) = view::exported(form, scene, view, stem, registry);
-    let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object };
+    let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object, point: *point };
     let made = (form.make)(&request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
         Ok(export)
@@ -134,7 +157,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
     write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
-    Ok(of_view.into_iter().chain(export.notes).collect())
+    Ok(of_view.into_iter().chain(export.notes).chain(remark.map(str::to_owned)).collect())
 }
 
 /// Shows a folder in the file manager.

@@ -8,8 +8,11 @@ use bevy::{
 };
 use lights_camera_models::{
     export::FORMS,
-    panel::state::{
-        Action, Answer, Effect, ExportCommand, Exporting, LabEffect, Question, Session, Severity,
+    panel::{
+        export::SIZE,
+        state::{
+            Action, Answer, Effect, ExportCommand, Exporting, LabEffect, Pin, Question, Session, Severity,
+        },
     },
     window::LabPlugins,
 };
@@ -121,4 +124,37 @@ fn an_export_of_the_window_is_on_disk_at_the_end_and_says_so() {
     assert!(said.iter().all(|(severity, _)| *severity == Severity::Error), "{said:?}");
     assert!(said.iter().any(|(_, text)| text.contains("agx is a table")), "{said:?}");
     assert_eq!(names(folder.path()), ["project", "room.json"]);
+}
+
+/// A window without a window that writes pages.
+pub struct Opened {
+    app: App,
+    folder: std::path::PathBuf,
+}
+
+impl Opened {
+    /// One that shows a scene.
+    pub fn new(scene: &Path) -> Self {
+        let plugins = LabPlugins::default().scene(scene).size(64, 36).exit_after(100_000).headless();
+        Self {
+            app: app(plugins.build(), |_| ()),
+            folder: scene.parent().expect("it is in a folder").to_owned(),
+        }
+    }
+
+    /// Pins a pixel of a picture of the size of exports.
+    pub fn pin(&mut self, pixel: [u32; 2]) {
+        let mut session = self.app.world_mut().resource_mut::<Session>();
+        let pin = Pin::of_pixel(0, pixel, SIZE.into(), session.document.view_angle());
+        session.view.pinned = Some(pin);
+    }
+
+    /// The page that it writes.
+    pub fn page(&mut self, name: &str) -> String {
+        let path = self.folder.join(name);
+        let said =
+            export(&mut self.app, Effect::Export { form: "html", path: path.clone(), overwrite: false });
+        assert!(said.iter().all(|(severity, _)| *severity == Severity::Info), "{said:?}");
+        fs::read_to_string(path).expect("UTF-8")
+    }
 }

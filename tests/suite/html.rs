@@ -29,7 +29,8 @@ const HEIGHT: u32 = 216;
 /// The page of a scene.
 fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
     let registry = Registry::builtin();
-    let request = Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0 };
+    let request =
+        Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
     let export = (html::HTML.make)(&request, &Progress::NONE)?;
     assert!(export.files.len() == 1 && export.files[0].path.is_empty());
     Ok(export.files[0].bytes.clone())
@@ -307,8 +308,14 @@ fn a_page_holds_every_view_with_a_switch() {
 fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
     let registry = Registry::builtin();
     let scene = scene(&shipped("compare_tone_mappings.json"));
-    let request =
-        Request { scene: &scene, registry: &registry, stem: "page", size: (WIDTH, HEIGHT), object: 0 };
+    let request = Request {
+        scene: &scene,
+        registry: &registry,
+        stem: "page",
+        size: (WIDTH, HEIGHT),
+        object: 0,
+        point: None,
+    };
     let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page of the others");
     let left_out: Vec<_> = export.notes.iter().filter(|note| note.contains("is left out")).collect();
     assert!(left_out.len() == 1 && left_out[0].starts_with("view C (AgX) is left out: "), "{left_out:?}");
@@ -330,8 +337,14 @@ fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
         let mut scene = scene(&shipped("openpbr_car_paint.json"));
         scene.reflection_model = id.to_owned();
         scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
-        let request =
-            Request { scene: &scene, registry: &registry, stem: "page", size: (WIDTH, HEIGHT), object: 0 };
+        let request = Request {
+            scene: &scene,
+            registry: &registry,
+            stem: "page",
+            size: (WIDTH, HEIGHT),
+            object: 0,
+            point: None,
+        };
         let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page");
         export.notes
     };

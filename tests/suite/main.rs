@@ -24,6 +24,7 @@ mod equations;
 mod examples;
 mod executable;
 mod explain;
+mod explained_page;
 mod export;
 mod export_bevy;
 mod export_shaders;

@@ -50,7 +50,8 @@ fn skipped() -> bool {
 
 fn exported(scene: &Scene) -> Export {
     let registry = Registry::builtin();
-    let request = Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0 };
+    let request =
+        Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
     let form = form("mitsuba").expect("listed");
     (form.make)(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error}"))
 }

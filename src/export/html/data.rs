@@ -7,7 +7,7 @@ use serde_json::{Map, Value as Json, json};
 use super::{
     blocks::Blocks,
     equation::{equation, symbol},
-    limits, mesh,
+    explained, limits, mesh,
     programs::program,
     texts::Texts,
 };
@@ -29,6 +29,8 @@ pub struct Data {
     pub scene: Json,
     /// The bytes of the meshes, one after the other.
     pub meshes: Vec<u8>,
+    /// Why a point has its colour, by the letters of the views; empty unless that was asked for.
+    pub points: Map<String, Json>,
     /// The curves that its models calculate anew when a knob is turned.
     pub script: String,
     /// What differs from the picture in the lab: sentences.
@@ -80,7 +82,7 @@ impl Shared {
 pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError> {
     let Request { scene, registry, .. } = *request;
     let mut shared = Shared::default();
-    let mut views = Vec::new();
+    let (mut views, mut points) = (Vec::new(), Map::new());
     let all: Vec<_> = (0..=scene.variants.len()).filter_map(|i| scene.seen(i, registry)).collect();
     for (i, (seen, terms)) in all.iter().enumerate() {
         let part = |done: f32| (i as f32 + done) / all.len() as f32;
@@ -97,6 +99,11 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         };
         json["name"] = json!(scene.view_name(i));
         json["letter"] = json!(LETTERS.get(i));
+        if let (Some(pixel), Some(letter)) = (request.point, LETTERS.get(i)) {
+            let (point, note) = explained::point(&of_view, pixel)?;
+            points.insert((*letter).to_owned(), point);
+            shared.note(note.map(|note| format!("{note}.")));
+        }
         views.push(json);
         if *terms != TermSelection::All {
             shared.note([format!("{named} shows some terms of the equation only; the page shows all.")]);
@@ -121,7 +128,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
     });
     let script = |(id, script): (&&str, &&str)| format!("CURVES[{}] = {script};\n", json!(id));
     let script = shared.scripts.iter().map(script).collect();
-    Ok(Data { scene: data, meshes: shared.meshes.bytes, notes: shared.notes, script })
+    Ok(Data { scene: data, meshes: shared.meshes.bytes, notes: shared.notes, points, script })
 }
 
 /// Takes one view of a scene apart.
@@ -318,7 +325,8 @@ fn fixed(entry: &ModelEntry, registry: &Registry) -> Option<&'static str> {
     )
 }
 
-fn term(term: Term) -> &'static str {
+/// The class of a term.
+pub fn term(term: Term) -> &'static str {
     match term {
         Term::Total => "total",
         Term::Ambient => "ambient",

@@ -14,6 +14,7 @@ use super::{Export, ExportError, Form, Makes, Progress, Request};
 mod blocks;
 mod data;
 mod equation;
+mod explained;
 mod limits;
 mod mesh;
 mod programs;
@@ -62,21 +63,25 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     let name = request.scene.name.as_deref().unwrap_or(request.stem);
     let description = request.scene.description.as_deref().unwrap_or_default();
     let (scene, meshes) = (packed(data.scene.to_string().as_bytes())?, packed(&data.meshes)?);
+    let explained = explained::parts(&data.points)?;
     let page = filled(
         PAGE,
         &[
             ("name", &escaped(name)),
             ("description", &escaped(description)),
-            ("style", STYLE),
-            ("script", &[SCRIPT.concat().as_str(), &data.script, START].concat()),
+            ("style", &[STYLE, explained.style].concat()),
+            ("section", explained.section),
+            ("script", &[SCRIPT.concat().as_str(), explained.script, &data.script, START].concat()),
             ("scene", &scene),
             ("meshes", &meshes),
+            ("explained", &explained.data),
         ],
     );
     if page.len() > LIMIT {
         let words = 3 * escaped(name).len() + escaped(description).len();
+        let values = scene.len() + explained.data.len();
         let several = !request.scene.variants.is_empty();
-        return Err(ExportError::refused(too_large(page.len(), [scene.len(), meshes.len(), words], several)));
+        return Err(ExportError::refused(too_large(page.len(), [values, meshes.len(), words], several)));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
@@ -146,7 +151,7 @@ mod tests {
 
     #[test]
     fn the_page_has_a_place_for_everything_and_no_end_of_its_script_within() {
-        for place in ["name", "description", "style", "script", "scene", "meshes"] {
+        for place in ["name", "description", "style", "section", "script", "scene", "meshes", "explained"] {
             assert!(PAGE.contains(&format!("{{{{{place}}}}}")), "{place}");
         }
         assert!(!SCRIPT.concat().contains("</") && !STYLE.contains("</"));

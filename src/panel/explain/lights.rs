@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     explain::{Explanation, Line, Lit, Place, Seen, Spot, angle, of_value},
-    optics::TermSelection,
     panel::{
         linked::{self, Domain, linked},
         maths,
@@ -200,7 +199,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
     ui.add_space(2.0);
     rows::note(ui, "light to the observer");
-    let sum = sum(explanation.terms, lit);
+    let sum = lit.sum(explanation.terms);
     rows::equation(ui, Term::Total, &format!("{sum} × {}", rows::formula(lit.arriving)), true, name);
     rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
     if !lit.is_finite() {
@@ -257,23 +256,6 @@ fn directions(ui: &mut Ui, seen: &Seen, lit: &Lit) {
                     .on_hover_text(rows::all(cosine));
             }
         });
-    }
-}
-
-/// The terms that reach the observer: those that are shown, and are not 0.
-fn sum(terms: TermSelection, lit: &Lit) -> String {
-    let response = lit.response;
-    let all = [
-        (Term::Ambient, response.ambient, "I_a"),
-        (Term::Diffuse, response.diffuse, "I_d"),
-        (Term::Specular, response.specular, "I_s"),
-    ];
-    let shown = |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
-    let some: Vec<_> = all.iter().filter(|(term, v, _)| *v != Vec3::ZERO && shown(*term)).collect();
-    match some.as_slice() {
-        [] => "0".to_owned(),
-        [(.., one)] => (*one).to_owned(),
-        several => format!("({})", several.iter().map(|(.., s)| *s).collect::<Vec<_>>().join(" + ")),
     }
 }
 

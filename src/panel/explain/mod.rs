@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     document::Selection,
-    explain::{Explanation, Seen},
+    explain::{Explanation, Seen, sentence},
     optics::TermSelection,
     registry::Registry,
     scene::{limits::Limits, variant::LETTERS},
@@ -34,7 +34,6 @@ mod pairs;
 mod point;
 mod probe;
 mod rows;
-mod sentence;
 mod surface;
 mod vectors;
 mod what_if;
@@ -88,9 +87,9 @@ impl Panel for Explain {
         };
         header(ui, session, &explained, actions);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
-        let sentence = sentence::sentence(&explained.explanation, &name);
+        let text = sentence(&explained.explanation, &name);
         let level = probe::choice(ui.ctx()).level;
-        let mut sentence = theme::strong(ui, sentence);
+        let mut sentence = theme::strong(ui, text);
         if level == Level::Sentence {
             // For those at the back of the room.
             sentence = sentence.size(SENTENCE * theme::scale_here(ui));

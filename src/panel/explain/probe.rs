@@ -10,7 +10,7 @@ use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::{
     document::Revision,
-    explain::{Explainer, Explanation, Influence, Lit, Place, Seen, Spot},
+    explain::{Explainer, Explanation, Influence, Lit, Seen, Spot},
     library::status::Reloaded,
     optics::TermSelection,
     panel::{
@@ -388,13 +388,7 @@ pub(super) fn spots(seen: &Seen) -> Vec<&Spot> {
 
 /// The number of the point that is shown: the one that was chosen, or the one that counts most.
 pub(super) fn shown_spot(seen: &Seen, choice: Choice) -> usize {
-    let weight = |spot: &Spot| match spot.place {
-        Place::Vertex { weight, .. } => weight,
-        Place::Polygon | Place::Pixel => 1.0,
-    };
-    let most =
-        (0..seen.spots.len()).max_by(|a, b| weight(&seen.spots[*a]).total_cmp(&weight(&seen.spots[*b])));
-    choice.spot.filter(|i| *i < spots(seen).len()).or(most).unwrap_or(0)
+    choice.spot.filter(|i| *i < spots(seen).len()).or(seen.main_spot()).unwrap_or(0)
 }
 
 /// The light of a point whose block is unfolded.

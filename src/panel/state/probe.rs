@@ -49,6 +49,14 @@ impl Pin {
         };
         [pixel(0), pixel(1)]
     }
+
+    /// The pixel in a picture of that size, if it is in it.
+    #[must_use]
+    pub fn inside(&self, size: [u32; 2], angle: ViewAngle) -> Option<[u32; 2]> {
+        let half = half_angles(size, angle);
+        let within = (0..2).all(|i| f64::from(self.at[i]).abs() < half[i]);
+        within.then(|| self.pixel(size, angle))
+    }
 }
 
 impl Session {
@@ -95,6 +103,10 @@ mod tests {
         let pin = Pin::of_pixel(0, [400, 100], [1600, 800], ANGLE);
         assert_eq!(pin.pixel([1600, 400], ANGLE), [600, 50]);
         assert_eq!(Pin { view: 0, at: [9.0, 9.0] }.pixel([8, 8], ANGLE), [7, 0]);
+        assert_eq!(pin.inside([1600, 400], ANGLE), Some([600, 50]));
+        // What a wider picture shows beyond the sides of another one is not in that.
+        let beyond = Pin::of_pixel(0, [1599, 7], [1600, 800], ANGLE);
+        assert_eq!((beyond.inside([1280, 720], ANGLE), beyond.pixel([1280, 720], ANGLE)), (None, [1279, 6]));
         assert_eq!(Pin { view: 0, at: [f32::NAN, 2.0] }.pixel([0, 0], ANGLE), [0, 0]);
     }
 }

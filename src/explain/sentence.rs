@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::{
-    curves::Channel,
-    explain::{Explanation, Place, Seen},
-    optics::TermSelection,
-};
+use glam::Vec3;
+
+use super::{Explanation, Place, Seen};
+use crate::optics::{TermSelection, colour::luminance};
 
 /// Above this part, a term gives all of the light of a lamp.
 const ALL: f64 = 0.995;
@@ -32,11 +31,20 @@ impl Given {
                 let terms = [lit.response.ambient, lit.response.diffuse, lit.response.specular];
                 let all = [lit.contribution].into_iter().chain(terms.map(|term| term * lit.arriving));
                 for (sum, light) in sums.iter_mut().zip(all) {
-                    *sum += weight * Channel::Luminance.of(light);
+                    *sum += weight * brightness(light);
                 }
             }
         }
         given
+    }
+}
+
+/// The luminance of some light, exact where it is grey; `NaN` if any part of it is no finite number.
+fn brightness(light: Vec3) -> f64 {
+    match light {
+        light if light.x == light.y && light.y == light.z => light.x.into(),
+        light if !light.is_finite() => f64::NAN,
+        light => luminance(light).into(),
     }
 }
 
@@ -94,8 +102,19 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
     format!("{} gives {part}{by}", name(*index))
 }
 
-/// The explanation in a sentence, with the names of lights as the list of the scene has them.
-pub(super) fn sentence(explanation: &Explanation, name: &dyn Fn(usize) -> String) -> String {
+/// The explanation in one sentence, or two: the colour of the pixel, the light that gives the most of it, and by which
+/// term. `name` gives the name of the light at a place in the list of the scene.
+///
+/// ```
+/// use lights_camera_models::{explain, reference::Settings, registry::Registry, scene::Scene};
+/// let settings = Settings { width: 640, height: 360, ..Settings::default() };
+/// let explained = explain::pixel(&Scene::default(), &Registry::builtin(), &settings, [320, 180]).unwrap();
+/// let said = explain::sentence(&explained, &|light| format!("Lamp {light}"));
+/// assert!(said.starts_with("This pixel is ("), "{said}");
+/// assert!(said.contains("Lamp 0 gives"), "{said}");
+/// ```
+#[must_use]
+pub fn sentence(explanation: &Explanation, name: &dyn Fn(usize) -> String) -> String {
     let [r, g, b] = explanation.code();
     let Some(seen) = &explanation.seen else {
         return format!("This pixel is ({r}, {g}, {b}): no object is here, and the background shows.");
