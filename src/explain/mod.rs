@@ -24,7 +24,11 @@ use crate::{
     light::Factor,
     optics::{Frame, TermSelection, Terms, colour::luminance},
     parameter::{Parameter, Value},
-    reference::{DisplaySteps, Picture, Settings, meshes::MeshStore, probe::probe},
+    reference::{
+        DisplaySteps, Picture, Settings,
+        meshes::MeshStore,
+        probe::{Probe, probe},
+    },
     reflection::{Declaration, Surface},
     registry::Registry,
     scene::{Display, Scene},
@@ -41,6 +45,7 @@ mod json;
 mod lines;
 mod numbers;
 mod pairs;
+mod pinned;
 mod put;
 mod sentence;
 mod text;
@@ -54,6 +59,7 @@ pub use influence::{Influence, Knob};
 pub use lines::{Line, agrees, reading};
 pub use numbers::{number, of_value, rounded, rounded_triple, triple};
 pub use pairs::{Pair, pairs};
+pub use pinned::{Anchor, Sight};
 pub use put::{Put, Symbols, put, put_in};
 pub use sentence::sentence;
 
@@ -398,14 +404,25 @@ fn explained(
     let size = [settings.width, settings.height];
     inside(pixel, size)?;
     let found = probe(meshes, scene, registry, settings, pixel);
+    Ok(explanation(scene, registry, settings, pixel, found))
+}
+
+/// The explanation of what a probe found.
+fn explanation(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    pixel: [u32; 2],
+    found: Option<Probe>,
+) -> Explanation {
     let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
     let explain = Explain { scene, registry, settings };
-    Ok(Explanation {
+    Explanation {
         pixel,
-        size,
+        size: [settings.width, settings.height],
         terms: settings.terms,
         seen: found.and_then(|found| explain.seen(found)),
         display: scene.display,
         steps: Picture::display_steps(light, &scene.display),
-    })
+    }
 }

@@ -103,21 +103,22 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
 }
 
 /// The explanation in one sentence, or two: the colour of the pixel, the light that gives the most of it, and by which
-/// term. `name` gives the name of the light at a place in the list of the scene.
+/// term. It begins with `subject`, what has the colour: "This pixel is". `name` gives the name of the light at a place in
+/// the list of the scene.
 ///
 /// ```
 /// use lights_camera_models::{explain, reference::Settings, registry::Registry, scene::Scene};
 /// let settings = Settings { width: 640, height: 360, ..Settings::default() };
 /// let explained = explain::pixel(&Scene::default(), &Registry::builtin(), &settings, [320, 180]).unwrap();
-/// let said = explain::sentence(&explained, &|light| format!("Lamp {light}"));
+/// let said = explain::sentence(&explained, "This pixel is", &|light| format!("Lamp {light}"));
 /// assert!(said.starts_with("This pixel is ("), "{said}");
 /// assert!(said.contains("Lamp 0 gives"), "{said}");
 /// ```
 #[must_use]
-pub fn sentence(explanation: &Explanation, name: &dyn Fn(usize) -> String) -> String {
+pub fn sentence(explanation: &Explanation, subject: &str, name: &dyn Fn(usize) -> String) -> String {
     let [r, g, b] = explanation.code();
     let Some(seen) = &explanation.seen else {
-        return format!("This pixel is ({r}, {g}, {b}): no object is here, and the background shows.");
+        return format!("{subject} ({r}, {g}, {b}): no object is here, and the background shows.");
     };
     let mapped = explanation.steps.mapped;
     let end = match () {
@@ -125,7 +126,7 @@ pub fn sentence(explanation: &Explanation, name: &dyn Fn(usize) -> String) -> St
         () if mapped.max_element() > 1.0 => " It is brighter than the display can show, and clipped.",
         () => "",
     };
-    format!("This pixel is ({r}, {g}, {b}): {}.{end}", most(seen, explanation.terms, name))
+    format!("{subject} ({r}, {g}, {b}): {}.{end}", most(seen, explanation.terms, name))
 }
 
 #[cfg(test)]

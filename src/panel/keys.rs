@@ -182,6 +182,8 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     add("Picture", false, true, Key::E, "Lobe at the explained point: linear, logarithmic, off", lobe);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
     add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
+    let side = "Look at the pinned point from the side: its vectors N and L face on";
+    add("Picture", false, true, Key::H, side, Action::LookFromSide);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
     add("Picture", false, false, Key::Minus, "Darker by ½ EV", Action::Expose(-0.5));
     for (shift, key, label, steer) in [

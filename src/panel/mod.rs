@@ -171,7 +171,7 @@ pub fn show(
     }
     actions.extend(explain::clicked(&ctx, &session, area));
     actions.extend(explain::left(&ctx, &session, area));
-    explain::look(&ctx, &session, area, registry);
+    actions.extend(explain::look(&ctx, &session, area, registry));
     actions.extend(lesson::check::look(&ctx, &session, registry));
     actions.extend(presentation::left(&ctx, &session, area));
     actions.extend(welcome::left(&ctx, &session, area));
@@ -299,6 +299,7 @@ pub fn show(
     focus::show(&ctx, &palette, frame);
 
     for action in actions {
+        let action = explain::placed(&ctx, &session, action);
         effects.extend(session.apply(action, registry));
     }
     if session.document.in_gesture() && !gesture_goes_on(&ctx) {

@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo
 
 use super::{
     Panel, PanelContext, PanelInfo, Place, channels, chooser, compare,
-    explain::lobe_entries,
+    explain::{has_sides, lobe_entries},
     export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
@@ -289,6 +289,9 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
             egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
                 item(ui, "Home: the observer’s view", Action::HomeView, actions);
                 item(ui, "Focus selection", Action::FocusSelection, actions);
+                ui.add_enabled_ui(has_sides(ui.ctx(), session), |ui| {
+                    item(ui, "Look from the side", Action::LookFromSide, actions);
+                });
                 let problem = session.observer_problem();
                 let place =
                     |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView, actions);
@@ -311,14 +314,12 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 ui.separator();
                 let v = &session.view;
                 let view = |c: ViewChange| Action::View(c);
-                check(
-                    ui,
-                    "Show light markers",
-                    v.show_gizmos,
-                    "",
-                    view(ViewChange::Gizmos(!v.show_gizmos)),
-                    actions,
-                );
+                menu::submenu(ui, "Marks", |ui| {
+                    let lights = view(ViewChange::Gizmos(!v.show_gizmos));
+                    check(ui, "Show light markers", v.show_gizmos, "", lights, actions);
+                    let room = view(ViewChange::Room(!v.show_room));
+                    check(ui, "Outline of the room", v.show_room, "", room, actions);
+                });
                 menu::submenu(ui, format!("Handles: {}", handles_word(v)), |ui| {
                     let show = view(ViewChange::Handles(HandleChange::Show(!v.show_handles)));
                     check(ui, "Show handles", v.show_handles, "", show, actions);
@@ -334,14 +335,6 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     let next = view(ViewChange::Handles(HandleChange::Mode(v.handles.next())));
                     item(ui, "Next", next, actions);
                 });
-                check(
-                    ui,
-                    "Outline of the room",
-                    v.show_room,
-                    "",
-                    view(ViewChange::Room(!v.show_room)),
-                    actions,
-                );
                 menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
                 menu::submenu(ui, "Channel", |ui| {
                     channels::entries(ui, session, actions);

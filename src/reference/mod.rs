@@ -44,6 +44,7 @@ mod display;
 mod edits;
 mod lighting;
 pub(crate) mod meshes;
+mod nearest;
 mod object;
 mod outlines;
 pub(crate) mod probe;

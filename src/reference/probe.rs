@@ -11,13 +11,14 @@ use super::{
     Settings,
     lighting::{Lights, LightsOn, light_by_light},
     meshes::{MeshStore, Meshes},
+    nearest::nearest,
     object::{Draw, Face, Posed, hidden},
     raster::{self, Screen, Tile},
 };
 use crate::{
     reflection::Surface,
     registry::Registry,
-    scene::{Scene, observer::clip_from_room},
+    scene::{Observer, Scene, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
@@ -61,6 +62,15 @@ pub(crate) struct ProbeCorner {
     pub(crate) colour: Vec3,
 }
 
+/// A triangle of an object, and the weights of its corners at the point in question.
+struct Found<'a> {
+    object: usize,
+    draw: Draw<'a>,
+    posed: Posed,
+    face: Face,
+    weights: Vec3,
+}
+
 /// The object at a pixel within the picture; none if there is only background.
 pub(crate) fn probe(
     store: &mut MeshStore,
@@ -69,11 +79,63 @@ pub(crate) fn probe(
     settings: &Settings,
     pixel: [u32; 2],
 ) -> Option<Probe> {
-    let (width, height) = (settings.width as usize, settings.height as usize);
+    let size = [settings.width as usize, settings.height as usize];
     let pixel = pixel.map(|c| c as usize);
-    let screen = Screen::of_pixel(width, height, pixel);
-    let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
-    let beam = raster::frustum(&(narrowed([width, height], pixel) * clip_from_room));
+    let found = first(store, scene, registry, &scene.observer, size, pixel)?;
+    let screen = Screen::of_pixel(size[0], size[1], pixel);
+    Some(shaded(&found, scene, registry, settings, &At::Pixel(&screen, pixel)))
+}
+
+/// The point of an object's surface that is nearest to a point with a normal, in the coordinates of its mesh: as it would
+/// be shaded if a pixel showed it.
+pub(crate) fn probe_point(
+    store: &mut MeshStore,
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    index: usize,
+    [point, normal]: [Vec3; 2],
+) -> Option<Probe> {
+    let object = scene.objects.get(index)?;
+    let mut meshes = Meshes::with(registry, std::mem::take(store));
+    let shape = meshes.first(&[object]);
+    *store = meshes.into_store();
+    let draw = Draw::new(scene, registry, object, shape?)?;
+    let (face, weights) = nearest(&draw.shape.mesh, point, normal)?;
+    let posed = draw.posed(&Mat4::IDENTITY, &Screen::new(1, 1, 1));
+    let found = Found { object: index, draw, posed, face, weights };
+    Some(shaded(&found, scene, registry, settings, &At::Point(weights)))
+}
+
+/// What the observer sees in the direction of a point: the object and the place.
+pub(crate) fn towards(
+    store: &mut MeshStore,
+    scene: &Scene,
+    registry: &Registry,
+    point: Vec3,
+) -> Option<(usize, Vec3)> {
+    /// The field of view of a picture of one pixel, degrees.
+    const NARROW: f32 = 0.1;
+    let position = scene.observer.position;
+    let observer = Observer { position, direction: point - position, field_of_view: NARROW };
+    let Found { object, posed, face: (_, corners), weights, .. } =
+        first(store, scene, registry, &observer, [1, 1], [0, 0])?;
+    let [a, b, c] = corners.map(|i| posed.positions[i as usize]);
+    Some((object, a * weights.x + b * weights.y + c * weights.z))
+}
+
+/// The first triangle at a pixel.
+fn first<'a>(
+    store: &mut MeshStore,
+    scene: &'a Scene,
+    registry: &Registry,
+    observer: &Observer,
+    size: [usize; 2],
+    pixel: [usize; 2],
+) -> Option<Found<'a>> {
+    let screen = Screen::of_pixel(size[0], size[1], pixel);
+    let clip_from_room = clip_from_room(observer, size[0] as f32 / size[1] as f32);
+    let beam = raster::frustum(&(narrowed(size, pixel) * clip_from_room));
     let mut meshes = Meshes::with(registry, std::mem::take(store));
     let (indices, shown): (Vec<_>, Vec<_>) =
         scene.objects.iter().enumerate().filter(|(_, object)| object.visible).unzip();
@@ -81,7 +143,7 @@ pub(crate) fn probe(
     // In the order of the renderer: of equally near triangles, the first is seen.
     let mut nearest = Tile::<1, 1>::new();
     let mut found = None;
-    for (i, object) in shown.iter().enumerate() {
+    for (i, &object) in shown.iter().enumerate() {
         let Some(shape) = meshes.first(&shown[i..]).filter(|shape| !hidden(object, shape, &beam)) else {
             continue;
         };
@@ -104,14 +166,11 @@ pub(crate) fn probe(
             }
         }
         if let Some((face, weights)) = front {
-            found = Some((indices[i], draw, posed, face, weights));
+            found = Some(Found { object: indices[i], draw, posed, face, weights });
         }
     }
     *store = meshes.into_store();
-    let (object, draw, posed, face, weights) = found?;
-    let lights = Lights::new(scene, registry, settings.terms);
-    let lighting = Asked { lighting: lights.on(&*draw.surface), points: RefCell::default() };
-    Some(shaded(object, &draw, &posed, face, weights, &lighting, &screen, pixel))
+    found
 }
 
 /// The light loop at a point of an object, light by light.
@@ -132,17 +191,45 @@ fn narrowed(size: [usize; 2], pixel: [usize; 2]) -> Mat4 {
     Mat4::from_scale(Vec3::new(across, down, 1.0)) * Mat4::from_translation(Vec3::new(-x, y, 0.0))
 }
 
-/// Shades a triangle that is seen, once more and watched.
-fn shaded(
-    object: usize,
-    draw: &Draw,
-    posed: &Posed,
-    face: Face,
-    weights: Vec3,
-    lighting: &Asked,
-    screen: &Screen,
-    pixel: [usize; 2],
-) -> Probe {
+/// Where a triangle is shaded.
+enum At<'a> {
+    /// At the centre of a pixel, by the renderer.
+    Pixel(&'a Screen, [usize; 2]),
+    /// Where its corners have these weights.
+    Point(Vec3),
+}
+
+impl At<'_> {
+    /// The light there, and its coverage.
+    fn light(
+        &self,
+        (draw, posed, face): (&Draw, &Posed, Face),
+        varyings: [Varying; 3],
+        shading: &dyn Shading,
+        lighting: &dyn Lighting,
+    ) -> Vec4 {
+        match self {
+            Self::Pixel(screen, pixel) => {
+                let mut tile = Tile::<1, 1>::new();
+                render((draw, posed, face, screen), varyings, shading, lighting, &mut tile, *pixel);
+                tile.resolve().next().unwrap_or_default()
+            }
+            Self::Point(weights) => {
+                let [a, b, c] = varyings.map(|v| v.position);
+                let face_normal = (b - a).cross(c - a).normalize_or_zero();
+                let varying = raster::between(&varyings, [weights.y, weights.z], draw.anisotropic);
+                shading.pixel(lighting, &varying, face_normal).extend(1.0)
+            }
+        }
+    }
+}
+
+/// Shades a triangle, once more and watched.
+fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings, at: &At) -> Probe {
+    let Found { object, draw, posed, face, weights } = found;
+    let (object, face) = (*object, *face);
+    let lights = Lights::new(scene, registry, settings.terms);
+    let lighting = &Asked { lighting: lights.on(&*draw.surface), points: RefCell::default() };
     let (polygon, corners) = face;
     let per_polygon = draw.stage == Stage::Polygon;
     let mut at_corners: Vec<(usize, Point)> = Vec::new();
@@ -158,13 +245,10 @@ fn shaded(
         corner += 1;
         varying
     });
-    let at = (draw, posed, face, screen);
     let watched = Watched::new(Some(&*draw.shading));
-    let mut tile = Tile::<1, 1>::new();
-    render(at, varyings, &watched, lighting, &mut tile, pixel);
+    let light = at.light((draw, posed, face), varyings, &watched, lighting);
     let (varying, face_normal) = watched.seen().unwrap_or_default();
     let at_pixel = lighting.points.take();
-    let light = tile.resolve().next().unwrap_or_default();
 
     let phong = (draw.stage != Stage::Pixel).then(|| {
         // Its corners are vertices, whatever those of the shading model are.
@@ -178,8 +262,7 @@ fn shaded(
         };
         let varyings =
             phong.varyings(posed, face, |i| phong.shading.vertex(lighting, &phong.corner(posed, i as usize)));
-        let at = (&phong, posed, face, screen);
-        render(at, varyings, &*phong.shading, lighting, &mut Tile::<1, 1>::new(), pixel);
+        at.light((&phong, posed, face), varyings, &*phong.shading, lighting);
         lighting.points.take().pop()
     });
     Probe {

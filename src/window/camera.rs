@@ -184,6 +184,17 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
             let distance = (offset.length() * factor).max(NEAREST);
             (camera.with_translation(focus + offset.normalize_or(Vec3::Z) * distance), focus)
         }
+        Steer::Along { point, way } => {
+            let offset = camera.translation - point;
+            // From the nearer of the two sides.
+            let back = if way.dot(offset) < 0.0 { -way } else { way }.normalize_or(camera.rotation * Vec3::Z);
+            let elevation = back.y.clamp(-1.0, 1.0).asin().clamp(-HIGHEST, HIGHEST);
+            let right = camera.rotation * Vec3::X;
+            let level = back.with_y(0.0).normalize_or(right.cross(Vec3::Y));
+            let back = level * elevation.cos() + Vec3::Y * elevation.sin();
+            let place = Transform::from_translation(point + back * offset.length().max(NEAREST));
+            (place.with_rotation(rotation(-back)), point)
+        }
     }
 }
 
@@ -317,6 +328,18 @@ mod tests {
         let (moved, ahead) = steered(camera, focus, Steer::Move(1.0, 0.0));
         assert_eq!(moved.translation - camera.translation, ahead - focus);
         assert!(ahead.x > focus.x);
+        // From the side: face on, at the same distance, from the nearer side, upright.
+        for way in [Vec3::X, Vec3::NEG_X, Vec3::new(1.0, -2.0, 0.5), Vec3::Y, Vec3::NEG_Z] {
+            let point = Vec3::new(5.5, 5.2, 5.9);
+            let (aside, ahead) = steered(camera, focus, Steer::Along { point, way });
+            assert_eq!(ahead, point);
+            let offset = aside.translation - point;
+            let before = camera.translation.distance(point);
+            assert!((offset.length() - before).abs() < 1e-4, "{way}");
+            assert!(offset.normalize().dot(way.normalize()).abs() > 0.9999, "{way}: {offset}");
+            assert!(offset.dot(camera.translation - point) > 0.0 || way == Vec3::Y, "{way}");
+            assert!(looks_at(aside, point) > 0.9999 && (aside.rotation * Vec3::X).y.abs() < 1e-5, "{way}");
+        }
         let (near, _) = steered(camera, focus, Steer::Zoom(0.5));
         assert!((near.translation - focus).length() - 2.25 < 1e-5);
     }

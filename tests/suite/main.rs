@@ -72,6 +72,7 @@ mod overrides;
 mod panels;
 mod photometric;
 mod pictures;
+mod pinned;
 mod placing;
 mod plot;
 mod plots;

@@ -167,7 +167,8 @@ fn exported_glsl_draws_the_picture_of_the_lab() {
     for (reflection, shading, object, tone, exposure) in cases {
         let scene = scene(reflection, shading, object, tone, exposure);
         let size = (SIZE.0 as u32, SIZE.1 as u32);
-        let request = Request { scene: &scene, registry: &registry, stem: "scene", size, object: 0, point: None };
+        let request =
+            Request { scene: &scene, registry: &registry, stem: "scene", size, object: 0, point: None };
         let export = (form.make)(&request, &Progress::NONE).expect("exported");
         let drawn = draw(&gl, &export);
         let settings = Settings { width: size.0, height: size.1, samples: 1, ..Settings::default() };

@@ -152,7 +152,7 @@ fn colour(light: Vec3) -> String {
 }
 
 fn text(explanation: &Explanation, name: &dyn Fn(Selection) -> String, doubt: Option<&str>) -> String {
-    let sentence = explain::sentence(explanation, &|light| name(Selection::Light(light)));
+    let sentence = explain::sentence(explanation, "This pixel is", &|light| name(Selection::Light(light)));
     let mut out = format!("<p class=\"said\">{}{}</p>", chip(explanation.code()), escaped(&sentence));
     if let Some(doubt) = doubt {
         out += &paragraph("summary", &format!("{doubt}."));

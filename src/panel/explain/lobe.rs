@@ -5,8 +5,9 @@
 //! millisecond and appear in the same frame; an interpreted model takes longer, and the frames do not wait.
 
 use std::{
+    collections::BTreeMap,
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, MutexGuard, PoisonError,
         mpsc::{self, Receiver, RecvTimeoutError},
     },
     thread,
@@ -18,6 +19,7 @@ use glam::Vec3;
 
 use super::{
     probe::{self, Choice, Explained},
+    room::Room,
     rows,
     surface::{self, LightLobe, tint},
 };
@@ -38,6 +40,8 @@ use crate::{
     progress::Progress,
 };
 
+/// Lobes whose points are this near are of the same point, metres.
+const SAME: f32 = 1e-4;
 /// A frame waits so long for a lobe, and no longer.
 const PATIENCE: Duration = Duration::from_millis(2);
 /// More lobes at once have no colours of their own.
@@ -72,19 +76,29 @@ impl PartialEq for Question {
     }
 }
 
+/// The lobes of a view.
 #[derive(Default)]
 struct Work {
     shown: Option<Arc<Lobes>>,
     running: Option<(Question, Receiver<Vec<LightLobe>>)>,
     calculations: u64,
-    /// The end of the scale, which a pinned pixel keeps.
+}
+
+#[derive(Default)]
+struct Works {
+    views: BTreeMap<usize, Work>,
+    /// The end of the scale, which a pinned pixel keeps, and which all views have.
     kept: Option<(Pin, LobeScale, f64)>,
 }
 
 /// The name of a light, as the list of the scene has it.
 type Name<'a> = &'a dyn Fn(usize) -> String;
 
-type Shared = Arc<Mutex<Work>>;
+type Shared = Arc<Mutex<Works>>;
+
+fn lock(works: &Shared) -> MutexGuard<'_, Works> {
+    works.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 fn shared(ctx: &Context) -> Shared {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("lobes of the explained point")).clone())
@@ -93,19 +107,29 @@ fn shared(ctx: &Context) -> Shared {
 /// The number of times that lobes were calculated.
 #[must_use]
 pub fn lobe_calculations(ctx: &Context) -> u64 {
-    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).calculations
+    lock(&shared(ctx)).views.values().map(|work| work.calculations).sum()
 }
 
 /// True while lobes are calculated; those before are shown meanwhile.
 #[must_use]
 pub fn lobes_are_due(ctx: &Context) -> bool {
-    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).running.is_some()
+    lock(&shared(ctx)).views.values().any(|work| work.running.is_some())
 }
 
-/// The lobes that were drawn last.
+/// The lobes that were drawn last in the view that is explained.
 #[must_use]
 pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {
-    shared(ctx).lock().unwrap_or_else(PoisonError::into_inner).shown.clone()
+    let view = probe::explained(ctx).map(|explained| explained.view);
+    let shared = shared(ctx);
+    let works = lock(&shared);
+    let work = view.and_then(|view| works.views.get(&view)).or(works.views.values().next());
+    work?.shown.clone()
+}
+
+/// Those of a view.
+#[must_use]
+pub fn lobes_shown_in(ctx: &Context, view: usize) -> Option<Arc<Lobes>> {
+    lock(&shared(ctx)).views.get(&view)?.shown.clone()
 }
 
 /// The lights whose lobes are shown, the brightest first, and how many there would be.
@@ -132,7 +156,7 @@ fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), 
     }
 }
 
-impl Work {
+impl Works {
     /// The scale of lobes; while the same pixel is pinned it never gets smaller.
     fn scale(&mut self, lobes: &[LightLobe], wanted: LobeScale, pinned: Option<Pin>) -> Axis {
         let kept = self.kept.filter(|(pin, of, _)| Some(*pin) == pinned && *of == wanted);
@@ -141,7 +165,9 @@ impl Work {
         self.kept = pinned.map(|pin| (pin, wanted, scale.to));
         scale
     }
+}
 
+impl Work {
     /// The lobes; while they are calculated those before, if they are of the same point.
     fn answer(
         &mut self,
@@ -173,7 +199,8 @@ impl Work {
             self.shown = Some(Arc::new(Lobes { question: asked.clone(), position, lobes }));
             self.running = None;
         }
-        let old = || self.shown.clone().filter(|shown| shown.position == spot.position);
+        let is_same = |shown: &Arc<Lobes>| shown.position.distance(spot.position) < SAME;
+        let old = || self.shown.clone().filter(is_same);
         fits(self).or_else(old)
     }
 }
@@ -212,17 +239,19 @@ fn start(
     receiver
 }
 
-/// Paints the lobes of an explained point into the picture, and their legend, whose place it returns.
+/// Paints the lobes of an explained point into the picture, whose room they take, and their legend, whose place it
+/// returns.
 pub(super) fn paint(
     ui: &Ui,
     rect: Rect,
     explained: &Arc<Explained>,
     session: &Session,
+    room: &mut Room,
     name: Name<'_>,
 ) -> Option<Rect> {
     let LobeChoice { scale: wanted, all } = session.view.lobe;
     if wanted == LobeScale::Off {
-        shared(ui.ctx()).lock().unwrap_or_else(PoisonError::into_inner).kept = None;
+        lock(&shared(ui.ctx())).kept = None;
         return None;
     }
     let seen = explained.explanation.seen.as_ref()?;
@@ -247,11 +276,19 @@ pub(super) fn paint(
         lights: lights.iter().map(|lit| lit.light.index).collect(),
     };
     let shared = shared(ui.ctx());
-    let mut work = shared.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut works = lock(&shared);
+    // Nobody asks for the lobes of views that do not show the point any more.
+    works.views.retain(|view, _| probe::explained_in(ui.ctx(), *view).is_some());
+    let work = works.views.entry(explained.view).or_default();
     let shown = work.answer(ui.ctx(), &question, seen, spot, name);
     let scale = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
-    let scale = scale.map(|lobes| work.scale(lobes, wanted, session.view.pinned));
-    drop(work);
+    let before = works.kept;
+    let scale = scale.map(|lobes| works.scale(lobes, wanted, session.view.pinned));
+    if works.views.len() > 1 && works.kept != before {
+        // The other views have the same scale from the next frame on.
+        ui.ctx().request_repaint();
+    }
+    drop(works);
     let calculating =
         || Legend { title: "Lobe: calculating…".to_owned(), scale: None, colours: Vec::new() };
     let Some(shown) = shown else { return plate(ui, rect, calculating()) };
@@ -259,7 +296,7 @@ pub(super) fn paint(
         (Err(why), _) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
         (Ok(_), None) => plate(ui, rect, calculating()),
         (Ok(lobes), Some(scale)) => {
-            surface::paint(ui, rect, session, shown.position, lobes, &scale);
+            surface::paint(ui, rect, session, shown.position, lobes, &scale, room);
             plate(ui, rect, legend(lobes, count, &scale, terms))
         }
     }

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     document::Selection,
-    explain::{Explanation, Seen, sentence},
+    explain::{Explanation, Seen, Sight, sentence},
     optics::TermSelection,
     registry::Registry,
     scene::{limits::Limits, variant::LETTERS},
@@ -28,20 +28,24 @@ use crate::{
 mod beside;
 mod display;
 mod factors;
+mod held;
 mod lights;
 mod lobe;
 mod pairs;
 mod point;
 mod probe;
+mod room;
 mod rows;
+mod side;
 mod surface;
 mod vectors;
 mod what_if;
 
 pub(super) use lobe::entries as lobe_entries;
-pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown};
+pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown, lobes_shown_in};
 use probe::Level;
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
+pub use side::{has_sides, placed};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;
 
@@ -87,15 +91,20 @@ impl Panel for Explain {
         };
         header(ui, session, &explained, actions);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
-        let text = sentence(&explained.explanation, &name);
+        // What nobody sees is no pixel.
+        let subject = match explained.sight {
+            None | Some(Sight::Clear) => "This pixel is",
+            Some(_) => "The pinned point would be",
+        };
+        let text = sentence(&explained.explanation, subject, &name);
         let level = probe::choice(ui.ctx()).level;
-        let mut sentence = theme::strong(ui, text);
+        let mut text = theme::strong(ui, text);
         if level == Level::Sentence {
             // For those at the back of the room.
-            sentence = sentence.size(SENTENCE * theme::scale_here(ui));
+            text = text.size(SENTENCE * theme::scale_here(ui));
         }
-        ui.add(egui::Label::new(sentence).wrap().selectable(true));
-        for (severity, text) in remarks(&explained, session) {
+        ui.add(egui::Label::new(text).wrap().selectable(true));
+        for (severity, text) in remarks(&explained, session, registry) {
             remark(ui, severity, &text);
         }
         if level == Level::Sentence {
@@ -145,9 +154,10 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
                 actions.push(Action::Copy(explained.explanation.to_text()));
             }
             let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
-                "Let go of the pixel (E or Esc): the pointer is followed again"
+                "Let go of the point (E or Esc): the pointer is followed again"
             } else {
-                "Keep this pixel explained wherever the pointer is. At the pointer: E, or Alt and a click"
+                "Keep this point explained wherever the pointer is, and where the camera and the object go. At the \
+                 pointer: E, or Alt and a click"
             });
             if pin.clicked() {
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);
@@ -191,9 +201,29 @@ fn levels(ui: &mut Ui) {
 }
 
 /// What is to be said before the numbers.
-fn remarks(explained: &Explained, session: &Session) -> Vec<(Severity, String)> {
+fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let mut all = Vec::new();
+    let unseen = match explained.sight {
+        None | Some(Sight::Clear) => None,
+        Some(Sight::Outside) => {
+            Some("The pinned point is outside the picture: this is its light all the same.".to_owned())
+        }
+        Some(Sight::Away) => Some(
+            "The pinned point faces away from here: this is its light all the same, for a V that is mirrored in the \
+             surface."
+                .to_owned(),
+        ),
+        Some(Sight::Behind(i)) => {
+            let own = explanation.seen.as_ref().is_some_and(|seen| seen.object.index == i);
+            let name = match own {
+                true => "its own object".to_owned(),
+                false => session.name_of(Selection::Object(i), registry),
+            };
+            Some(format!("The pinned point is hidden here by {name}: this is its light all the same."))
+        }
+    };
+    all.extend(unseen.map(|text| (Severity::Info, text)));
     if session.facts.compiling {
         all.push((
             Severity::Info,
@@ -281,7 +311,7 @@ fn columns(
     );
     let parts: Vec<Part> = match &explanation.seen {
         Some(seen) => vec![
-            (0.3, Box::new(|ui| surface(ui, seen, session, registry))),
+            (0.3, Box::new(|ui| surface(ui, seen, explained.sight, session, registry))),
             (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice, &name))),
             end,
         ],
@@ -350,7 +380,7 @@ fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
 }
 
 /// The object, and where and how its light is calculated.
-fn surface(ui: &mut Ui, seen: &Seen, session: &Session, registry: &Registry) {
+fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, registry: &Registry) {
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
@@ -362,7 +392,7 @@ fn surface(ui: &mut Ui, seen: &Seen, session: &Session, registry: &Registry) {
     if let Some(shading) = registry.shading_model(seen.shading.id) {
         super::inspector::model::stage(ui, shading);
     }
-    point::point(ui, seen);
+    point::point(ui, seen, sight.is_some());
 }
 
 fn background(ui: &mut Ui) {

@@ -6,10 +6,11 @@ use glam::Vec3;
 use super::rows;
 use crate::{explain::Seen, panel::theme, shading::Stage};
 
-/// The point of the pixel, and what its shading model makes of it.
-pub(super) fn point(ui: &mut Ui, seen: &Seen) {
+/// The point of the pixel, or the one that is pinned, and what its shading model makes of it.
+pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
     rows::close(ui);
-    rows::named_triple(ui, "point at the pixel's centre", seen.position, " m");
+    let name = if pinned { "pinned point" } else { "point at the pixel's centre" };
+    rows::named_triple(ui, name, seen.position, " m");
     // The normal at which the equation was evaluated: per pixel that of the vertices, or that of the polygon.
     let per_pixel = seen.shading.stage == Stage::Pixel;
     let of_polygon =

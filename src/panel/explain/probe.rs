@@ -8,20 +8,24 @@ use std::{
 
 use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 
+use super::held::{Held, Holding};
 use crate::{
     document::Revision,
-    explain::{Explainer, Explanation, Influence, Lit, Seen, Spot},
+    explain::{Explainer, Explanation, Influence, Lit, Seen, Sight, Spot},
     library::status::Reloaded,
     optics::TermSelection,
     panel::{
         is_in_sight, keys,
+        marks::Lens,
         state::{Action, LessonCommand, PictureArea, Pin, Session, ViewChange},
     },
     reference::{Settings, ignored_edits},
     registry::Registry,
-    scene::{Observer, Scene, observer::ViewAngle},
+    scene::{Observer, Scene, comparison::Layout, observer::ViewAngle},
 };
 
+/// The centre of the pixel that was pinned shows the point that is held if it is this near, metres.
+const SAME: f32 = 1e-4;
 /// A click this near to what is pinned lets go of it, points.
 const NEAR: f32 = 6.0;
 
@@ -32,6 +36,8 @@ pub struct Explained {
     pub view: usize,
     /// The explanation.
     pub explanation: Explanation,
+    /// How the point that is pinned is seen; none where it is the one at the centre of the pixel.
+    pub sight: Option<Sight>,
     /// The edited shaders that the picture follows and the explanation does not, by their paths.
     pub ignored: Vec<String>,
 }
@@ -80,14 +86,24 @@ pub(super) struct Choice {
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     revision: Revision,
-    view: usize,
-    pixel: [u32; 2],
-    size: [u32; 2],
+    /// The line of sight.
+    pin: Pin,
+    /// The point that the pin holds, wherever the line of sight goes.
+    held: Option<Held>,
+    /// The view of the pin, and those beside it in which the point is shown too.
+    views: Vec<Shown>,
     /// The camera.
     observer: Observer,
-    terms: TermSelection,
     /// The change of a shader that came through last.
     reloaded: Option<Reloaded>,
+}
+
+/// A picture of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shown {
+    view: usize,
+    size: [u32; 2],
+    terms: TermSelection,
 }
 
 #[derive(Default)]
@@ -100,12 +116,13 @@ struct Probe {
     hovered: bool,
     asked: Option<Question>,
     answer: Option<Arc<Explained>>,
-    /// The same point in another view, where both are explained beside each other.
-    other: Option<Arc<Explained>>,
+    /// The same point in the views beside.
+    beside: Vec<Arc<Explained>>,
+    holding: Holding,
     calculations: u64,
     explainer: Explainer,
-    /// The scene of a view, without the camera of the window.
-    scene: Option<(Revision, usize, Scene)>,
+    /// The scenes of views, without the camera of the window.
+    scenes: Vec<(Revision, usize, Scene)>,
     choice: Choice,
     /// The quantities that are unfolded.
     unfolded: HashSet<String>,
@@ -135,7 +152,22 @@ pub fn explained(ctx: &Context) -> Option<Arc<Explained>> {
 
 /// The explanation of the same point in another view, if both are shown beside each other.
 pub(super) fn other(ctx: &Context) -> Option<Arc<Explained>> {
-    lock(&shared(ctx)).other.clone()
+    let shared = shared(ctx);
+    let probe = lock(&shared);
+    let own = probe.answer.as_ref()?.view;
+    probe.beside.iter().find(|e| probe.choice.beside && e.view == beside_of(own)).cloned()
+}
+
+/// The view that is explained beside another one.
+fn beside_of(view: usize) -> usize {
+    if view == 0 { 1 } else { 0 }
+}
+
+/// The explanation in sight of a view: that of the pixel in it, or of the same point beside.
+pub(super) fn explained_in(ctx: &Context, view: usize) -> Option<Arc<Explained>> {
+    let shared = shared(ctx);
+    let probe = lock(&shared);
+    probe.answer.iter().chain(&probe.beside).find(|explained| explained.view == view).cloned()
 }
 
 /// The number of explanations calculated so far.
@@ -230,11 +262,14 @@ pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influenc
     {
         return known.clone();
     }
-    let found = match (&probe.asked, &probe.scene) {
-        (Some(question), Some((.., scene))) => {
-            let [width, height] = question.size;
-            let settings = Settings { width, height, samples: 1, terms: question.terms };
-            probe.explainer.influences(scene, registry, &settings, question.pixel).unwrap_or_default()
+    // A point that is not seen is no pixel that could be drawn with other numbers.
+    let answer = probe.answer.clone().filter(|a| a.sight.is_none_or(|sight| sight == Sight::Clear));
+    let scene = answer.as_ref().and_then(|a| probe.scenes.iter().find(|(_, view, _)| *view == a.view));
+    let found = match (&answer, scene) {
+        (Some(answer), Some((.., scene))) => {
+            let Explanation { pixel, size: [width, height], terms, .. } = answer.explanation;
+            let settings = Settings { width, height, samples: 1, terms };
+            probe.explainer.influences(scene, registry, &settings, pixel).unwrap_or_default()
         }
         _ => Vec::new(),
     };
@@ -278,10 +313,14 @@ fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> 
         .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, field_of_view(session)))
 }
 
-/// The place of a pixel in the rectangle of its picture.
-pub(super) fn place(rect: Rect, explanation: &Explanation) -> Pos2 {
+/// The place of what is explained in the rectangle of its picture, also beside it; none behind the camera.
+pub(super) fn place(session: &Session, rect: Rect, explained: &Explained) -> Option<Pos2> {
+    let explanation = &explained.explanation;
+    if let (Some(_), Some(seen)) = (explained.sight, &explanation.seen) {
+        return Lens::of(session, rect).project(seen.position);
+    }
     let part = |i: usize| (explanation.pixel[i] as f32 + 0.5) / explanation.size[i] as f32;
-    rect.lerp_inside(vec2(part(0), part(1)))
+    Some(rect.lerp_inside(vec2(part(0), part(1))))
 }
 
 /// An action with the pixel that it is about: that under the pointer, if there is one.
@@ -301,11 +340,18 @@ pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<A
         return pointed(ctx, session, area).map(|pin| Action::Lesson(LessonCommand::Point(pin)));
     }
     let pin = pointed(ctx, session, area).filter(|_| clicked && alt && !session.view.presenting)?;
+    let answer = explained(ctx);
     let near = |pinned: &Pin| {
         let Some(rect) = rect_of(area, pin.view) else { return false };
         let (size, _) = pixels(ctx, rect);
-        let pixel = |pin: &Pin| Vec2::from(pin.pixel(size, field_of_view(session)).map(|c| c as f32));
-        pinned.view == pin.view && (pixel(pinned) - pixel(&pin)).length() <= NEAR * ctx.pixels_per_point()
+        let pixel = |pin: &Pin| pin.pixel(size, field_of_view(session));
+        let now = match answer.as_ref().filter(|answer| answer.sight.is_some()) {
+            Some(answer) if answer.sight == Some(Sight::Outside) => return false,
+            Some(answer) => answer.explanation.pixel,
+            None => pixel(pinned),
+        };
+        let off = Vec2::from(now.map(|c| c as f32)) - Vec2::from(pixel(&pin).map(|c| c as f32));
+        pinned.view == pin.view && off.length() <= NEAR * ctx.pixels_per_point()
     };
     let same = session.view.pinned.as_ref().is_some_and(near) && session.explains();
     Some(Action::View(ViewChange::Pin(Some(pin).filter(|_| !same))))
@@ -319,13 +365,14 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
 }
 
 /// Explains the pixel that is pinned, or else the one that the pointer was at last, if the panel is open and something
-/// has changed.
-pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) {
+/// has changed. A pin holds the point of the object that it has met; it lets go of one that is gone, which is the action.
+pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) -> Option<Action> {
     let shared = shared(ctx);
     if !session.shows_vectors() && !session.needs_probe() {
         let mut probe = lock(&shared);
-        (probe.hovered, probe.asked, probe.answer) = (false, None, None);
-        return;
+        probe.hovered = false;
+        probe.forget();
+        return None;
     }
     let pointed = pointed(ctx, session, area).filter(|_| session.explains());
     let mut probe = lock(&shared);
@@ -333,51 +380,124 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     probe.hovered = pointed.is_some();
     probe.pointed = pointed.or(probe.pointed);
     let pin = session.view.pinned.or(probe.pointed).filter(|pin| pin.view <= session.document.variants.len());
-    let Some((pin, rect)) = pin.and_then(|pin| Some((pin, rect_of(area, pin.view)?))) else {
-        (probe.asked, probe.answer) = (None, None);
-        return;
+    let shown = |view: usize| {
+        let (size, _) = pixels(ctx, rect_of(area, view)?);
+        Some(Shown { view, size, terms: session.terms_of(view) })
+    };
+    let Some((pin, own)) = pin.and_then(|pin| Some((pin, shown(pin.view)?))) else {
+        probe.forget();
+        return None;
     };
     probe.pin = Some(pin);
-    let (size, _) = pixels(ctx, rect);
-    let question = Question {
+    let mut views = vec![own];
+    if session.view.pinned.is_some() && session.document.comparison.layout == Layout::SideBySide {
+        let others = area.cells.iter().map(|cell| cell.view).filter(|view| *view != pin.view);
+        views.extend(others.filter_map(shown));
+    }
+    let beside = probe.choice.beside && !session.document.variants.is_empty();
+    if beside && !views.iter().any(|shown| shown.view == beside_of(pin.view)) {
+        // A view that is not in the picture has the size of the one that is.
+        let view = beside_of(pin.view);
+        views.push(Shown { view, terms: session.terms_of(view), ..own });
+    }
+    let mut question = Question {
         revision: session.document.revision(),
-        view: pin.view,
-        pixel: pin.pixel(size, field_of_view(session)),
-        size,
+        pin,
+        held: probe.holding.now(session),
+        views,
         observer: session.facts.observer(session.document.observer.field_of_view),
-        terms: session.terms_of(pin.view),
         reloaded: session.shaders.last.clone(),
     };
-    let beside = probe.choice.beside && !session.document.variants.is_empty();
-    if probe.other.is_some() != beside {
-        probe.asked = None;
-    }
     if probe.asked.as_ref() == Some(&question) {
-        return;
+        return None;
     }
-    // The other view first: the scene of the one in sight is kept for the next question.
-    let view = if question.view == 0 { 1 } else { 0 };
-    let terms = session.terms_of(view);
-    let other = Question { view, terms, ..question.clone() };
-    probe.other = if beside { probe.explain(&other, session, registry).map(Arc::new) } else { None };
-    probe.answer = probe.explain(&question, session, registry).map(Arc::new);
+    let gone = |held: Held| {
+        let object = session.document.object(held.object);
+        !object.is_some_and(|i| session.document.objects[i].visible)
+    };
+    if question.held.is_some_and(gone) {
+        probe.forget();
+        return Some(Action::View(ViewChange::Pin(None)));
+    }
+    probe.answer = probe.explain(&question, own, session, registry).map(Arc::new);
+    let seen = probe.answer.as_ref().and_then(|answer| answer.explanation.seen.as_ref());
+    if let Some(seen) = seen.filter(|_| question.held.is_none())
+        && let Some(()) = probe.holding.hold(session, seen)
+    {
+        question.held = probe.holding.now(session);
+    }
+    probe.beside.clear();
+    if question.held.is_some() || beside {
+        for shown in &question.views[1..] {
+            let explained = probe.explain(&question, *shown, session, registry);
+            probe.beside.extend(explained.map(Arc::new));
+        }
+    }
     probe.asked = Some(question);
-    probe.calculations += 1;
+    None
 }
 
 impl Probe {
-    fn explain(&mut self, question: &Question, session: &Session, registry: &Registry) -> Option<Explained> {
-        let Question { revision, view, pixel, size, .. } = *question;
-        if !matches!(&self.scene, Some((known, of, _)) if (*known, *of) == (revision, view)) {
-            let (scene, _) = session.document.seen(view, registry)?;
-            self.scene = Some((revision, view, scene));
+    /// Nothing is explained.
+    fn forget(&mut self) {
+        (self.asked, self.answer) = (None, None);
+        self.beside.clear();
+    }
+
+    /// The scene of a view, seen by the camera.
+    fn scene(
+        &mut self,
+        question: &Question,
+        Shown { view, size, .. }: Shown,
+        session: &Session,
+        registry: &Registry,
+    ) -> Option<usize> {
+        self.scenes.retain(|(revision, ..)| *revision == question.revision);
+        let known = self.scenes.iter().position(|(_, of, _)| *of == view);
+        let at = match known {
+            Some(at) => at,
+            None => {
+                let (scene, _) = session.document.seen(view, registry)?;
+                self.scenes.push((question.revision, view, scene));
+                self.scenes.len() - 1
+            }
+        };
+        self.scenes[at].2.observer = question.observer.fitting(size, session.document.view_angle());
+        Some(at)
+    }
+
+    fn explain(
+        &mut self,
+        question: &Question,
+        shown: Shown,
+        session: &Session,
+        registry: &Registry,
+    ) -> Option<Explained> {
+        self.calculations += 1;
+        let at = self.scene(question, shown, session, registry)?;
+        let Self { scenes, explainer, .. } = self;
+        let scene = &scenes[at].2;
+        let Shown { view, size, terms } = shown;
+        let settings = Settings { width: size[0], height: size[1], samples: 1, terms };
+        let ignored = || ignored_edits(registry, scene).into_iter().collect();
+        let pixel = question.pin.pixel(size, field_of_view(session));
+        let mut of_pixel = || explainer.pixel(scene, registry, &settings, pixel).ok();
+        let Some(Held { object, anchor, .. }) = question.held else {
+            return Some(Explained { view, explanation: of_pixel()?, sight: None, ignored: ignored() });
+        };
+        let object = session.document.object(object)?;
+        // Where the line of sight still meets the point, the numbers are those of the picture.
+        let place = anchor.place(scene.objects.get(object)?);
+        let is_there = |explanation: &Explanation| {
+            let seen = explanation.seen.as_ref();
+            seen.is_some_and(|seen| seen.object.index == object && seen.position.distance(place) < SAME)
+        };
+        let aims = question.pin.aims_at(session.facts.camera.inverse() * (place - session.facts.eye));
+        if let Some(explanation) = aims.then(of_pixel).flatten().filter(is_there) {
+            return Some(Explained { view, explanation, sight: None, ignored: ignored() });
         }
-        let (.., scene) = self.scene.as_mut()?;
-        scene.observer = question.observer.fitting(size, session.document.view_angle());
-        let settings = Settings { width: size[0], height: size[1], samples: 1, terms: question.terms };
-        let explanation = self.explainer.pixel(scene, registry, &settings, pixel).ok()?;
-        let ignored = ignored_edits(registry, scene).into_iter().collect();
-        Some(Explained { view, explanation, ignored })
+        let (explanation, sight) = explainer.point(scene, registry, &settings, object, &anchor)?;
+        Some(Explained { view, explanation, sight: Some(sight), ignored: ignored() })
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use bevy_egui::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui};
 use glam::Vec3;
 
+use super::room::Room;
 use crate::{
     curves::{
         Lobe,
@@ -102,7 +103,16 @@ fn drawn(lens: &Lens, from: Vec3, lobe: &Lobe, scale: &Axis, colour: impl Fn(f32
 }
 
 /// Paints lobes over a point: a lone one by its values, several in colours of their own, each with the way to its light.
-pub(super) fn paint(ui: &Ui, rect: Rect, session: &Session, from: Vec3, lobes: &[LightLobe], scale: &Axis) {
+/// Their room in the picture is taken.
+pub(super) fn paint(
+    ui: &Ui,
+    rect: Rect,
+    session: &Session,
+    from: Vec3,
+    lobes: &[LightLobe],
+    scale: &Axis,
+    room: &mut Room,
+) {
     let lens = Lens::of(session, rect);
     let own = |i: usize| Vec3::from(tint(i).map(|c| f32::from(c) / 255.0));
     let colour = |i: usize, length: f32| if lobes.len() == 1 { viridis(length) } else { own(i) };
@@ -124,7 +134,8 @@ pub(super) fn paint(ui: &Ui, rect: Rect, session: &Session, from: Vec3, lobes: &
     }
     for (i, k) in order {
         let corners = lobes[i].lobe.triangles[k];
-        if corners.iter().all(|corner| all[i].places[*corner as usize].is_some()) {
+        if let [Some(a), Some(b), Some(c)] = corners.map(|corner| all[i].places[corner as usize]) {
+            room.take_triangle([a, b, c], rect);
             let [a, b, c] = corners.map(|corner| first[i] + corner);
             mesh.add_triangle(a, b, c);
         }

@@ -1,12 +1,17 @@
 //! The vectors of the explained point in the picture, and the polygon or the vertices in question.
 
-use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Ui, Vec2, vec2};
+use bevy_egui::egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use super::{lobe, pairs, probe, rows, surface::LENGTH};
+use super::{
+    lobe, pairs, probe,
+    room::{self, Room},
+    rows,
+    surface::LENGTH,
+};
 use crate::{
     document::Selection,
-    explain::{Explanation, Lit, Model, Place, Seen, Spot},
+    explain::{Lit, Model, Place, Seen, Spot},
     panel::{
         is_in_sight, linked,
         marks::{Ink, Lens, OUTLINE},
@@ -68,16 +73,18 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
     all
 }
 
-/// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned.
-/// Returns the place of the legend of their lobe.
+/// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned;
+/// those of a pinned point also into the views beside. Returns the place of the legend of their lobe.
 pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
-    let explained = probe::explained(ui.ctx())
-        .filter(|e| shown && e.view == view && rect.size().min_elem() >= SMALLEST)?;
+    let explained =
+        probe::explained_in(ui.ctx(), view).filter(|_| shown && rect.size().min_elem() >= SMALLEST)?;
     // With the panel closed, a lesson wants to see which pixel it is about, and no more.
     let explains = session.shows_vectors();
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
-    let legend = if explains { lobe::paint(ui, rect, &explained, session, &name) } else { None };
+    let mut room = Room::default();
+    let legend = if explains { lobe::paint(ui, rect, &explained, session, &mut room, &name) } else { None };
+    legend.into_iter().for_each(|legend| room.take_plate(legend));
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));
@@ -85,8 +92,10 @@ pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &R
     if let Some(seen) = explained.explanation.seen.as_ref().filter(|_| explains) {
         drawing.seen(ui, seen);
     }
-    drawing.cross(&explained.explanation, session.view.pinned.is_some());
-    drawing.paint(ui, legend, explained.explanation.seen.as_ref().map(|seen| &seen.model));
+    if let Some(at) = probe::place(session, rect, &explained) {
+        drawing.cross(at, session.view.pinned.is_some());
+    }
+    drawing.paint(ui, room, explained.explanation.seen.as_ref().map(|seen| &seen.model));
     legend
 }
 
@@ -268,8 +277,7 @@ impl Drawing {
     }
 
     /// The pixel itself: the arms of a cross around it, closed to a ring where it is pinned.
-    fn cross(&mut self, explanation: &Explanation, pinned: bool) {
-        let at = probe::place(self.rect, explanation);
+    fn cross(&mut self, at: Pos2, pinned: bool) {
         for k in 0..4 {
             let arm = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_2);
             self.ink.stroke(vec![at + 4.0 * arm, at + 9.0 * arm], 1.25, WHITE);
@@ -280,31 +288,31 @@ impl Drawing {
         }
     }
 
-    fn paint(self, ui: &Ui, legend: Option<Rect>, model: Option<&Model>) {
+    fn paint(self, ui: &Ui, mut room: Room, model: Option<&Model>) {
         let painter = ui.painter_at(self.rect);
         self.ink.paint(&painter);
         let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
-        let mut taken: Vec<Rect> = legend.into_iter().collect();
+        // The caption of the picture is at its lower edge.
+        let within = self.rect.with_max_y(self.rect.bottom() - CAPTION);
         let mut near = self.near;
+        let mut plates = Vec::new();
         for (at, word, colour, symbols) in self.words {
             let text = painter.layout_no_wrap(word, font.clone(), colour);
-            let place = |at: Pos2| Align2::CENTER_CENTER.anchor_size(at, text.size() + vec2(8.0, 2.0));
-            // Beside others, and within the picture.
-            let turns = (0..16).map(|k| {
-                let way = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_4);
-                place(at + way * (18.0 * (k as f32 / 8.0).ceil()))
-            });
-            // The caption of the picture is at its lower edge.
-            let room = self.rect.with_max_y(self.rect.bottom() - CAPTION);
-            let free =
-                |plate: &Rect| room.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(*plate));
-            let plate = turns.into_iter().find(free).unwrap_or(place(at));
-            painter.rect_filled(plate, 4.0, OUTLINE.gamma_multiply(0.78));
-            painter.galley(plate.center() - 0.5 * text.size(), text, colour);
+            let plate = room.find(at, text.size() + vec2(8.0, 2.0), within);
+            room.take_plate(plate);
+            if plate.center().distance(at) > room::APART {
+                let line = [plate.clamp(at), at];
+                painter.line_segment(line, Stroke::new(3.0, OUTLINE.gamma_multiply(0.78)));
+                painter.line_segment(line, Stroke::new(1.0, colour));
+            }
             if self.pointer.is_some_and(|at| plate.contains(at)) {
                 near = Some((0.0, symbols));
             }
-            taken.push(plate);
+            plates.push((plate, text, colour));
+        }
+        for (plate, text, colour) in plates {
+            painter.rect_filled(plate, 4.0, OUTLINE.gamma_multiply(0.78));
+            painter.galley(plate.center() - 0.5 * text.size(), text, colour);
         }
         if let (Some((_, symbols)), Some(model)) = (near, model) {
             linked::point(ui.ctx(), &pairs::symbols(model, &symbols));

@@ -93,6 +93,8 @@ pub enum Action {
     HomeView,
     /// Let the camera look at what is selected.
     FocusSelection,
+    /// Turn the camera around the pinned point until the plane of its vectors is seen face on.
+    LookFromSide,
     /// Moves the observer to the camera.
     ObserverFromView,
     /// Move the camera a little.
@@ -341,6 +343,11 @@ impl Session {
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
+            // With a point the panels have made a movement of it.
+            Action::LookFromSide => self.say(
+                Severity::Info,
+                "There is no pinned point to look at from the side: E explains the point at the pointer, and pins it.",
+            ),
             Action::ObserverFromView => return vec![Effect::ObserverFromView],
             Action::Steer(steer) => return vec![Effect::Steer(steer)],
             Action::Copy(text) => return vec![Effect::CopyText(text)],

@@ -21,6 +21,7 @@ pub(super) struct Shown {
     channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
     active: usize,
     pinned: Option<Pin>,
+    pin_number: u64,
     bottom_open: bool,
     bottom_tab: String,
 }
@@ -32,6 +33,7 @@ impl Shown {
             channels: view.channels,
             active: view.active,
             pinned: view.pinned,
+            pin_number: view.pin_number,
             bottom_open: view.bottom_open,
             bottom_tab: view.bottom_tab.clone(),
         }
@@ -41,7 +43,7 @@ impl Shown {
         view.terms = self.terms;
         view.channels = self.channels;
         view.active = self.active;
-        view.pinned = self.pinned;
+        (view.pinned, view.pin_number) = (self.pinned, self.pin_number);
         view.bottom_open = self.bottom_open;
         view.bottom_tab = self.bottom_tab;
         view.blinking = false;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use bevy::ecs::message::Message;
+use glam::Vec3;
 
 use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
 
@@ -163,6 +164,13 @@ pub enum Steer {
     Move(f32, f32),
     /// The distance to what is looked at times this.
     Zoom(f32),
+    /// Around a point of the room, at the same distance from it, until it is seen along a direction or against it.
+    Along {
+        /// The point, which is what is looked at from then on.
+        point: Vec3,
+        /// The direction.
+        way: Vec3,
+    },
 }
 
 /// The fate of a recovery copy.

@@ -218,6 +218,8 @@ impl Session {
     pub(super) fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.drop_lesson();
         self.document = Document::new(scene);
+        // What is pinned was a point of the other one.
+        self.view.pin(self.view.pinned);
         self.path = path;
         self.stashed.clear();
         self.renaming = None;

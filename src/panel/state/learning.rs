@@ -65,7 +65,7 @@ impl Session {
             LessonCommand::GoTo(step) => self.return_to(step, registry),
             LessonCommand::Answer(answer) => self.choose_answer(answer),
             LessonCommand::Point(pin) => {
-                self.view.pinned = Some(pin);
+                self.view.pin(Some(pin));
                 self.view.unfold(EXPLAIN_TAB);
                 Vec::new()
             }
@@ -168,12 +168,12 @@ impl Session {
         }
         if let Some(place) = change.pin {
             let Some(place) = place else {
-                self.view.pinned = None;
+                self.view.pin(None);
                 return;
             };
             let pixel = [0, 1].map(|i| (place[i].clamp(0.0, 1.0) * PICTURE[i] as f32) as u32);
             let fov = self.document.view_angle();
-            self.view.pinned = Some(Pin::of_pixel(self.active(), pixel, PICTURE, fov));
+            self.view.pin(Some(Pin::of_pixel(self.active(), pixel, PICTURE, fov)));
         }
     }
 
@@ -215,6 +215,11 @@ impl Session {
             return Vec::new();
         }
         let home = self.document.observer != scene.observer;
+        let types = |scene: &Scene| scene.objects.iter().map(|o| o.object_type.clone()).collect::<Vec<_>>();
+        if types(&self.document) != types(&scene) {
+            // What is pinned was a point of other objects; else the point stays, as its object does.
+            self.view.pin(self.view.pinned);
+        }
         self.document = Document::new(scene);
         self.stashed.clear();
         self.renaming = None;

@@ -1,5 +1,7 @@
 //! The pixel that is explained, once it is pinned.
 
+use glam::Vec3;
+
 use super::Session;
 use crate::scene::observer::ViewAngle;
 
@@ -7,7 +9,8 @@ use crate::scene::observer::ViewAngle;
 pub const EXPLAIN_TAB: &str = "explain";
 
 /// A line of sight of the camera, and with it a pixel in the picture of a view: also in a picture of another size it
-/// goes to the same point of the scene.
+/// goes to the same point of the scene. The point of an object that it meets stays pinned when the camera or the object
+/// moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pin {
     /// The view: 0 is the scene itself, 1 view B.
@@ -57,6 +60,15 @@ impl Pin {
         let within = (0..2).all(|i| f64::from(self.at[i]).abs() < half[i]);
         within.then(|| self.pixel(size, angle))
     }
+
+    /// True if the line of sight goes about there: to a point as the camera sees it, x to the right, y up, −z ahead.
+    #[must_use]
+    pub(in crate::panel) fn aims_at(&self, seen: Vec3) -> bool {
+        /// The tangent of an angle that is larger than a pixel.
+        const ABOUT: f32 = 0.02;
+        let off = seen / -seen.z - Vec3::new(self.at[0], self.at[1], -1.0);
+        seen.z < 0.0 && off.length() < ABOUT
+    }
 }
 
 impl Session {
@@ -77,10 +89,11 @@ impl Session {
     /// sight is shown first.
     pub(super) fn toggle_pin(&mut self) {
         let seen = self.explains();
-        self.view.pinned = match self.view.pinned {
-            Some(_) if seen => None,
-            pinned => Some(pinned.unwrap_or(Pin::middle(self.active()))),
-        };
+        match self.view.pinned {
+            Some(_) if seen => self.view.pin(None),
+            Some(_) => {}
+            None => self.view.pin(Some(Pin::middle(self.active()))),
+        }
         self.view.unfold(EXPLAIN_TAB);
     }
 }

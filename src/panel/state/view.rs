@@ -1,5 +1,7 @@
 //! The choice of what is shown, and how.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::{Effect, LobeChoice, Pin, Place, Session, probe::EXPLAIN_TAB};
 use crate::{channel::DebugChannel, optics::TermSelection, scene::variant::MAX_VARIANTS};
 
@@ -152,6 +154,8 @@ pub struct View {
     pub right_open: bool,
     /// The pixel that stays explained wherever the pointer is.
     pub pinned: Option<Pin>,
+    /// A number that no other pin has.
+    pub pin_number: u64,
     /// The lobe of the model at the point that is explained.
     pub lobe: LobeChoice,
     /// Width of the tree, points.
@@ -202,6 +206,7 @@ impl Default for View {
             left_open: true,
             right_open: true,
             pinned: None,
+            pin_number: 0,
             lobe: LobeChoice::default(),
             left_width: 208.0,
             lesson_width: 340.0,
@@ -294,6 +299,14 @@ fn set(list: &mut Vec<String>, id: String, on: bool) {
 }
 
 impl View {
+    /// Pins a pixel, or lets go of the one that is pinned. The same one pinned anew is another pin: it is for the point
+    /// that is there now.
+    pub fn pin(&mut self, pin: Option<Pin>) {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        self.pinned = pin;
+        self.pin_number = NEXT.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Unfolds the strip at the bottom with a panel.
     pub fn unfold(&mut self, tab: &str) {
         self.bottom_open = true;
@@ -353,7 +366,7 @@ impl View {
             ViewChange::Panel(id, shown) => set(&mut self.hidden_panels, id, !shown),
             ViewChange::Fold(id, folded) => set(&mut self.folded_panels, id, folded),
             ViewChange::Pin(pin) => {
-                self.pinned = pin;
+                self.pin(pin);
                 if pin.is_some() {
                     self.unfold(EXPLAIN_TAB);
                 }

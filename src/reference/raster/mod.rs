@@ -235,16 +235,19 @@ impl Triangle {
             scaled = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
             sum = scaled.iter().sum();
         }
-        // Relative to the first corner, so that a value equal at all three stays exact.
-        let (b, c) = (scaled[1] / sum, scaled[2] / sum);
-        let [p, q, r] = &self.varyings;
-        let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;
-        Varying {
-            position: between(p.position, q.position, r.position),
-            normal: between(p.normal, q.normal, r.normal),
-            tangent: if self.tangents { between(p.tangent, q.tangent, r.tangent) } else { Vec3::ZERO },
-            colour: between(p.colour, q.colour, r.colour),
-        }
+        between(&self.varyings, [scaled[1] / sum, scaled[2] / sum], self.tangents)
+    }
+}
+
+/// The values at a point of a triangle, by the weights of its second and its third corner.
+pub(super) fn between([p, q, r]: &[Varying; 3], [b, c]: [f32; 2], tangents: bool) -> Varying {
+    // Relative to the first corner, so that a value equal at all three stays exact.
+    let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;
+    Varying {
+        position: between(p.position, q.position, r.position),
+        normal: between(p.normal, q.normal, r.normal),
+        tangent: if tangents { between(p.tangent, q.tangent, r.tangent) } else { Vec3::ZERO },
+        colour: between(p.colour, q.colour, r.colour),
     }
 }
 

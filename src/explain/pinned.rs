@@ -1,0 +1,122 @@
+//! A point of a surface that is explained wherever the observer and its object are.
+
+use glam::{Vec3, Vec4Swizzles};
+
+use super::{Explainer, Explanation, explanation};
+use crate::{
+    reference::{
+        Settings,
+        probe::{probe_point, towards},
+    },
+    registry::Registry,
+    scene::{Object, Observer, Scene, observer::clip_from_room, rotation::rotation},
+};
+
+/// What is seen nearer than the point by less than this part of the object's size, or of the distance, is the surface of
+/// the point itself.
+const SURFACE: f32 = 1e-3;
+
+/// A point of the surface of an object, in the object's own coordinates: it moves, turns and grows with the object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// The place.
+    pub position: Vec3,
+    /// The normal of the surface there.
+    pub normal: Vec3,
+}
+
+impl Anchor {
+    /// A point of the room, and the normal of the surface there, for an object that is where it is now.
+    #[must_use]
+    pub fn of(object: &Object, position: Vec3, normal: Vec3) -> Self {
+        let back = rotation(object.rotation).inverse();
+        Self { position: back * (position - object.position) / object.size, normal: back * normal }
+    }
+
+    /// Its place in the room.
+    #[must_use]
+    pub fn place(&self, object: &Object) -> Vec3 {
+        rotation(object.rotation) * (self.position * object.size) + object.position
+    }
+}
+
+/// How the observer sees a point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sight {
+    /// It is in the picture.
+    Clear,
+    /// It is beside the picture, or behind the observer.
+    Outside,
+    /// Its surface faces away.
+    Away,
+    /// An object is in front of it, the one with this number in the scene.
+    Behind(usize),
+}
+
+/// The pixel of a picture of that size at which a point is, or else the nearest one and false.
+fn pixel_of(observer: &Observer, size: [u32; 2], point: Vec3) -> ([u32; 2], bool) {
+    let [width, height] = size.map(|side| side.max(1) as f32);
+    let clip = clip_from_room(observer, width / height) * point.extend(1.0);
+    let ahead = clip.z <= clip.w && clip.w > 0.0;
+    let part = clip.xy() / clip.w.abs().max(f32::MIN_POSITIVE);
+    let at = [(0.5 + 0.5 * part.x) * width, (0.5 - 0.5 * part.y) * height];
+    let inside = ahead && at[0] >= 0.0 && at[1] >= 0.0 && at[0] < width && at[1] < height;
+    ([0, 1].map(|i| (at[i].max(0.0) as u32).min(size[i].saturating_sub(1))), inside)
+}
+
+impl Explainer {
+    /// Explains the point of an object's surface that is nearest to an anchor, as if a pixel showed it, and says how the
+    /// observer sees it. Its numbers are those of the point itself, not of the centre of the pixel that it lies in. `None`
+    /// if there is no such object, or if it has no surface.
+    pub fn point(
+        &mut self,
+        scene: &Scene,
+        registry: &Registry,
+        settings: &Settings,
+        object: usize,
+        anchor: &Anchor,
+    ) -> Option<(Explanation, Sight)> {
+        let wanted = [anchor.position, anchor.normal];
+        let found = probe_point(&mut self.meshes, scene, registry, settings, object, wanted)?;
+        let (point, normal) = (found.varying.position, found.face_normal);
+        let (pixel, inside) = pixel_of(&scene.observer, [settings.width, settings.height], point);
+        let eye = scene.observer.position;
+        let nearer = SURFACE * (scene.objects.get(object)?.size + eye.distance(point));
+        let sight = if !inside {
+            Sight::Outside
+        } else if normal.dot(eye - point) <= 0.0 {
+            Sight::Away
+        } else {
+            let front = towards(&mut self.meshes, scene, registry, point)
+                .filter(|(_, place)| eye.distance(*place) + nearer < eye.distance(point));
+            front.map_or(Sight::Clear, |(other, _)| Sight::Behind(other))
+        };
+        Some((explanation(scene, registry, settings, pixel, Some(found)), sight))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_anchor_goes_with_its_object() {
+        let mut object = Object { position: Vec3::new(1.0, 2.0, 3.0), size: 2.0, ..Object::default() };
+        object.rotation = Vec3::new(10.0, 20.0, 30.0);
+        let anchor = Anchor::of(&object, Vec3::new(1.5, 2.5, 2.0), Vec3::Y);
+        assert!(anchor.place(&object).abs_diff_eq(Vec3::new(1.5, 2.5, 2.0), 1e-5));
+        object.position += Vec3::X;
+        assert!(anchor.place(&object).abs_diff_eq(Vec3::new(2.5, 2.5, 2.0), 1e-5));
+        object.size = 4.0;
+        assert!(anchor.place(&object).abs_diff_eq(Vec3::new(3.0, 3.0, 1.0), 1e-5));
+    }
+
+    #[test]
+    fn a_point_behind_the_observer_is_in_no_pixel() {
+        let observer = Observer { position: Vec3::ZERO, direction: Vec3::NEG_Z, field_of_view: 90.0 };
+        assert_eq!(pixel_of(&observer, [8, 4], Vec3::new(0.1, 0.1, -1.0)), ([4, 1], true));
+        assert_eq!(pixel_of(&observer, [8, 4], Vec3::new(9.0, -9.0, -1.0)), ([7, 3], false));
+        assert!(!pixel_of(&observer, [8, 4], Vec3::new(0.1, 0.1, 1.0)).1);
+        assert!(!pixel_of(&observer, [8, 4], Vec3::ZERO).1);
+    }
+}

@@ -1,0 +1,38 @@
+//! The command that looks at the pinned point from the side.
+
+use bevy_egui::egui::Context;
+use glam::Vec3;
+
+use super::probe;
+use crate::panel::state::{Action, Session, Steer};
+
+/// Vectors whose sine is less span no plane that could be seen face on.
+const APART: f32 = 0.02;
+
+/// The pinned point, and the direction along which the plane of its vectors is seen face on: that of `N` and `L`, or of
+/// `N` and `V` where those coincide, or any with `N` in it.
+fn side(ctx: &Context, session: &Session) -> Option<Steer> {
+    session.view.pinned?;
+    let explained = probe::explained(ctx)?;
+    let seen = explained.explanation.seen.as_ref()?;
+    let choice = probe::choice(ctx);
+    let spot = *probe::spots(seen).get(probe::shown_spot(seen, choice))?;
+    let l = probe::shown_light(spot, choice).and_then(|lit| Some(lit.geometry?.l));
+    let (up, right) = (session.facts.camera * Vec3::Y, session.facts.camera * Vec3::X);
+    let ways = l.into_iter().chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
+    let way = ways.into_iter().find(|way| way.is_finite() && way.length() > APART)?;
+    Some(Steer::Along { point: seen.position, way: way.normalize() })
+}
+
+/// True if there is a pinned point that can be looked at from the side.
+pub fn has_sides(ctx: &Context, session: &Session) -> bool {
+    side(ctx, session).is_some()
+}
+
+/// An action with the place that it is about: a look from the side is one at the pinned point.
+pub fn placed(ctx: &Context, session: &Session, action: Action) -> Action {
+    match side(ctx, session).filter(|_| action == Action::LookFromSide) {
+        Some(steer) => Action::Steer(steer),
+        None => action,
+    }
+}
