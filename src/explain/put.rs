@@ -190,8 +190,8 @@ fn applies(atom: &Atom) -> bool {
 /// True if a factor may begin with this atom.
 fn begins(atom: &Atom) -> bool {
     const FUNCTIONS: &[&str] = &[
-        "max", "min", "exp", "ln", "sin", "cos", "tan", "arccos", "arcsin", "arctan", "clamp", "mean", "(",
-        "[", "√",
+        "max", "min", "exp", "ln", "sin", "cos", "tan", "arccos", "arcsin", "arctan", "clamp", "mean", "abs",
+        "floor", "ceil", "fract", "(", "[", "√",
     ];
     match atom {
         Atom::Symbol { .. } => true,

@@ -130,6 +130,10 @@ enum Function {
     Arctan,
     Clamp,
     Mean,
+    Abs,
+    Floor,
+    Ceil,
+    Fract,
 }
 
 impl Function {
@@ -148,6 +152,10 @@ impl Function {
             "arctan" => Self::Arctan,
             "clamp" => Self::Clamp,
             "mean" => Self::Mean,
+            "abs" => Self::Abs,
+            "floor" => Self::Floor,
+            "ceil" => Self::Ceil,
+            "fract" => Self::Fract,
             _ => return None,
         })
     }
@@ -181,6 +189,10 @@ impl Function {
             Self::Arccos => first.plain("arccos")?.map(1, |c| c.clamp(-1.0, 1.0).acos().to_degrees()),
             Self::Arcsin => first.plain("arcsin")?.map(1, |s| s.clamp(-1.0, 1.0).asin().to_degrees()),
             Self::Arctan => first.plain("arctan")?.map(1, |t| t.atan().to_degrees()),
+            Self::Abs => first.map(first.degrees, f64::abs),
+            Self::Floor => first.plain("floor")?.map(0, f64::floor),
+            Self::Ceil => first.plain("ceil")?.map(0, f64::ceil),
+            Self::Fract => first.plain("fract")?.map(0, |v| v - v.floor()),
             Self::Mean => {
                 let mean = first.rgb.iter().sum::<f64>() / 3.0;
                 Value { rgb: [mean; 3], is_colour: false, ..first }
@@ -714,6 +726,7 @@ mod tests {
             ("1 if N·L > 0 else 2", 1.0),
             ("1 if N·L > 0 and α = 0 else 2 if α < 1 else 3", 2.0),
             ("mean(C_b)", 0.5),
+            ("abs(−2) + floor(1.5) + ceil(0.2) + fract(2.25)", 4.25),
             ("clamp(3, 0, 1)", 1.0),
             ("2 × −3", -6.0),
             ("0 × q", 0.0),

@@ -122,6 +122,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
         ),
         ("docs/command-line.md", vec![("explain", explained())]),
+        ("docs/worked-examples.md", worked_examples(&registry)),
         (
             "docs/lessons.md",
             vec![
@@ -167,6 +168,27 @@ fn explained() -> String {
     let scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
     let explained = explain::pixel(&scene, &registry, &Settings::default(), [780, 220]);
     format!("```text\n{}```\n", explained.expect("in the picture").to_text())
+}
+
+/// One pixel for each family of models.
+fn worked_examples(registry: &Registry) -> Vec<(&'static str, String)> {
+    let settings = Settings { width: 1280, height: 720, ..Settings::default() };
+    let example = |id: &'static str| {
+        let mut scene = Scene { reflection_model: id.to_owned(), ..Scene::default() };
+        scene.shading_model = "phong".to_owned();
+        let material = &mut scene.objects[0].material;
+        material.set("base_colour", Value::Colour([200, 120, 60]));
+        if id == "microfacet" {
+            for (name, choice) in [("fresnel", "conductor"), ("diffuse", "none")] {
+                material.set(name, Value::Choice(choice.into()));
+            }
+            material.set("ior", Value::Triple([0.16, 0.42, 1.43]));
+            material.set("extinction", Value::Triple([3.9, 2.4, 1.9]));
+        }
+        let explained = explain::pixel(&scene, registry, &settings, [600, 330]).expect("in the picture");
+        (id, format!("```text\n{}```\n", explained.to_text()))
+    };
+    ["blinn_phong", "ashikhmin_shirley", "oren_nayar", "microfacet", "openpbr"].map(example).to_vec()
 }
 
 /// What a match compares.
