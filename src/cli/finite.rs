@@ -3,7 +3,7 @@
 use super::views::Part;
 use crate::{
     channel::{DebugChannel, Setting},
-    explain::finite::{marked, traced},
+    explain::finite::{NotFinite, Scope, Tried, marked, probe, traced},
     reference::{self, Settings},
     registry::Registry,
     scene::Scene,
@@ -21,18 +21,34 @@ pub(super) fn remark(part: &Part, registry: &Registry, rgb8: &[u8]) -> Option<St
     if pixels.is_empty() {
         return None;
     }
-    let whose: Vec<_> =
-        traced(&part.scene, registry, &settings, &pixels).iter().map(|odd| format!("\n  {odd}")).collect();
+    let whose = listed(&traced(&part.scene, registry, &settings, &pixels));
     let (count, are) = match pixels.len() {
         1 => ("1 pixel".to_owned(), "is"),
         n => (format!("{n} pixels"), "are"),
     };
     Some(format!(
-        "{count} of {}×{} {are} not finite light, which is drawn black or white; --channel not_a_number shows where:{}",
-        settings.width,
-        settings.height,
-        whose.concat()
+        "{count} of {}×{} {are} not finite light, which is drawn black or white; --channel not_a_number shows where:{whose}",
+        settings.width, settings.height,
     ))
+}
+
+/// The same of a picture of the GPU. Drivers may calculate as if no number were infinite, and draw 1/0 as black: where
+/// they do, the CPU tries what no test of this crate has tried.
+pub(super) fn remark_on_gpu(
+    part: &Part,
+    registry: &Registry,
+    rgb8: &[u8],
+    tried: &mut Tried,
+) -> Option<String> {
+    remark(part, registry, rgb8).or_else(|| {
+        let found = probe(&part.scene, registry, Scope::Untested, tried);
+        (!found.is_empty()).then(|| {
+            format!(
+                "the GPU draws finite light alone, but by the CPU some is not finite, here or seen from elsewhere:{}",
+                listed(&found)
+            )
+        })
+    })
 }
 
 /// The same of a picture of the CPU renderer.
@@ -43,4 +59,8 @@ pub(super) fn remark_on_cpu(part: &Part, registry: &Registry) -> Option<String> 
 
 fn settings(part: &Part) -> Settings {
     Settings { width: part.cell.width, height: part.cell.height, samples: 1, terms: part.terms }
+}
+
+fn listed(found: &[NotFinite]) -> String {
+    found.iter().flat_map(|odd| ["\n  ".to_owned(), odd.to_string()]).collect()
 }

@@ -5,7 +5,7 @@ use std::{
     path::Path,
 };
 
-use png::{ColorType, Decoder, Transformations};
+use png::{ColorType, Decoder, DecodingError, Transformations};
 
 use super::render::MAX_SIDE;
 use crate::files::Shown as _;
@@ -29,7 +29,10 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     if !bytes.starts_with(files::PNG.begins) {
         return Err("this is not a PNG picture, though its name ends in .png".to_owned());
     }
-    let broken = |error: png::DecodingError| format!("the picture is damaged: {}", damage(&error));
+    let broken = |error: DecodingError| match error {
+        DecodingError::LimitsExceeded => "the picture is too large".to_owned(),
+        error => format!("the picture is damaged: {}; copy it once more from where it came", damage(&error)),
+    };
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
@@ -54,18 +57,31 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     Shown::of_codes(width, height, rgb8).map_err(|error| error.to_string())
 }
 
-/// The damage of a picture in words. Some of the decoder's are written for its authors.
-fn damage(error: &png::DecodingError) -> String {
-    let said = error.to_string();
+/// The damage of a picture in words of our own: the decoder's are written for its authors.
+fn damage(error: &DecodingError) -> &'static str {
+    /// Words of the decoder, which tells the kind of an error by nothing else, and ours.
+    const KINDS: &[(&str, &str)] = &[
+        ("CRC error", "a checksum is wrong, so some of its bytes were changed"),
+        ("before IHDR", "its first part is not a header"),
+        ("Corrupt deflate stream", "its compressed data cannot be read"),
+        ("not have enough data", "it has fewer pixels than its header says"),
+        ("IDAT or fdAT chunk is missing", "it has no pixels"),
+        ("Unknown filter method", "its pixels are filtered in a way that PNG does not know"),
+        ("Unknown compression method", "it is compressed in a way that PNG does not know"),
+        ("palette", "it has no palette for its colours"),
+        ("Invalid image dimensions", "its header gives it no pixels"),
+        ("Invalid bit depth", "its header is wrong"),
+        ("Invalid color", "its header is wrong"),
+        ("Unknown interlace method", "its header is wrong"),
+    ];
     match error {
-        png::DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            "it ends too early; copy it once more from where it came".to_owned()
+        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => "it ends too early",
+        DecodingError::Format(error) => {
+            let said = error.to_string();
+            let known = KINDS.iter().find(|(theirs, _)| said.contains(*theirs));
+            known.map_or("one of its parts is not as it must be in PNG", |(_, ours)| *ours)
         }
-        _ if said.starts_with("CRC error") => {
-            "a checksum is wrong, so some of its bytes were changed; copy it once more from where it came"
-                .to_owned()
-        }
-        _ => said,
+        _ => "it cannot be read",
     }
 }
 

@@ -20,8 +20,9 @@ use super::{
 use crate::files::Shown as _;
 use crate::{
     caption,
-    channel::{DebugChannel, Setting},
-    compare::{Cell, Shown, compose, with_legend},
+    channel::{DebugChannel, Legend, Setting},
+    compare::{Cell, Shown, compose, with_legends},
+    explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
@@ -39,7 +40,7 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Scene, check, comparison::Layout},
+    scene::{Scene, check, comparison::Layout, variant::LETTERS},
     text::quoted,
 };
 
@@ -348,6 +349,8 @@ struct Painter {
     trial_program: Option<PathBuf>,
     /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
     last: Option<((u32, u32, u32), GpuRenderer)>,
+    /// What the models that no test has tried gave on the CPU.
+    tried: Tried,
 }
 
 impl Painter {
@@ -362,7 +365,7 @@ impl Painter {
             // GPU.
             Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
         };
-        Ok(Self { renderer, gpu, trial_program, last: None })
+        Ok(Self { renderer, gpu, trial_program, last: None, tried: Tried::default() })
     }
 
     /// True if the GPU renders the views of a picture.
@@ -403,7 +406,9 @@ impl Painter {
             }
         };
         let rgb8 = match job.channel.filter(|_| job.with_legend) {
-            Some(channel) => with_legend(rgb8, job.size, &channel.legend(job.scene, registry)),
+            Some(channel) => {
+                with_legends(&job.plan.comparison, rgb8, job.size, &legends(job.plan, channel, registry))
+            }
             None => rgb8,
         };
         let renderer = if gpu { "GPU" } else { "CPU" };
@@ -469,14 +474,27 @@ impl Painter {
         let shown =
             Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))?;
         // What ships with the program is always finite.
-        if registry.sources().edited().next().is_none() && !registry.has_foreign() {
+        if !has_untested(registry) {
             return Ok((shown, None));
         }
         renderer.set_channel(Some(finite::channel(&part.scene, registry)));
         renderer.settle().map_err(failed)?;
         let channel = renderer.read_rgb8().map_err(failed)?;
-        Ok((shown, finite::remark(part, registry, &channel)))
+        Ok((shown, finite::remark_on_gpu(part, registry, &channel, &mut self.tried)))
     }
+}
+
+/// The legends of a channel in the views of a picture; several have the letters of their views.
+fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
+    let several = plan.parts.len() > 1;
+    let of_part = |part: &Part| {
+        let mut legend = channel.legend(&part.scene, registry);
+        if let Some(letter) = LETTERS.get(part.cell.view).filter(|_| several) {
+            legend.title = format!("{letter} · {}", legend.title);
+        }
+        legend
+    };
+    plan.parts.iter().map(of_part).collect()
 }
 
 /// The picture and its size, with a caption if there shall be one.
@@ -489,9 +507,14 @@ fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>) -> (Vec<u8>, [u32; 2
     caption::draw(&caption, rgb8, job.size)
 }
 
+/// True if something is drawn that no test of this crate has tried.
+fn has_untested(registry: &Registry) -> bool {
+    registry.sources().edited().next().is_some() || registry.has_foreign()
+}
+
 /// Tries the shaders of users and of other crates in another process, since a driver may not survive them.
 fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
-    if (registry.sources().edited().next().is_some() || registry.has_foreign())
+    if has_untested(registry)
         && let Some(program) = program
         && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
     {
@@ -503,7 +526,8 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<(Shown, Option<
     cpu_can_draw(&part.scene, registry)?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
-    let odd = AtomicBool::default();
+    // A channel does not note what it shows.
+    let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
     let shown = if let Some(channel) = &job.channel {
         let rgb8 = reference::render_channel(&part.scene, registry, &settings, channel);
         Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?

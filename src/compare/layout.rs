@@ -105,17 +105,29 @@ pub fn compose(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Resu
 fn side_by_side(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Result<Vec<u8>, Unequal> {
     let mut canvas = Canvas::new(size, DARK);
     let cells = cells(comparison, shown.len() - 1, size).unwrap_or_default();
-    for (cell, shown) in cells.iter().zip(shown) {
-        let Cell { left, top, width, height, .. } = *cell;
+    for (cell, shown) in cells.into_iter().zip(shown) {
+        let Cell { left, top, width, height, .. } = cell;
         if shown.size() != [width, height] {
             return Err(Unequal::Sizes([width, height], shown.size()));
         }
         canvas.copy(shown.rgb8(), width, [0, 0], [left, top, width, height]);
     }
-    for Cell { view, left, top, width, height } in cells {
-        letter(&mut canvas, view, [left, top, width, height], [false, false]);
-    }
+    areas(comparison, size, shown.len()).iter().for_each(|area| letter(&mut canvas, area));
     Ok(canvas.rgb8)
+}
+
+/// The parts of a picture of some size at both sides of the edge of a wipe.
+fn sides(comparison: &Comparison, [width, height]: [u32; 2]) -> [Rect; 2] {
+    match comparison.edge {
+        Edge::Vertical => {
+            let at = edge(comparison.split, width);
+            [[0, 0, at, height], [at, 0, width - at, height]]
+        }
+        Edge::Horizontal => {
+            let at = edge(comparison.split, height);
+            [[0, 0, width, at], [0, at, width, height - at]]
+        }
+    }
 }
 
 fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
@@ -124,11 +136,7 @@ fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
     let vertical = comparison.edge == Edge::Vertical;
     let length = if vertical { width } else { height };
     let at = edge(comparison.split, length);
-    let [a, b] = if vertical {
-        [[0, 0, at, height], [at, 0, width - at, height]]
-    } else {
-        [[0, 0, width, at], [0, at, width, height - at]]
-    };
+    let [_, b] = sides(comparison, size);
     canvas.copy(pair.b.rgb8(), width, [b[0], b[1]], b);
     // A view that is not seen has neither letter nor edge.
     if at > 0 && at < length {
@@ -140,33 +148,84 @@ fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
             canvas.fill(rect, colour, 1.0);
         }
     }
-    if at > 0 {
-        letter(&mut canvas, 0, a, [false, false]);
-    }
-    if at < length {
-        letter(&mut canvas, comparison.with, b, [vertical, !vertical]);
-    }
+    areas(comparison, size, 2).iter().for_each(|area| letter(&mut canvas, area));
     Ok(canvas.rgb8)
 }
 
-/// The letter of a view on a plate in a corner of a part of the picture: at the right, at the bottom.
-fn letter(
-    canvas: &mut Canvas,
+/// A part of a picture that shows one of several views, with its letter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    /// The place of the view among those that the layout shows.
+    pub(super) place: usize,
     view: usize,
-    [left, top, width, height]: Rect,
-    [at_right, at_bottom]: [bool; 2],
-) {
-    let Some(letter) = LETTERS.get(view) else { return };
-    let (scale, style) = (canvas.scale(), Lettering::Semibold);
-    let px = 20.0 * scale;
-    let line = style.height(px);
-    let margin = (8.0 * scale).round() as u32;
-    let plate = [line.max(style.width(px, letter) + margin), line];
-    if width < plate[0] + 2 * margin || height < plate[1] + 2 * margin {
-        return;
+    rect: Rect,
+    /// The corner of its letter: at the right, at the bottom.
+    pub(super) corner: [bool; 2],
+}
+
+/// The parts of a picture in which so many views have their letters; none where one is alone, or all are one map.
+pub(super) fn areas(comparison: &Comparison, size: [u32; 2], shown: usize) -> Vec<Area> {
+    match comparison.layout {
+        _ if shown < 2 => Vec::new(),
+        Layout::SideBySide => {
+            let cells = cells(comparison, shown - 1, size).unwrap_or_default();
+            let area = |(place, Cell { view, left, top, width, height })| {
+                let rect = [left, top, width, height];
+                Area { place, view, rect, corner: [false, false] }
+            };
+            cells.into_iter().enumerate().map(area).collect()
+        }
+        Layout::Wipe => {
+            let [a, b] = sides(comparison, size);
+            let vertical = comparison.edge == Edge::Vertical;
+            let corner = [vertical, !vertical];
+            let a = Area { place: 0, view: 0, rect: a, corner: [false, false] };
+            let b = Area { place: 1, view: comparison.with, rect: b, corner };
+            [a, b].into_iter().filter(|area| area.rect[2] > 0 && area.rect[3] > 0).collect()
+        }
+        Layout::Single | Layout::Difference | Layout::Blink => Vec::new(),
     }
-    let x = if at_right { left + width - plate[0] - margin } else { left + margin };
-    let y = if at_bottom { top + height - plate[1] - margin } else { top + margin };
-    canvas.fill([x, y, plate[0], plate[1]], DARK, 0.88);
-    canvas.text(style, [x + (plate[0] - style.width(px, letter)) / 2, y], px, letter);
+}
+
+/// The size of letters of views at a scale of 1, pixels.
+const LETTER: f32 = 20.0;
+
+impl Area {
+    /// The place of its letter on a plate in the corner; `None` without room.
+    fn plate(&self, canvas: &Canvas) -> Option<Rect> {
+        let letter = LETTERS.get(self.view)?;
+        let ([left, top, width, height], [at_right, at_bottom]) = (self.rect, self.corner);
+        let (scale, style) = (canvas.scale(), Lettering::Semibold);
+        let px = LETTER * scale;
+        let line = style.height(px);
+        let margin = (8.0 * scale).round() as u32;
+        let plate = [line.max(style.width(px, letter) + margin), line];
+        if width < plate[0] + 2 * margin || height < plate[1] + 2 * margin {
+            return None;
+        }
+        let x = if at_right { left + width - plate[0] - margin } else { left + margin };
+        let y = if at_bottom { top + height - plate[1] - margin } else { top + margin };
+        Some([x, y, plate[0], plate[1]])
+    }
+
+    /// The part of it that is left below its letter, or above it.
+    pub(super) fn clear_of_letter(&self, canvas: &Canvas) -> Rect {
+        let [left, top, width, height] = self.rect;
+        let Some([_, y, _, line]) = self.plate(canvas) else { return self.rect };
+        if self.corner[1] {
+            [left, top, width, y - top]
+        } else {
+            let below = y + line;
+            [left, below, width, top + height - below]
+        }
+    }
+}
+
+/// Draws the letter of a view on its plate.
+fn letter(canvas: &mut Canvas, area: &Area) {
+    let (Some(letter), Some(plate)) = (LETTERS.get(area.view), area.plate(canvas)) else { return };
+    let (px, style) = (LETTER * canvas.scale(), Lettering::Semibold);
+    let [x, y, width, _] = plate;
+    canvas.fill(plate, DARK, 0.88);
+    canvas.text(style, [x + (width - style.width(px, letter)) / 2, y], px, letter);
 }

@@ -32,7 +32,7 @@ mod power;
 mod shown;
 mod ssim;
 
-pub use channel::with_legend;
+pub use channel::with_legends;
 pub use flip::PIXELS_PER_DEGREE;
 pub use layout::{Cell, cells, compose, edge, size_around};
 pub use legend::{fitting_amplification, short};

@@ -704,6 +704,8 @@ mod tests {
             ("−2^2", -4.0),
             ("(−2)^2", 4.0),
             ("2^{1 + 1} − 1", 3.0),
+            ("2^3^2", 512.0),
+            ("2^{1 + 1}^2", 16.0),
             ("2 − 3 − 4", -5.0),
             ("max(0, −N·L)", 0.0),
             ("(N·L)^2", 0.0625),
@@ -779,7 +781,7 @@ mod tests {
             let got = value(text).expect_err(text);
             assert!(got.contains(what), "{text}: {got}");
         }
-        for deep in ["−", "(", "√", "cos ", "|(", "2^{"] {
+        for deep in ["−", "(", "√", "cos ", "|(", "2^{", "2^", "2^2^"] {
             assert!(value(&deep.repeat(900)).is_err(), "{deep}");
         }
     }

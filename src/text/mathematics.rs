@@ -1,4 +1,5 @@
-//! The pieces of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group.
+//! The pieces of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group. A second
+//! superscript of one atom is that of the first, as powers are read: `x^y^z` is `x^{y^z}`; so are subscripts.
 
 /// The most characters of a line of an equation. The longest of the shipped models has a tenth of this.
 pub const LONGEST_LINE: usize = 2000;
@@ -32,7 +33,22 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
             ));
         }
     }
+    let mut start = 0;
+    for line in equation.split_inclusive('\n') {
+        if stands_beyond(line, 0) {
+            return Some((start, format!("powers or indices are nested more than {MAX_DEPTH} deep")));
+        }
+        start += line.len();
+    }
     None
+}
+
+/// True if the scripts of some text, which is the script of so many others, are nested deeper than any may be.
+fn stands_beyond(text: &str, depth: usize) -> bool {
+    depth > MAX_DEPTH
+        || parse(text).iter().any(|atom| {
+            [atom.sub(), atom.sup()].into_iter().any(|s| !s.is_empty() && stands_beyond(s, depth + 1))
+        })
 }
 
 /// A piece of an equation that is not broken.
@@ -136,10 +152,20 @@ pub fn parse(text: &str) -> Vec<Atom> {
         }
         let base: String = chars[start..i].iter().collect();
         let (mut sub, mut sup) = (String::new(), String::new());
+        // True for the power, and the index, if it is a group so far.
+        let mut grouped = [false; 2];
         while let Some(mark @ ('_' | '^')) = chars.get(i).copied() {
-            let (script, next) = script(&chars, i + 1);
+            let (inside, next) = script(&chars, i + 1);
+            let written: String = chars[i + 1..next].iter().collect();
             i = next;
-            if mark == '_' { sub = script } else { sup = script }
+            let place = if mark == '_' { &mut sub } else { &mut sup };
+            let grouped = &mut grouped[usize::from(mark == '_')];
+            if place.is_empty() {
+                *place = inside;
+                *grouped = written.starts_with(['{', '(']);
+            } else {
+                nest(place, mark, &written, std::mem::take(grouped));
+            }
         }
         atoms.push(if is_variable(&base) {
             Atom::Symbol { base, sub, sup }
@@ -148,6 +174,17 @@ pub fn parse(text: &str) -> Vec<Atom> {
         });
     }
     atoms
+}
+
+/// Gives a script one of its own: to its last atom, or, if it was a group of several or has one already, to all of it.
+fn nest(script: &mut String, mark: char, own: &str, grouped: bool) {
+    let atoms = if grouped { parse(script) } else { Vec::new() };
+    let taken = |atom: &Atom| !(if mark == '_' { atom.sub() } else { atom.sup() }).is_empty();
+    if atoms.len() > 1 || atoms.first().is_some_and(taken) {
+        *script = format!("({script})");
+    }
+    script.push(mark);
+    script.push_str(own);
 }
 
 /// The definitions of a part of an equation, which has commas between them.
@@ -219,7 +256,12 @@ pub fn is_variable(text: &str) -> bool {
 fn script(chars: &[char], start: usize) -> (String, usize) {
     match chars.get(start) {
         Some('{') => {
-            let end = chars[start..].iter().position(|c| *c == '}').map_or(chars.len(), |n| start + n);
+            let mut depth = 0;
+            let closes = |c: &char| {
+                depth += i32::from(*c == '{') - i32::from(*c == '}');
+                depth == 0
+            };
+            let end = chars[start..].iter().position(closes).map_or(chars.len(), |n| start + n);
             (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
         }
         Some('(') => {
@@ -320,8 +362,43 @@ mod tests {
         {
             assert_eq!(parse(text)[0].sup(), power, "{text}");
         }
-        for text in ["I_d = k_d max(0, N·L)^α", "F_{90} = 2^{a + 1} x_0^2", "tan^2 θ_h/π"] {
+        for text in ["I_d = k_d max(0, N·L)^α", "F_{90} = 2^{a + 1} x_0^2", "tan^2 θ_h/π", "e^{x_{ab}^{2 y}}"]
+        {
             assert_eq!(write(&parse(text)), text);
+        }
+    }
+
+    #[test]
+    fn a_second_script_is_that_of_the_first() {
+        for (text, expected) in [
+            ("x^y^z", "x^{y^z}"),
+            ("x_a_b", "x_{a_b}"),
+            ("x_a^2_b^n", "x_{a_b}^{2^n}"),
+            ("x^{y^z}", "x^{y^z}"),
+            ("x^y^z^w", "x^{y^z^w}"),
+            ("x^y^{a + b}", "x^{y^{a + b}}"),
+            // The group is raised as a whole.
+            ("x^{a + b}^2", "x^{(a + b)^2}"),
+            ("x^(a^b)^c", "x^{(a^b)^c}"),
+            ("x^{n}^2^3 y", "x^{n^2^3} y"),
+            ("x^{a + b}^2^3", "x^{(a + b)^2^3}"),
+            ("x^−2^3", "x^{−2^3}"),
+        ] {
+            let written = write(&parse(text));
+            assert_eq!(written, expected, "{text}");
+            assert_eq!(write(&parse(&written)), expected, "{text}, read again");
+        }
+        assert_eq!(parse("x_a_b")[0].symbol().as_deref(), Some("x_a_b"), "as declarations write it");
+    }
+
+    #[test]
+    fn powers_of_powers_have_a_limit() {
+        let tower = |n: usize, mark: char| format!("a = b\nx{}", format!("{mark}x").repeat(n));
+        for mark in ['^', '_'] {
+            assert_eq!(beyond_limits(&tower(MAX_DEPTH, mark)), None);
+            let (at, what) = beyond_limits(&tower(MAX_DEPTH + 1, mark)).expect("too high");
+            assert!(at == 6 && what.contains("more than 24 deep"), "{at}: {what}");
+            assert!(beyond_limits(&tower(900, mark)).is_some());
         }
     }
 
@@ -333,7 +410,8 @@ mod tests {
 
     #[test]
     fn unfinished_mathematics_is_no_reason_to_stop() {
-        for text in ["", "_", "a_", "a^{", "{}", "x__y", "∑_{i=1}^n"] {
+        for text in ["", "_", "a_", "a^{", "{}", "x__y", "∑_{i=1}^n", "a^b^", "a_b__", "a^{b}^{c", "a^(b^(c^"]
+        {
             let _ = parse(text);
         }
     }

@@ -1,7 +1,7 @@
 //! Debug channels: each pixel is what its formula says, on the GPU and on the CPU, and the window and the command line
 //! show them.
 
-use std::path::Path;
+use std::{fs, ops::Range, path::Path};
 
 use bevy_egui::egui::{Key, Modifiers};
 use glam::Vec3;
@@ -21,7 +21,12 @@ use lights_camera_models::{
     scene::{Display, Light, Object, Observer, Scene, Variant},
 };
 
-use crate::{panels::Bench, pictures::close_up, screen::Picture, support::lcm_in};
+use crate::{
+    panels::Bench,
+    pictures::close_up,
+    screen::Picture,
+    support::{lcm_in, root},
+};
 
 const SIZE: u32 = 97;
 
@@ -420,6 +425,48 @@ fn the_command_line_draws_channels_with_legends_and_says_what_is_wrong() {
         let run = run(arguments);
         assert!(run.status == Some(status) && run.err.contains(said), "{:?} {}", run.status, run.err);
     }
+}
+
+#[test]
+fn each_view_in_a_picture_has_its_own_legend_clear_of_its_letter() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = fs::read_to_string(root().join("scenes/compare_gouraud_phong.json")).expect("it ships");
+    let phong = text.replace("\"shading_model\": \"gouraud\"", "\"shading_model\": \"phong\"");
+    assert_ne!(text, phong);
+    for (name, text) in [("two.json", text), ("phong.json", phong)] {
+        fs::write(folder.path().join(name), text).expect("written");
+    }
+    let drawn = |scene: &str, more: &[&str]| {
+        let all = ["render", scene, "-o", "x.png", "--size", "640x360", "--renderer", "cpu"];
+        let run = lcm_in(folder.path(), &[&all[..], &["--channel", "vertices"], more].concat(), b"");
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        Picture::read(&folder.path().join("x.png"))
+    };
+    // One view alone: as if it were the scene.
+    let alone = ["B", "A"].map(|view| drawn("two.json", &["--view", view]).pixels);
+    assert!(alone[0] == drawn("phong.json", &["--view", "A"]).pixels, "the legend of another view");
+    assert!(alone[0] != alone[1]);
+    // The legend is where it makes a difference.
+    let red = |picture: &Picture, x: Range<u32>| picture.count(x, 0..360, |p| p == [255, 128, 128]);
+    for layout in ["side_by_side", "wipe"] {
+        let with = drawn("two.json", &["--layout", layout]);
+        let without = drawn("two.json", &["--layout", layout, "--no-legend"]);
+        let changed = |x: Range<u32>, y: Range<u32>| {
+            let all = y.flat_map(|y| x.clone().map(move |x| (x, y)));
+            all.filter(|(x, y)| with.at(*x, *y) != without.at(*x, *y)).count()
+        };
+        // Letters stand in the first rows.
+        assert_eq!(changed(0..640, 0..18), 0, "{layout}");
+        for side in [0..318, 322..640] {
+            assert!(changed(side.clone(), 18..200) > 500, "{layout}: {side:?} has no legend");
+        }
+        // Where no vertex has a colour, the axes of normals are explained.
+        let more = [0..318, 322..640].map(|side| red(&with, side.clone()).abs_diff(red(&without, side)));
+        assert!(more[0] == 0 && more[1] > 20, "{layout}: {more:?}");
+    }
+    // A map of differences is of both.
+    let with = drawn("two.json", &["--layout", "difference"]);
+    assert!(red(&with, 0..640) > 20, "the legend of B");
 }
 
 #[test]

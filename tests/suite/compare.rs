@@ -1,7 +1,8 @@
 //! Comparing views: numbers against those of other programs, maps, layouts, and `lcm compare`.
 
-use std::{fs, path::Path};
+use std::{fs, io::Write as _, path::Path};
 
+use flate2::{Compression, Crc, write::ZlibEncoder};
 use glam::Vec4;
 use lights_camera_models::{
     compare::{Cell, Measured, Pair, Shown, Unequal, cells, compose, size_around},
@@ -683,5 +684,61 @@ fn the_command_says_what_is_wrong() {
         assert_eq!(half.status, Some(1));
         assert!(half.err.starts_with("half.png: the picture is damaged: "), "{}", half.err);
         assert!(half.err.contains(expected) && !half.err.contains("ChunkType"), "{}", half.err);
+    }
+}
+
+/// A part of a PNG file with its checksum.
+fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
+    let checked = [&kind[..], content].concat();
+    let mut crc = Crc::new();
+    crc.update(&checked);
+    [&(content.len() as u32).to_be_bytes()[..], &checked, &crc.sum().to_be_bytes()].concat()
+}
+
+#[test]
+fn the_damage_of_a_picture_is_told_in_plain_words() {
+    let folder = folder();
+    let whole = fs::read(folder.path().join("grey.png")).expect("there");
+    let pixels = whole.windows(4).position(|kind| kind == b"IDAT").expect("a picture");
+    let flipped = |at: usize, bits: u8| {
+        let mut bytes = whole.clone();
+        bytes[at] ^= bits;
+        bytes
+    };
+    // One grey pixel; the first byte of its row is the filter.
+    let made = |kind: &[u8; 4], header: [u8; 13], row: &[u8]| {
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(row).expect("in memory");
+        let packed = encoder.finish().expect("in memory");
+        let begins = b"\x89PNG\r\n\x1a\n".to_vec();
+        [begins, chunk(b"IHDR", &header), chunk(kind, &packed), chunk(b"IEND", &[])].concat()
+    };
+    let header = |depth: u8, colours: u8| [0, 0, 0, 1, 0, 0, 0, 1, depth, colours, 0, 0, 0];
+    for (bytes, expected) in [
+        (flipped(12, 0x20), "its first part is not a header"),
+        // The method of compression, before any checksum.
+        (flipped(pixels + 4, 0x0f), "its compressed data cannot be read"),
+        (made(b"IDAT", header(8, 0), &[255, 0]), "its pixels are filtered in a way that PNG does not know"),
+        (made(b"IDAT", header(8, 0), &[0]), "it has fewer pixels than its header says"),
+        (made(b"IDAT", header(8, 3), &[0, 0]), "it has no palette for its colours"),
+        (made(b"IDAT", header(7, 0), &[0, 0]), "its header is wrong"),
+        (made(b"tEXt", header(8, 0), &[0, 0]), "it has no pixels"),
+        // A part that a reader has to know.
+        (made(b"XDAT", header(8, 0), &[0, 0]), "one of its parts is not as it must be in PNG"),
+    ] {
+        fs::write(folder.path().join("half.png"), bytes).expect("written");
+        let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
+        let expected =
+            format!("half.png: the picture is damaged: {expected}; copy it once more from where it came\n");
+        assert_eq!((half.status, half.err), (Some(1), expected));
+    }
+    // Whatever is flipped, the decoder's own words do not reach people.
+    for at in (8..whole.len()).step_by(7) {
+        fs::write(folder.path().join("half.png"), flipped(at, 0x41)).expect("written");
+        let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
+        assert!(matches!(half.status, Some(0 | 1)), "{at}: {}", half.err);
+        for theirs in ["Type", "{", "chunk", "Invalid", "Unknown", "stream", "IDAT", "IHDR"] {
+            assert!(!half.err.contains(theirs), "{at}: {}", half.err);
+        }
     }
 }

@@ -6,7 +6,7 @@ use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, vec2};
 use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
-    compare::fitting_amplification,
+    compare::{Pair, Shown, fitting_amplification},
     document::{Edit, VariantField},
     optics::TermSelection,
     panel::marks::Lens,
@@ -334,6 +334,29 @@ fn the_amplification_is_fitted_to_the_largest_difference() {
     assert!(said(&mut bench));
     click(&mut bench, "Amplify automatically");
     assert!(!said(&mut bench));
+}
+
+#[test]
+fn the_amplification_of_equal_views_is_that_of_their_map() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    bench.settle();
+    let said =
+        |bench: &mut Bench| crate::layout::texts(bench).into_iter().filter(|(text, _)| text == "100").count();
+    let before = said(&mut bench);
+    // Nothing is known yet.
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, None, "there is none to keep");
+    // Two equal pictures have no largest difference.
+    let grey = Shown::of_codes(2, 1, vec![50; 6]).expect("as many as pixels");
+    let differences = Pair::new(&grey, &grey).expect("of one size").differences(&Comparison::default());
+    let of_map = differences.expect("codes are known").amplification(&Comparison::default());
+    bench.session.facts.comparison = Some(Numbers::default());
+    bench.settle();
+    assert_eq!((of_map, said(&mut bench)), (100.0, before + 1), "it says the factor of the map");
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, Some(of_map));
 }
 
 #[test]

@@ -11,6 +11,10 @@ use lights_camera_models::{
     },
     reflection::Term,
     registry::Registry,
+    text::{
+        expression::{Expression, Scope, Value},
+        mathematics::{parse, write},
+    },
 };
 
 use crate::panels::Bench;
@@ -139,4 +143,29 @@ fn pictures_of_all_equations() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
+}
+
+/// Nothing has a value.
+struct Nothing;
+
+impl Scope for Nothing {
+    fn value(&mut self, symbol: &str) -> Result<Value, String> {
+        Err(symbol.to_owned())
+    }
+
+    fn call(&mut self, name: &str, _: &[String]) -> Result<Value, String> {
+        Err(name.to_owned())
+    }
+}
+
+#[test]
+fn a_power_of_a_power_loses_no_letter() {
+    for (text, expected) in [("x^y^z", "x^{y^z}"), ("x_a_b", "x_{a_b}"), ("x^{a + b}^2", "x^{(a + b)^2}")] {
+        assert_eq!(write(&parse(text)), expected, "{text}");
+        assert_eq!(write(&parse(expected)), expected);
+    }
+    let value = |text: &str| Expression::read(text).and_then(|read| read.value(&mut Nothing));
+    assert_eq!(value("2^3^2"), Ok(Value::number(512.0)));
+    assert_eq!(value("2^y^2"), Err("y".to_owned()), "it is asked for");
+    assert!(value(&format!("2{}", "^1".repeat(25))).is_err_and(|why| why.contains("more than 24 deep")));
 }

@@ -217,6 +217,38 @@ fn check_and_render_report_a_custom_model_that_gives_no_number() {
     }
 }
 
+/// A custom model that divides by zero, which drivers may take for anything.
+const DIVIDED: &str = r#"/* lcm
+{ "name": "Divided", "laws": [], "parameters": ["base_colour"] }
+*/
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), m.base_colour / (dot(frame.n, l) * 0.0), vec3(0.0));
+}
+"#;
+
+#[test]
+fn no_renderer_is_silent_about_what_a_driver_makes_finite() {
+    let folder = folder();
+    fs::write(folder.path().join("models/torn_file.wgsl"), DIVIDED).expect("written");
+    for renderer in ["cpu", "gpu"] {
+        for more in [&["--samples", "4"][..], &["--channel", "not_a_number"]] {
+            let arguments = ["render", "s.json", "-o", "p.png", "--size", "96x54", "--renderer", renderer];
+            let drawn = run(folder.path(), &[&arguments[..], more].concat());
+            assert_eq!(drawn.status, Some(0), "{}", drawn.err);
+            let whose =
+                "objects[1] (\"Bad\") has the reflection model torn_file, which gives (∞, ∞, ∞) for light";
+            assert!(drawn.err.contains(whose), "{renderer} {more:?}: {}", drawn.err);
+            assert!(drawn.err.contains("finite") && !drawn.err.contains("objects[0]"), "{}", drawn.err);
+        }
+    }
+    // Nothing is said of what is finite.
+    fs::write(folder.path().join("models/torn_file.wgsl"), DIVIDED.replace(" * 0.0", " * 0.0 + 1.0"))
+        .expect("written");
+    let drawn =
+        run(folder.path(), &["render", "s.json", "-o", "p.png", "--size", "96x54", "--renderer", "gpu"]);
+    assert_eq!((drawn.status, drawn.err.as_str()), (Some(0), "wrote p.png\n"));
+}
+
 #[test]
 fn the_window_says_once_which_model_gives_no_number() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -55,6 +55,8 @@ mod tests {
             "<i>I</i><sub><i>d</i></sub> = max(0, <i>N</i>·<i>L</i>)<sup><i>α</i></sup>"
         );
         assert_eq!(equation("F_{90}^{−x^2}"), "<i>F</i><sub>90</sub><sup>−<i>x</i><sup>2</sup></sup>");
+        let tower = "<i>x</i><sup><i>y</i><sup><i>z</i></sup></sup>";
+        assert_eq!([equation("x^y^z"), equation("x^{y^z}")], [tower, tower]);
         assert_eq!(symbol("α_x"), "<i>α</i><sub><i>x</i></sub>");
         assert_eq!(symbol(""), "");
     }

@@ -121,10 +121,14 @@ fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
 fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     let help = "Differences are multiplied by this before they become colours, 1 to 100.";
     ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
-    let largest = session.facts.comparison.as_ref().and_then(|numbers| numbers.largest);
-    let fitting = fitting_amplification(now.values, largest.unwrap_or(f32::INFINITY));
-    let mut factor = now.amplification.unwrap_or(fitting);
-    let field = egui::DragValue::new(&mut factor).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+    // Where views are equal, no difference is largest.
+    let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
+    let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
+    let mut factor = used.unwrap_or(*AMPLIFICATIONS.start());
+    let mut field = egui::DragValue::new(&mut factor).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+    if used.is_none() {
+        field = field.custom_formatter(|_, _| "…".to_owned());
+    }
     if ui.add(field).on_hover_text(help).changed() {
         now.amplification = Some(factor);
     }
@@ -133,7 +137,7 @@ fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     fit.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, fits, "Amplify automatically"));
     let fit = fit.on_hover_text("Amplify so that the largest difference has nearly the last colour.");
     if fit.clicked() {
-        now.amplification = if fits { Some(factor) } else { None };
+        now.amplification = if fits { used } else { None };
     }
 }
 

@@ -114,6 +114,12 @@ mod tests {
                 assert!(heights[0] > heights[2] && heights[2] > heights[3], "{heights:?}");
                 let end = laid.pieces[3].offset.x + laid.pieces[3].galley.size().x;
                 assert!((laid.width - end).abs() < 2.0, "{} {end}", laid.width);
+                // Without braces too.
+                let laid = lay_out(ui, &parse("x^y^z")[0], 40.0, Color32::WHITE);
+                let texts: Vec<_> = laid.pieces.iter().map(|p| p.galley.text().to_owned()).collect();
+                assert_eq!(texts, ["x", "y", "z"]);
+                let heights: Vec<_> = laid.pieces.iter().map(|p| p.galley.size().y).collect();
+                assert!(heights[0] > heights[1] && heights[1] > heights[2], "{heights:?}");
             });
         }
     }

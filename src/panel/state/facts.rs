@@ -109,7 +109,7 @@ pub const LARGEST: &str = "largest";
 pub struct Numbers {
     /// The name of each, its value, and one sentence.
     pub all: Vec<[String; 3]>,
-    /// The largest difference, in the values that are compared.
+    /// The largest difference, in the values that are compared; `None` if the views are equal.
     pub largest: Option<f32>,
 }
 
