@@ -9,16 +9,15 @@ use bevy_egui::egui::{
 use super::{
     icon,
     state::{
-        Action, BUILT_IN, ModelCommand, ModelDraft, NameProblem, PictureArea, SHADER_TAB, Session, Severity,
-        check_name,
+        Action, BUILT_IN, ModelCommand, ModelDraft, NameProblem, PictureArea, Session, Severity, check_name,
     },
     theme::{self, Palette},
 };
 use crate::files::Shown as _;
 use crate::{custom::source_path, library::status::Trouble, registry::Registry};
 
-/// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it,
-/// and a model that was asked for is chosen once it is there. `session` is borrowed mutably only when something
+/// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it, which
+/// folds itself after the last one, and a model that was asked for is chosen once it is there. `session` is borrowed mutably only when something
 /// changes.
 pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &Registry) {
     // Without line and column: a problem that moves while one types above it is not a new one.
@@ -27,7 +26,9 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
     if now != session.seen_troubles {
         let session = &mut **session;
         if now.iter().any(|trouble| !session.seen_troubles.contains(trouble)) {
-            session.view.unfold(SHADER_TAB);
+            session.unfold_shaders();
+        } else if now.is_empty() {
+            session.fold_shaders();
         }
         session.seen_troubles = now;
     }

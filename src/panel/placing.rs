@@ -1,7 +1,7 @@
 //! The place of what is added to a scene: free, and in view of the camera; and the intensity of a new light, which
 //! shows something and does not blow the picture out.
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use super::clipping;
 use crate::{
@@ -16,6 +16,9 @@ use crate::{
     scene::limits::significant,
     scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
 };
+use block::Block;
+
+mod block;
 
 /// Free space around a light, and between an object and the camera, metres.
 const AIR: f32 = 0.3;
@@ -31,6 +34,15 @@ const VISIBLE: f32 = 0.07;
 const HIGHLIGHTS: f32 = 0.006;
 /// The part of what the light reaches that gets at least so much brighter.
 const VISIBLE_PART: f32 = 0.05;
+
+/// So far from the original a copy may stand, in widths or heights of the two: farther away it is beside it no more.
+const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
+/// The same where it may cover the half of the original.
+const OVER: [f32; 2] = [0.45, 0.7];
+/// Of copies, the width or height that leaves a small gap, in reaches.
+const GAP: f32 = 2.2;
+/// Outlines are a little smaller than the boxes and spheres around them.
+const OUTLINE: f32 = 0.95;
 
 /// A scene, and the camera before which something is placed.
 pub(super) struct Stand<'a> {
@@ -73,38 +85,106 @@ impl<'a> Stand<'a> {
         (anywhere.unwrap_or_else(|| self.lattice(wanted)), size)
     }
 
-    /// The place of a copy of an object.
-    pub(super) fn copy(&self, of: &Object) -> Vec3 {
-        let radius = radius(of, self.registry);
-        let free = |p: Vec3| self.free(p, radius);
-        let step = 0.55 * of.size;
-        let fits = |p: Vec3| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius);
-        // Rather cut by the edge of the picture than behind the original.
-        let cut = |p: Vec3| free(p) && self.sees(p, 0.0) && self.is_beside_all(p, radius);
-        let apart = 2.2 * radius.max(0.05);
-        self.beside(of.position, apart, fits)
-            .or_else(|| self.beside(of.position, apart, cut))
-            .or_else(|| self.search(of.position, step, fits))
-            .or_else(|| self.search(of.position, step, |p| free(p) && self.sees(p, radius)))
-            .or_else(|| self.search(of.position, step, free))
-            .unwrap_or_else(|| self.lattice(of.position))
+    /// The place of a copy of the object with that index: beside it as the camera sees it, at the same depth. Rather cut by
+    /// the edge of the picture than over the original, rather over the original than over others.
+    pub(super) fn copy(&self, index: usize) -> Vec3 {
+        let objects = &self.scene.objects;
+        let Some(original) = objects.get(index) else { return self.middle() };
+        let block = Block::of(original, self.registry);
+        let others = objects.iter().enumerate().filter(|(i, _)| *i != index);
+        let others: Vec<_> = others.map(|(_, other)| Block::of(other, self.registry)).collect();
+        // What lies behind the original or around it is no neighbour.
+        let beside: Vec<_> =
+            others.iter().filter(|other| !self.hides(other, &block.at(original.position), true)).collect();
+        let clear = |p: Vec3| {
+            let block = block.at(p);
+            self.has_room(&block)
+                && others.iter().all(|other| !block.touches(other))
+                && beside.iter().all(|other| !self.hides(other, &block, false))
+        };
+        let whole = |p: Vec3| self.shows(&block.at(p));
+        let middle = |p: Vec3| self.sees(p, 0.0);
+        let axes = [Vec3::X, Vec3::Y].map(|axis| self.turn * axis);
+        let steps = axes.map(|axis| GAP * block.reach(axis).max(0.05));
+        let place =
+            |counts: &[f32], fits: &dyn Fn(Vec3) -> bool| self.beside(original.position, steps, counts, fits);
+        // Two things in one place look like one.
+        let least = 0.2 * block.radius;
+        let corner = self.scene.scene_size.corner();
+        let another = |p: Vec3| {
+            p.min_element() >= 0.0
+                && p.cmple(corner).all()
+                && others.iter().all(|other| other.centre.distance(p) > least)
+        };
+        place(&APART, &|p| clear(p) && whole(p))
+            .or_else(|| place(&APART, &|p| clear(p) && middle(p)))
+            .or_else(|| place(&OVER, &|p| clear(p) && whole(p)))
+            .or_else(|| place(&OVER, &|p| clear(p) && middle(p)))
+            .or_else(|| place(&OVER, &|p| another(p) && whole(p)))
+            .or_else(|| place(&OVER, &|p| another(p) && middle(p)))
+            .or_else(|| place(&APART, &another))
+            .or_else(|| place(&OVER, &another))
+            .or_else(|| self.search(original.position, 0.55 * original.size, |p| self.free(p, block.radius)))
+            .unwrap_or_else(|| self.lattice(original.position))
     }
 
     /// The nearest place beside another as the camera sees it, at the same depth, that fits: to the right, to the left,
-    /// then above and below, so many steps away.
-    fn beside(&self, of: Vec3, step: f32, fits: impl Fn(Vec3) -> bool) -> Option<Vec3> {
-        /// Farther away it is beside it no more.
-        const STEPS: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
-        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y].map(|way| self.turn * way);
+    /// above or below, so many steps away. Steps to the side and up may differ.
+    fn beside(
+        &self,
+        of: Vec3,
+        [side, up]: [f32; 2],
+        counts: &[f32],
+        fits: impl Fn(Vec3) -> bool,
+    ) -> Option<Vec3> {
+        let ways = [side * Vec3::X, side * Vec3::NEG_X, up * Vec3::Y, up * Vec3::NEG_Y];
         // So fine that the depth stays.
         let steps = 10.0 * self.steps();
-        let places = |ways: &[Vec3]| {
-            let ways = ways.to_vec();
-            STEPS
-                .into_iter()
-                .flat_map(move |n| ways.clone().into_iter().map(move |way| round(of + n * step * way, steps)))
+        let place = |way: Vec3| round(of + self.turn * way, steps);
+        let mut places = counts.iter().flat_map(|count| ways.map(|way| place(*count * way)));
+        places.find(|p| fits(*p))
+    }
+
+    /// True if a block is in the picture, whole.
+    fn shows(&self, block: &Block) -> bool {
+        let seen = self.turn.inverse() * (block.centre - self.eye);
+        let [side, rise, deep] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(self.turn * axis));
+        let [across, up] = self.opening();
+        let near = -seen.z - deep;
+        let boxed = seen.x.abs() + side <= across * near && seen.y.abs() + rise <= up * near;
+        near > 0.1 && (boxed || self.sees(block.centre, block.radius))
+    }
+
+    /// True if one of two blocks is before the other in the picture, or if the first one covers the `centre` of the other. What
+    /// is around the camera or behind it is before nothing.
+    fn hides(&self, one: &Block, other: &Block, centre: bool) -> bool {
+        let flat = |block: &Block| {
+            let seen = self.turn.inverse() * (block.centre - self.eye);
+            (seen.truncate() / -seen.z, -seen.z)
         };
-        places(&ways[..2]).chain(places(&ways[2..])).find(|p| fits(*p))
+        let ((at, depth), (there, far)) = (flat(one), flat(other));
+        if depth <= one.radius.max(0.1) || far <= 0.1 {
+            return centre && depth > -one.radius;
+        }
+        let between = there - at;
+        let reach = |way: Vec2| {
+            let way = self.turn * way.extend(0.0);
+            let own = one.reach(way) / depth;
+            if centre { own } else { OUTLINE * (own + other.reach(way) / far) }
+        };
+        // Without a direction between the centres nothing parts them.
+        let ways = [Some(Vec2::X), Some(Vec2::Y), between.try_normalize()];
+        ways.into_iter().flatten().all(|way| between.dot(way).abs() < reach(way))
+    }
+
+    /// True if a block is in the room, away from lights and cameras.
+    fn has_room(&self, block: &Block) -> bool {
+        let corner = self.scene.scene_size.corner();
+        let reach = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(axis)));
+        let margin = reach.max(Vec3::splat(0.01 * corner.min_element()));
+        let inside =
+            (block.centre - margin).min_element() >= 0.0 && (block.centre + margin).cmple(corner).all();
+        inside && self.is_in_air(block.centre, block.radius)
     }
 
     /// The place of a new light, or of one more near a place.
@@ -129,7 +209,7 @@ impl<'a> Stand<'a> {
         // A copy of a light out of view is near it all the same.
         let hidden = near.is_some_and(|near| !self.sees(near, 0.0));
         let fits = |p: Vec3| apart(p) && (hidden || self.sees(p, 0.08 * p.distance(self.eye)));
-        near.and_then(|near| self.beside(near, 1.1 * step, fits))
+        near.and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
             .or_else(|| self.search(wanted, step, fits))
             .or_else(|| self.search(wanted, step, apart))
             .unwrap_or_else(|| self.lattice(wanted))
@@ -259,12 +339,18 @@ impl<'a> Stand<'a> {
         let corner = self.scene.scene_size.corner();
         let margin = radius.max(0.01 * corner.min_element());
         let inside = (p - margin).min_element() >= 0.0 && (p + margin).cmple(corner).all();
-        let air = |q: Vec3| p.distance(q) > radius + AIR.min(0.1 * corner.min_element());
         inside
-            && air(self.eye)
+            && self.is_in_air(p, radius)
+            && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
+    }
+
+    /// True if a sphere is away from lights and cameras.
+    fn is_in_air(&self, p: Vec3, radius: f32) -> bool {
+        let corner = self.scene.scene_size.corner();
+        let air = |q: Vec3| p.distance(q) > radius + AIR.min(0.1 * corner.min_element());
+        air(self.eye)
             && air(self.scene.observer.position)
             && self.scene.lights.iter().filter_map(|l| l.position).all(air)
-            && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
     }
 
     /// The place nearest to a wanted one that fits: rather beside it than behind, rather behind than above.

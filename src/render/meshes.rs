@@ -1,6 +1,9 @@
 //! Meshes for the renderer, shared by all objects of one type with equal parameters and tessellations.
 
-use std::collections::{HashMap, HashSet};
+use std::{
+    cmp::Ordering,
+    collections::{HashMap, HashSet, hash_map::Entry},
+};
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -23,8 +26,11 @@ use crate::{
     text::plural,
 };
 
-/// The most that meshes may take on the GPU, bytes. On the way there they are held up to three times.
+/// The most that one mesh may take on the GPU, bytes. On the way there it is held up to three times.
 pub const MESH_BUDGET: u64 = 1 << 30;
+/// The most that the meshes of a window may take together, bytes: as they are held up to three times on the way, the whole
+/// window takes about 1.5 GB then.
+pub const WINDOW_BUDGET: u64 = 384 << 20;
 /// The most bytes of meshes that are on the GPU at once where nobody waits for the next frame. Beyond it shapes are drawn
 /// in batches: the same picture, later.
 pub const BATCH: u64 = 64 << 20;
@@ -45,11 +51,29 @@ pub struct ShapeMeshes {
     alone: u64,
     /// Those for which there was no room, and the objects that are not drawn for want of them.
     refused: HashSet<(MeshKey, Vertices)>,
+    /// The bytes for which the last one was too large.
+    reached: u64,
     left_out: Vec<Entity>,
     /// True if there is more room than when they were refused.
     room: bool,
     /// True if meshes were added since unused ones were last dropped.
     grown: bool,
+}
+
+/// How much a shape is needed: what no picture shows comes last, then what is farther away.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Need {
+    /// No picture shows it.
+    pub(super) hidden: bool,
+    /// The distance from the camera, metres.
+    pub(super) distance: f32,
+}
+
+impl Need {
+    /// Those that are needed more come first.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        self.hidden.cmp(&other.hidden).then(self.distance.total_cmp(&other.distance))
+    }
 }
 
 struct Known {
@@ -62,9 +86,10 @@ impl Default for ShapeMeshes {
         Self {
             known: HashMap::new(),
             bytes: 0,
-            together: MESH_BUDGET,
+            together: WINDOW_BUDGET,
             alone: MESH_BUDGET,
             refused: HashSet::new(),
+            reached: WINDOW_BUDGET,
             left_out: Vec::new(),
             room: false,
             grown: false,
@@ -73,7 +98,8 @@ impl Default for ShapeMeshes {
 }
 
 impl ShapeMeshes {
-    /// Holds so many bytes of several meshes, or of one alone, instead of [`MESH_BUDGET`].
+    /// Holds so many bytes of several meshes, or of one alone, instead of [`WINDOW_BUDGET`] and
+    /// [`MESH_BUDGET`].
     pub fn limit(&mut self, together: u64, alone: u64) {
         (self.together, self.alone) = (together, alone);
     }
@@ -115,22 +141,39 @@ impl ShapeMeshes {
         meshes.left_out.clear();
     }
 
-    /// Makes the meshes of objects that are not yet known, as long as there is room.
+    /// Makes the meshes of objects that are not yet known, as long as there is room: first those with the greatest need,
+    /// which `need` tells of each object by its index.
     pub(super) fn make<'a>(
         &mut self,
         objects: impl Iterator<Item = (&'a Object, Vertices)>,
+        need: impl Fn(usize) -> Need,
         registry: &Registry,
         assets: &mut Assets<Mesh>,
     ) {
-        let mut seen = HashSet::new();
-        let mut missing = Vec::new();
-        for (object, vertices) in objects {
+        let mut places = HashMap::new();
+        let mut missing: Vec<(Need, _)> = Vec::new();
+        for (i, (object, vertices)) in objects.enumerate() {
             let Some(shape) = registry.shape(&object.object_type) else { continue };
             let key = (shape.key(&object.shape, object.tessellation), vertices);
-            if !self.known.contains_key(&key) && !self.refused.contains(&key) && seen.insert(key.clone()) {
-                missing.push((key, shape, object));
+            if self.known.contains_key(&key) || self.refused.contains(&key) {
+                continue;
+            }
+            let need = need(i);
+            match places.entry(key.clone()) {
+                Entry::Vacant(place) => {
+                    place.insert(missing.len());
+                    missing.push((need, (key, shape, object)));
+                }
+                Entry::Occupied(place) => {
+                    let known = &mut missing[*place.get()].0;
+                    if need.order(known).is_lt() {
+                        *known = need;
+                    }
+                }
             }
         }
+        missing.sort_by(|a, b| a.0.order(&b.0));
+        let missing: Vec<_> = missing.into_iter().map(|(_, shape)| shape).collect();
         self.grown |= !missing.is_empty();
         let mut missing = missing.into_iter();
         while !missing.as_slice().is_empty() {
@@ -155,6 +198,7 @@ impl ShapeMeshes {
                 let bytes = size(&mesh);
                 let most = if self.bytes == 0 { self.alone.max(self.together) } else { self.together };
                 if self.bytes + bytes > most {
+                    self.reached = most;
                     self.refused.insert(key);
                 } else {
                     self.bytes += bytes;
@@ -192,7 +236,7 @@ impl ShapeMeshes {
             format!(
                 "the shapes of this scene need more than the {} MiB of GPU memory that meshes may take: {} {} not drawn; \
                  give objects a lower tessellation or shapes that they share",
-                self.together.max(self.alone) >> 20,
+                self.reached >> 20,
                 plural(count, "shape"),
                 if count == 1 { "is" } else { "are" },
             )
@@ -301,13 +345,44 @@ mod tests {
         (0..count).map(shape).collect()
     }
 
+    fn equal(_: usize) -> Need {
+        Need::default()
+    }
+
+    #[test]
+    fn shapes_with_the_greatest_need_get_the_room() {
+        let registry = Registry::builtin();
+        let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
+        let mut shapes = shapes(9, 8);
+        meshes.make(
+            shapes.iter().map(|shape| (shape, Vertices::Shared)).take(1),
+            equal,
+            &registry,
+            &mut assets,
+        );
+        let one = meshes.bytes;
+        meshes.limit(4 * one, 4 * one);
+        // One more of the seventh shape, the nearest that is seen.
+        shapes.push(shapes[6].clone());
+        let need = |i: usize| Need { hidden: i < 5, distance: if i == 9 { 1.0 } else { 20.0 - i as f32 } };
+        meshes.make(shapes.iter().map(|shape| (shape, Vertices::Shared)), need, &registry, &mut assets);
+        let made: Vec<_> = (0..9)
+            .filter(|i| {
+                let shape = registry.shape("superellipsoid").expect("there is one");
+                meshes.get(shape.key(&shapes[*i].shape, shapes[*i].tessellation), Vertices::Shared).is_some()
+            })
+            .collect();
+        assert_eq!(made, [0, 6, 7, 8], "the first was there already");
+        assert!(meshes.problem().is_some_and(|problem| problem.contains("5 shapes are not drawn")));
+    }
+
     #[test]
     fn a_mesh_is_made_in_the_form_that_is_drawn() {
         let registry = Registry::builtin();
         let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
         let shapes = shapes(3, 8);
         for (vertices, expected) in [(Vertices::Shared, 3), (Vertices::Shared, 3), (Vertices::Apart, 6)] {
-            meshes.make(shapes.iter().map(|shape| (shape, vertices)), &registry, &mut assets);
+            meshes.make(shapes.iter().map(|shape| (shape, vertices)), equal, &registry, &mut assets);
             assert_eq!((assets.len(), meshes.known.len()), (expected, expected));
         }
         let sizes: u64 = assets.iter().map(|(_, mesh)| size(mesh)).sum();
@@ -321,15 +396,15 @@ mod tests {
         let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
         let shapes = shapes(3 * AT_ONCE, 8);
         let all = || shapes.iter().map(|shape| (shape, Vertices::Shared));
-        meshes.make(all().take(1), &registry, &mut assets);
+        meshes.make(all().take(1), equal, &registry, &mut assets);
         // As much is taken already as leaves room for three more.
         let one = meshes.bytes;
-        meshes.bytes = MESH_BUDGET - 3 * one;
-        meshes.make(all(), &registry, &mut assets);
+        meshes.bytes = WINDOW_BUDGET - 3 * one;
+        meshes.make(all(), equal, &registry, &mut assets);
         assert_eq!((meshes.known.len(), meshes.refused.len()), (4, 3 * AT_ONCE - 4));
-        assert!(meshes.bytes <= MESH_BUDGET);
+        assert!(meshes.bytes <= WINDOW_BUDGET);
         let problem = meshes.problem().expect("there is no room");
-        assert!(problem.contains("1024 MiB") && problem.contains("44 shapes are not drawn"), "{problem}");
+        assert!(problem.contains("384 MiB") && problem.contains("44 shapes are not drawn"), "{problem}");
         assert!(problem.contains("lower tessellation"), "{problem}");
 
         let object = Entity::from_raw_u32(7).expect("an entity");
@@ -338,7 +413,7 @@ mod tests {
         meshes.room = true;
         meshes.bytes = 4 * one;
         assert_eq!(meshes.try_again(false), [object]);
-        meshes.make(all(), &registry, &mut assets);
+        meshes.make(all(), equal, &registry, &mut assets);
         assert_eq!((meshes.problem(), meshes.known.len()), (None, shapes.len()));
     }
 }

@@ -13,6 +13,7 @@ pub mod live;
 pub mod material;
 pub mod meshes;
 mod mirror;
+mod nearest;
 pub mod overrides;
 pub mod parts;
 pub mod plugin;

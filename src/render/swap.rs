@@ -18,6 +18,7 @@ use super::{
     live::LiveShaders,
     material::{Attachments, MaterialInputs, Vertices},
     meshes::{ShapeMeshes, forget_unused_meshes, take_off},
+    nearest,
     overrides::Overrides,
     shown::{Shown, ShownObject},
     stage::{Stage, ViewCopy, copies},
@@ -137,9 +138,16 @@ pub fn swap(
             Some(row(model, shading, &shown.material, now.encoding, now.everywhere))
         })
         .collect();
+    let eyes = nearest::eyes(world);
     world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {
-        let objects = pending.iter().map(|p| (&p.shown, vertices(&p.now.shading, &registry)));
-        meshes.make(objects, &registry, &mut world.resource_mut::<Assets<Mesh>>());
+        world.resource_scope(|world, mut assets: Mut<Assets<Mesh>>| {
+            let objects = pending.iter().map(|p| (&p.shown, vertices(&p.now.shading, &registry)));
+            let need = |i: usize| {
+                let Pending { object, shown, .. } = &pending[i];
+                nearest::need(&eyes, world, &registry, *object, shown)
+            };
+            meshes.make(objects, need, &registry, &mut assets);
+        });
     });
     for (pending, bytes) in pending.into_iter().zip(rows) {
         if let Some(bytes) = bytes {

@@ -14,8 +14,19 @@ use lights_camera_models::{
     },
     reference,
     registry::Registry,
-    scene::{Light, Object, Scene, SceneSize},
+    scene::{
+        Light, Object, Scene, SceneSize,
+        load::{self, Defaults},
+    },
 };
+
+use super::support::root;
+
+/// A scene of those that are shipped.
+fn shipped(name: &str) -> Scene {
+    let path = root().join(format!("scenes/{name}.json"));
+    load::file(&path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene
+}
 
 /// The sphere around an object.
 fn radius(object: &Object, registry: &Registry) -> f32 {
@@ -90,9 +101,15 @@ fn copies_stand_free_too() {
     let mut session = Session::default();
     for i in 0..4 {
         session.apply(Action::Duplicate(Selection::Object(0)), &registry);
-        touches_nothing("copy", &session, 1, &registry);
-        assert!(sees(&session, session.document.objects[1].position), "copy {i}");
-        assert_eq!(session.document.objects[1].size, session.document.objects[0].size);
+        let objects = &session.document.objects;
+        // To the right and to the left there is room; then the picture is full.
+        if i < 2 {
+            touches_nothing("copy", &session, 1, &registry);
+        }
+        assert!(sees(&session, objects[1].position), "copy {i}");
+        assert_eq!((objects[1].size, objects[1].position.z), (objects[0].size, objects[0].position.z));
+        let apart = |other: &Object| other.position.distance(objects[1].position) > 0.5;
+        assert!(objects.iter().enumerate().all(|(k, other)| k == 1 || apart(other)), "copy {i}");
     }
     session.apply(Action::Duplicate(Selection::Light(0)), &registry);
     let [a, b] = [0, 1].map(|i| session.document.lights[i].position.unwrap());
@@ -139,6 +156,56 @@ fn copies_stand_beside_the_original_at_the_same_depth() {
         let [of, copy] = [0, 1].map(|i| seen(copied.document.lights[i].position.expect("it has one")));
         assert!((copy.z - of.z).abs() < 0.02, "{copy} {of}");
     }
+}
+
+#[test]
+fn copies_keep_the_depth_and_are_seen_where_there_is_little_room() {
+    let registry = Registry::builtin();
+    for (name, index) in [
+        ("portrait", 0),
+        ("gouraud_misses_highlight", 1),
+        ("shapes_and_lights", 1),
+        ("shapes_and_lights", 2),
+        ("superellipsoids", 0),
+        ("superellipsoids", 1),
+        ("superellipsoids", 4),
+    ] {
+        let mut session = Session::new(shipped(name));
+        let (eye, to_camera) = (session.facts.eye, session.facts.camera.inverse());
+        session.apply(Action::Duplicate(Selection::Object(index)), &registry);
+        let [original, copy] = [index, index + 1].map(|i| session.document.objects[i].clone());
+        let [was, is] = [&original, &copy].map(|o| to_camera * (o.position - eye));
+        let what =
+            format!("{name}, {}: from {} to {}", original.object_type, original.position, copy.position);
+        assert!((was.z - is.z).abs() < 0.02, "{what}: another depth");
+        assert!(sees(&session, copy.position), "{what}: out of the picture");
+        assert!((was - is).truncate().length() > 0.2 * original.size, "{what}: over the original");
+        // No neighbour is more in the way than the original may be.
+        let others =
+            session.document.objects.iter().enumerate().filter(|(i, _)| *i != index && *i != index + 1);
+        for (_, other) in others.filter(|(_, other)| other.size < 10.0) {
+            let there = to_camera * (other.position - eye);
+            let apart = (there.truncate() / there.z).distance(is.truncate() / is.z) * -is.z;
+            let least = 0.5 * (0.5 * original.size + 0.5 * other.size);
+            assert!(apart > least, "{what}: before or behind the {}", other.object_type);
+        }
+    }
+}
+
+#[test]
+fn copies_of_neighbours_leave_each_other_room() {
+    let registry = Registry::builtin();
+    let mut session = Session::new(Scene {
+        objects: [4.0, 5.2]
+            .map(|x| Object { size: 0.8, position: Vec3::new(x, 5.0, 5.0), ..Object::default() })
+            .into(),
+        ..Scene::default()
+    });
+    // To the right of the left one stands the other.
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let copy = session.document.objects[1].position;
+    assert!(copy.distance(Vec3::new(3.12, 5.0, 5.0)) < 0.05, "{copy}");
+    touches_nothing("copy", &session, 1, &registry);
 }
 
 #[test]

@@ -124,6 +124,41 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
 }
 
 #[test]
+fn the_strip_that_an_error_unfolded_folds_itself_once_the_file_is_healed() {
+    let mut bench = bench_with(Vec::new());
+    let strip = |bench: &Bench| (bench.session.view.bottom_open, bench.session.view.bottom_tab.clone());
+    let set = |bench: &mut Bench, troubles: Vec<Trouble>| {
+        bench.session.shaders.troubles = troubles;
+        bench.settle();
+    };
+    let shader = (true, "shader".to_owned());
+    for before in [ViewChange::Bottom(false), ViewChange::BottomTab("plots".to_owned())] {
+        bench.apply(Action::View(before));
+        bench.settle();
+        let before = strip(&bench);
+        set(&mut bench, vec![broken_lambert()]);
+        assert_eq!(strip(&bench), shader);
+        // Another error, and one of the two healed: it stays.
+        let other = trouble("reflection/phong.wgsl", 3, 1, "", "another one", &[]);
+        set(&mut bench, vec![broken_lambert(), other.clone()]);
+        set(&mut bench, vec![other]);
+        assert_eq!(strip(&bench), shader);
+        set(&mut bench, Vec::new());
+        assert_eq!(strip(&bench), before, "as it was");
+    }
+    // What the user opened, or chose meanwhile, stays.
+    set(&mut bench, vec![broken_lambert()]);
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    set(&mut bench, Vec::new());
+    assert_eq!(strip(&bench), shader);
+    bench.apply(Action::View(ViewChange::Bottom(false)));
+    set(&mut bench, vec![broken_lambert()]);
+    bench.apply(Action::View(ViewChange::BottomTab("plots".to_owned())));
+    set(&mut bench, Vec::new());
+    assert_eq!(strip(&bench), (true, "plots".to_owned()));
+}
+
+#[test]
 fn the_badge_leads_to_the_errors_and_is_not_the_picture() {
     let mut bench = bench_with(vec![broken_lambert()]);
     bench.apply(Action::View(ViewChange::Bottom(false)));

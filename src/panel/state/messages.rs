@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{Action, MESSAGES_TAB, Session, Severity};
+use super::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity};
 use crate::{files::printable, program::in_own_words};
 
 /// The most messages that are kept; the oldest give way.
@@ -61,6 +61,8 @@ pub struct Messages {
     about: Vec<(PathBuf, Note)>,
     /// The strip as it was before an error unfolded it, and the errors that there were then.
     unfolded: Option<Unfolded>,
+    /// The strip as it was before an error in a shader unfolded it: open or not, and its panel.
+    shaders: Option<(bool, String)>,
 }
 
 /// The strip before it unfolded itself.
@@ -203,9 +205,31 @@ impl Session {
         }
     }
 
+    /// An error in a shader unfolds the strip that tells of it.
+    pub(in crate::panel) fn unfold_shaders(&mut self) {
+        let seen = self.view.bottom_open && self.view.bottom_tab == SHADER_TAB;
+        if !seen && self.messages.shaders.is_none() {
+            self.messages.shaders = Some((self.view.bottom_open, self.view.bottom_tab.clone()));
+        }
+        self.view.unfold(SHADER_TAB);
+    }
+
+    /// No error is left in the shaders: the strip folds itself if one unfolded it.
+    pub(in crate::panel) fn fold_shaders(&mut self) {
+        let Some((open, tab)) = self.messages.shaders.take() else { return };
+        if self.view.bottom_open && self.view.bottom_tab == SHADER_TAB {
+            (self.view.bottom_open, self.view.bottom_tab) = (open, tab);
+        } else if let Some(before) = self.messages.unfolded.as_mut().filter(|b| b.tab == SHADER_TAB) {
+            // The messages unfolded over it.
+            (before.open, before.tab) = (open, tab);
+        }
+        // Those that the shaders unfolded over may have healed meanwhile.
+        self.fold_healed();
+    }
+
     /// The user did something with the strip: it stays as it is.
     pub(super) fn keep_strip(&mut self) {
-        self.messages.unfolded = None;
+        (self.messages.unfolded, self.messages.shaders) = (None, None);
     }
 
     /// True if nothing was changed since the last message was added.

@@ -92,7 +92,7 @@ impl Session {
                     return;
                 }
                 let mut copy = self.document.objects[i].clone();
-                copy.position = self.stand(registry).copy(&copy);
+                copy.position = self.stand(registry).copy(i);
                 copy.name = copy.name.map(|n| free_name(&self.document, &n));
                 let from = self.document.object_id(i);
                 self.document.insert_object(i + 1, copy, "Duplicate", self.selection, registry);

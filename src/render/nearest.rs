@@ -1,0 +1,130 @@
+//! Which shapes get their meshes first where not all find room: those in the windows' pictures, the nearest before the
+//! others.
+
+use bevy::{camera::Projection, ecs::prelude::*, transform::components::Transform};
+use glam::{Quat, Vec3};
+
+use super::{camera::PictureCamera, entities::CurrentScene, meshes::Need, shown::Shown};
+use crate::{
+    registry::Registry,
+    scene::{
+        Object,
+        observer::{ViewAngle, rotation},
+    },
+};
+
+/// What a camera of a window looks at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    at: Vec3,
+    to_camera: Quat,
+    /// Half the opening of the picture, across and up, as tangents.
+    opening: [f32; 2],
+}
+
+impl Eye {
+    fn new(at: Vec3, turn: Quat, vertical: f32, aspect: f32) -> Self {
+        let up = (0.5 * vertical).tan();
+        Self { at, to_camera: turn.inverse(), opening: [aspect * up, up] }
+    }
+
+    /// The need for a shape within a sphere.
+    fn need(&self, centre: Vec3, radius: f32) -> Need {
+        let seen = self.to_camera * (centre - self.at);
+        let within = |side: f32, opening: f32| {
+            // From the plane through the eye and the edge of the picture.
+            (side.abs() + opening * seen.z) / (1.0 + opening * opening).sqrt() <= radius
+        };
+        let [across, up] = self.opening;
+        let inside = seen.z <= radius && within(seen.x, across) && within(seen.y, up);
+        Need { hidden: !inside, distance: seen.length() }
+    }
+}
+
+/// The cameras of windows. Those of single pictures, which draw everything sooner or later, are none.
+pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
+    let observer = world.resource::<Shown>().observer;
+    let keeps = world.resource::<CurrentScene>().0.view_angle().keeps;
+    let angle = ViewAngle { degrees: observer.field_of_view, keeps };
+    let mut cameras = world.query::<(&PictureCamera, &Transform, &Projection)>();
+    let eye = |(camera, place, lens): (&PictureCamera, &Transform, &Projection)| {
+        // Cameras get their places later in the frame.
+        let (at, turn) = if camera.follows_observer {
+            (observer.position, rotation(observer.direction))
+        } else {
+            (place.translation, place.rotation)
+        };
+        let aspect = match lens {
+            Projection::Perspective(lens) => lens.aspect_ratio,
+            _ => 1.0,
+        };
+        camera.fits_width.then(|| Eye::new(at, turn, angle.vertical(aspect), aspect))
+    };
+    cameras.iter(world).filter_map(eye).collect()
+}
+
+/// The need for the shape of an object.
+pub(super) fn need(
+    eyes: &[Eye],
+    world: &World,
+    registry: &Registry,
+    entity: Entity,
+    object: &Object,
+) -> Need {
+    let (Some(place), Some(shape)) = (world.get::<Transform>(entity), registry.shape(&object.object_type))
+    else {
+        return Need::default();
+    };
+    if eyes.is_empty() {
+        return Need::default();
+    }
+    let radius = shape.bounds(&object.shape).radius * place.scale.max_element();
+    let needs = eyes.iter().map(|eye| eye.need(place.translation, radius));
+    needs.min_by(Need::order).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::scene::{Observer, Scene};
+
+    #[test]
+    fn what_the_window_shows_comes_first_and_the_nearest_before_the_others() {
+        let mut world = World::new();
+        let scene = Scene::default();
+        world.insert_resource(Shown { lights: Vec::new(), observer: scene.observer });
+        world.insert_resource(CurrentScene(scene));
+        let registry = Registry::builtin();
+        let single = PictureCamera { follows_observer: true, fits_width: false };
+        world.spawn((single, Transform::IDENTITY, Projection::default()));
+        assert!(eyes(&mut world).is_empty(), "single pictures have everything");
+        let window = PictureCamera { follows_observer: true, fits_width: true };
+        let camera = world.spawn((window, Transform::IDENTITY, Projection::default())).id();
+        let Observer { position: eye, .. } = world.resource::<Shown>().observer;
+        let object = Object::default();
+        let places = [
+            // Behind, far to the side, far ahead, near, and near with only a part in the picture.
+            eye + Vec3::new(0.0, 0.0, 3.0),
+            eye + Vec3::new(6.0, 0.0, -3.0),
+            eye + Vec3::new(0.0, 0.0, -8.0),
+            eye + Vec3::new(0.0, 0.0, -3.0),
+            eye + Vec3::new(0.0, -3.3, -4.0),
+        ];
+        let entities = places.map(|place| world.spawn(Transform::from_translation(place)).id());
+        let order = |world: &mut World| {
+            let eyes = eyes(world);
+            let mut order: Vec<_> = (0..places.len()).collect();
+            let need = |i: usize| need(&eyes, world, &registry, entities[i], &object);
+            order.sort_by(|a, b| need(*a).order(&need(*b)));
+            order
+        };
+        assert_eq!(order(&mut world), [3, 4, 2, 0, 1]);
+        // A camera that the user moved, looking back.
+        let back = Transform::from_translation(eye).with_rotation(Quat::from_rotation_y(2.0 * FRAC_PI_2));
+        let free = PictureCamera { follows_observer: false, fits_width: true };
+        world.entity_mut(camera).insert((free, back));
+        assert_eq!(order(&mut world)[0], 0);
+    }
+}
