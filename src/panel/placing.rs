@@ -102,8 +102,10 @@ impl<'a> Stand<'a> {
                 && others.iter().all(|other| !block.touches(other))
                 && beside.iter().all(|other| !self.hides(other, &block, false))
         };
-        let whole = |p: Vec3| self.shows(&block.at(p));
-        let middle = |p: Vec3| self.sees(p, 0.0);
+        // A copy of what is out of the picture is beside it all the same.
+        let out = !self.sees(original.position, 0.0);
+        let whole = |p: Vec3| out || self.shows(&block.at(p));
+        let middle = |p: Vec3| out || self.sees(p, 0.0);
         let axes = [Vec3::X, Vec3::Y].map(|axis| self.turn * axis);
         let steps = axes.map(|axis| GAP * block.reach(axis).max(0.05));
         let place =
@@ -114,6 +116,7 @@ impl<'a> Stand<'a> {
         let another = |p: Vec3| {
             p.min_element() >= 0.0
                 && p.cmple(corner).all()
+                && self.is_in_air(p, 0.0)
                 && others.iter().all(|other| other.centre.distance(p) > least)
         };
         place(&APART, &|p| clear(p) && whole(p))

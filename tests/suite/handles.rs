@@ -373,6 +373,39 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
 }
 
 #[test]
+fn where_an_object_leaves_no_room_its_handles_are_at_the_edge_of_the_view() {
+    let mut bench = bench(scene());
+    bench.session.facts.eye = Vec3::splat(5.0) + bench.session.facts.camera * Vec3::new(0.0, 0.0, 2.2);
+    bench.settle();
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    let middle = lens.project(position(&bench)).unwrap();
+    let right = bench.session.facts.camera * Vec3::X;
+    let radius = lens.project(position(&bench) + right).unwrap().distance(middle);
+    assert!(radius > 0.6 * 0.5 * bench.area.rect.height(), "{radius} of {:?}", bench.area.rect);
+    bench.frame(vec![Event::PointerMoved(middle)]);
+    for part in [HandleMode::Move, HandleMode::Turn, HandleMode::Size] {
+        bench.apply(mode(part));
+        bench.settle();
+        let points = painted(&mut bench);
+        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
+        assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
+        let named = bench.tree.iter().filter(|s| s.label.starts_with("Handle: ")).map(|s| s.rect.center());
+        for at in named {
+            assert!(at.distance(middle) > radius, "{part:?}: {at:?} is over the object");
+            assert!(bench.area.rect.contains(at), "{part:?}: {at:?} is not in the view");
+        }
+    }
+    // From there they move it as from elsewhere.
+    bench.apply(mode(HandleMode::Move));
+    bench.settle();
+    let (start, by) = (position(&bench), way(&bench, Vec3::X * 0.3));
+    let at = handle(&bench, "move Sphere 1 along x");
+    drag(&mut bench, at, by, Modifiers::NONE);
+    let moved = position(&bench) - start;
+    assert!((0.2..0.4).contains(&moved.x) && moved.y == 0.0 && moved.z == 0.0, "{moved}");
+}
+
+#[test]
 fn every_view_has_its_handles() {
     let mut bench = bench(scene());
     bench.apply(Action::Compare(CompareCommand::Add));

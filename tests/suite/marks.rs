@@ -66,6 +66,31 @@ fn shown(bench: &mut Bench, ground: Color32) -> Picture {
 }
 
 #[test]
+fn the_observer_is_not_drawn_over_objects_by_a_camera_behind_it() {
+    let drawn = |bench: &mut Bench| {
+        let observer = Color32::from_rgb(0x5f, 0xe3, 0xb5);
+        bench.shapes().into_iter().any(|shape| match shape {
+            Shape::LineSegment { stroke, .. } => stroke.color == observer,
+            Shape::Path(path) => {
+                matches!(path.stroke.color, ColorMode::Solid(colour) if colour == observer)
+            }
+            _ => false,
+        })
+    };
+    let mut bench = bench(marked());
+    assert!(drawn(&mut bench), "beside the sphere");
+    let mut scene = marked();
+    scene.observer.position = Vec3::new(5.0, 5.0, 8.0);
+    bench = self::bench(scene);
+    assert!(!drawn(&mut bench), "before the sphere");
+    // From the side it is seen.
+    bench.session.facts.eye = Vec3::new(9.5, 5.0, 6.5);
+    bench.session.facts.camera = glam::Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
+    bench.settle();
+    assert!(drawn(&mut bench), "from the side");
+}
+
+#[test]
 fn every_line_stands_out_of_every_picture() {
     let grounds = [255, 119, 0, theme::DARK.surround.r(), theme::LIGHT.surround.r()].map(|v| [v; 3]);
     let coloured = [[240, 228, 66], [124, 200, 255], [95, 227, 181], [255, 0, 0], [0, 0, 255]];

@@ -38,8 +38,12 @@ pub(super) const DISC: f32 = 6.0;
 const REACH: f32 = 6.0;
 /// Distance of handles from the object that they belong to, points: they cover none of it.
 const CLEAR: f32 = 7.0;
-/// The shortest arrow beyond the object, as a part of its length.
+/// The shortest arrow beyond the object, as a part of its length; at the edge of the view, all have this part.
 const STUB: f32 = 0.5;
+/// The longest arrow, as a part of its length.
+const LONGEST: f32 = 1.2;
+/// The radius within which a letter is grasped, points.
+const LETTER_RADIUS: f32 = 8.0;
 /// Lines of a ring.
 const SIDES: usize = 72;
 
@@ -186,22 +190,28 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     };
     // In a small view they are small.
     let part = (0.0034 * lens.rect().size().min_elem()).min(1.0);
-    let clear = Extent::of(target, middle, part, lens);
+    let extent = Extent::of(target, middle, lens);
+    let clear = extent.filter(|extent| extent.leaves_room(part, lens));
     let mut all = Vec::new();
     match (&target.body, mode) {
         (Body::Object(..), HandleMode::Turn) => {
-            let radius = clear.map_or(part * RING, |clear| (clear.most() + CLEAR).max(part * RING));
-            all.extend((0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(middle, clear)));
+            let most = 0.5 * lens.rect().size().max_elem() - LETTER;
+            let around = |extent: Extent| (extent.most() + CLEAR).min(most).max(part * RING);
+            let radius = extent.map_or(part * RING, around);
+            all.extend((0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(middle, extent)));
         }
         (Body::Object(object, half), HandleMode::Size) => {
             let radius = OUTWARD * object.size * half.max_element();
-            all.extend(size(target.at, middle, radius, clear, lens));
+            all.extend(size(target.at, middle, radius, extent, lens));
+        }
+        (Body::Object(..), HandleMode::Move) if clear.is_none() => {
+            all.extend(arrows_at_edge(target.at, middle, STUB * part * ARM, extent, lens));
         }
         (Body::Object(..), HandleMode::Move) => {
-            all.extend(arrows(target.at, middle, part * ARM, clear, lens));
+            all.extend(arrows(target.at, [middle; 2], part * ARM, clear, lens));
         }
         (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
-            all.extend(arrows(target.at, middle, part * ARM, None, lens));
+            all.extend(arrows(target.at, [middle; 2], part * ARM, None, lens));
         }
         (Body::Light(..), _) => {}
     }
@@ -231,17 +241,21 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
 struct Extent([Vec2; 3]);
 
 impl Extent {
-    /// That of the object of a target; none if it leaves no room in the picture for handles beside it.
-    fn of(target: &Target, middle: Pos2, part: f32, lens: &Lens) -> Option<Self> {
+    /// That of the object of a target; none if the camera is within it.
+    fn of(target: &Target, middle: Pos2, lens: &Lens) -> Option<Self> {
         let Body::Object(object, half) = target.body else { return None };
         let turned = rotation(object.rotation);
         let axis = |i: usize| {
             let end = lens.project(target.at + turned * (Vec3::AXES[i] * object.size * half[i]))?;
             Some(end - middle)
         };
-        let extent = Self([axis(0)?, axis(1)?, axis(2)?]);
+        Some(Self([axis(0)?, axis(1)?, axis(2)?]))
+    }
+
+    /// True if it leaves room in the picture for handles around it.
+    fn leaves_room(&self, part: f32, lens: &Lens) -> bool {
         let needed = STUB * part * ARM + 2.0 * LETTER;
-        (extent.most() + needed < 0.5 * lens.rect().size().min_elem()).then_some(extent)
+        self.most() + needed < 0.5 * lens.rect().size().min_elem()
     }
 
     /// The distance from the middle beyond which a handle covers nothing of it, in a direction of the picture.
@@ -257,8 +271,46 @@ impl Extent {
     }
 }
 
-/// The arrows along the axes of the room, and the disc that moves in the plane of the picture.
-fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) -> Vec<Placed> {
+/// The arrows where the object leaves no room around it: at an edge of the view that it leaves free, or nearly so. They are
+/// pulled there as they are elsewhere: it is the way of the pointer that counts.
+fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens: &Lens) -> Vec<Placed> {
+    let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect().size().min_elem());
+    let inside = lens.rect().shrink(inset);
+    // Badges and captions are rather at the top.
+    let places = [
+        inside.left_bottom(),
+        inside.right_bottom(),
+        inside.right_top(),
+        inside.left_top(),
+        inside.center_bottom(),
+        inside.center_top(),
+        inside.left_center(),
+        inside.right_center(),
+    ];
+    let mut best: Option<(f32, Vec<Placed>)> = None;
+    for origin in places {
+        let all = arrows(at, [origin, middle], arm, None, lens);
+        let gap = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
+        let free = all.iter().flat_map(Placed::points).map(gap).fold(f32::INFINITY, f32::min);
+        if free >= 0.0 {
+            return all;
+        }
+        if best.as_ref().is_none_or(|(most, _)| free > *most) {
+            best = Some((free, all));
+        }
+    }
+    best.map(|(_, all)| all).unwrap_or_default()
+}
+
+/// The arrows along the axes of the room, and the disc that moves in the plane of the picture, around an origin; `middle` is
+/// that of what they move.
+fn arrows(
+    at: Vec3,
+    [origin, middle]: [Pos2; 2],
+    arm: f32,
+    clear: Option<Extent>,
+    lens: &Lens,
+) -> Vec<Placed> {
     let length = lens.metres(at, arm);
     let mut all = Vec::new();
     for (axis, way) in Vec3::AXES.into_iter().enumerate() {
@@ -272,8 +324,8 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) 
         let arrow = |clear: Option<f32>| {
             let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
             // Towards the camera it would grow without end.
-            let to = along.length().min(1.2 * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
-            (vec![middle + from * way, middle + to * way], middle + (to + LETTER) * way)
+            let to = along.length().min(LONGEST * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
+            (vec![origin + from * way, origin + to * way], origin + (to + LETTER) * way)
         };
         // Outside the view it could not be grasped.
         let inside = lens.rect().shrink(LETTER);
@@ -285,12 +337,12 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) 
             lines: vec![line],
             far: Vec::new(),
             end,
-            radius: 8.0,
+            radius: LETTER_RADIUS,
             point,
         });
     }
     // Where the arrows leave most room: to the upper right, if they leave it there.
-    let ways: Vec<Vec2> = all.iter().map(|p: &Placed| (p.end - middle).normalized()).collect();
+    let ways: Vec<Vec2> = all.iter().map(|p: &Placed| (p.end - origin).normalized()).collect();
     let corners = [vec2(1.0, -1.0), vec2(-1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)].map(Vec2::normalized);
     let nearest = |corner: &Vec2| ways.iter().map(|way| way.dot(*corner)).fold(-1.0, f32::max);
     let free = corners.iter().find(|corner| nearest(corner) < 0.87);
@@ -299,7 +351,7 @@ fn arrows(at: Vec3, middle: Pos2, arm: f32, clear: Option<Extent>, lens: &Lens) 
         handle: Handle::Plane,
         lines: Vec::new(),
         far: Vec::new(),
-        end: middle
+        end: origin
             + corner * (ASIDE * arm / ARM).max(DISC + clear.map_or(GAP, |clear| clear.towards(corner))),
         radius: DISC,
         point: at,
@@ -332,11 +384,14 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     // Its letter is where it is seen best: at the top, at the right, between them.
     let wanted = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.7, 0.7)][axis];
     let middle = lens.project(at).unwrap_or_default();
-    let points = lines.iter().flatten().copied();
-    let best = points.max_by(|a, b| (*a - middle).dot(wanted).total_cmp(&(*b - middle).dot(wanted)));
-    let best = best.unwrap_or(middle);
+    let inside = lens.rect().shrink(LETTER + LETTER_RADIUS);
+    let best = |within: bool| {
+        let points = lines.iter().flatten().copied().filter(|p| !within || inside.contains(*p));
+        points.max_by(|a, b| (*a - middle).dot(wanted).total_cmp(&(*b - middle).dot(wanted)))
+    };
+    let best = best(true).or_else(|| best(false)).unwrap_or(middle);
     let end = best + (best - middle).normalized() * LETTER;
-    Placed { handle: Handle::Ring(axis), lines, far, end, radius: 8.0, point: around(0) }
+    Placed { handle: Handle::Ring(axis), lines, far, end, radius: LETTER_RADIUS, point: around(0) }
 }
 
 /// The handle of the size, on the way to the upper right.

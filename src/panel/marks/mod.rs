@@ -48,6 +48,10 @@ const LONG: f32 = 88.0;
 pub(super) const AXIS: f32 = 1.25;
 /// Length of the observer's mark, metres.
 const OBSERVER_MARK: f32 = 0.4;
+/// The cosine of the angle within which the camera looks along with the observer.
+const ALONG: f32 = 0.9;
+/// A mark of the observer with a smaller radius covers nothing, points.
+const SMALL: f32 = 12.0;
 /// Distance of the frame around the selected object from what it frames, points.
 const FRAME: f32 = 7.0;
 
@@ -100,8 +104,7 @@ pub fn marks(
             }
         }
     }
-    // From within, its own pyramid would frame the picture.
-    if session.facts.eye.distance(scene.observer.position) > OBSERVER_MARK {
+    if !is_in_the_way(&lens, scene) {
         observer(&mut ink, &scene.observer, session.selection == Selection::Observer);
     }
     if let Selection::Object(i) = session.selection
@@ -232,6 +235,25 @@ fn lamp(
         // Seen from their ends, its arrows are nearly points.
         ink.disc(at, 1.4 * DOT, colour);
     }
+}
+
+/// True if the pyramid of the observer would frame the picture, seen from within, or cover objects, seen over its shoulder.
+fn is_in_the_way(lens: &Lens, scene: &Scene) -> bool {
+    let Observer { position, direction, .. } = scene.observer;
+    if lens.eye().distance(position) <= OBSERVER_MARK {
+        return true;
+    }
+    let (way, [.., ahead]) = (look_along(direction) * Vec3::NEG_Z, lens.axes());
+    let circle = |p: Vec3, radius: f32| Some((lens.project(p)?, radius / lens.metres(p, 1.0)));
+    let half = 0.5 * OBSERVER_MARK;
+    let Some((at, radius)) = circle(position + half * way, half).filter(|_| way.dot(ahead) > ALONG) else {
+        return false;
+    };
+    let covers = |object: &Object| {
+        let object = circle(object.position, 0.5 * object.size);
+        object.is_some_and(|(middle, extent)| at.distance(middle) < radius + extent)
+    };
+    radius >= SMALL && scene.objects.iter().any(covers)
 }
 
 /// The observer as the pyramid of its view.
