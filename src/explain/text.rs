@@ -166,8 +166,7 @@ impl Explanation {
             out.line(
                 1,
                 format_args!(
-                    "The normal faces away from the observer, who sees the surface all the same: V is the direction to the \
-                     observer, {}, mirrored in the surface.",
+                    "The normal faces away from the observer: V is the direction to the observer, {}, mirrored in the surface.",
                     triple(spot.eye)
                 ),
             );

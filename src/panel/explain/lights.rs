@@ -131,8 +131,8 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     if spot.is_mirrored() {
         rows::note(
             ui,
-            "The normal faces away from the observer, who sees the surface all the same: V is the direction to the \
-             observer, mirrored in the surface.",
+            "The normal faces away from the observer: V is the direction to the observer, mirrored in the \
+             surface.",
         );
     }
 }
