@@ -16,7 +16,9 @@ use crate::{
         colour::Encoding,
     },
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
-    reflection::{Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve},
+    reflection::{
+        Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
+    },
     shader::interpret::Program,
     text::mathematics::{parse, plain_symbol, same_symbol},
 };
@@ -314,7 +316,8 @@ impl Surface for Interpreted {
         let (_, lets) = self.on_cpu.programs.as_ref().ok()?.lets.as_ref()?;
         let at = lets.iter().position(|(name, _)| name == symbol).filter(|_| arguments.is_empty())?;
         let first: usize = lets[..at].iter().map(|(_, words)| words).sum();
-        let words: [f32; MOST_WORDS] = self.ask(|p| p.lets.as_ref().map(|(program, _)| program), &[l, v], frame);
+        let words: [f32; MOST_WORDS] =
+            self.ask(|p| p.lets.as_ref().map(|(program, _)| program), &[l, v], frame);
         let value = match lets[at].1 {
             1 => Vec3::splat(*words.get(first)?),
             3 => Vec3::from_slice(words.get(first..first + 3)?),

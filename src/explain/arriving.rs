@@ -54,7 +54,8 @@ impl Factor {
         }
         // What is defined last is needed by what stands before.
         for text in definitions(self.equation).into_iter().rev() {
-            let (head, body) = text.split_once('=').map_or(("", text), |(head, body)| (head.trim(), body.trim()));
+            let (head, body) =
+                text.split_once('=').map_or(("", text), |(head, body)| (head.trim(), body.trim()));
             let Ok(value) = Expression::read(body).and_then(|e| e.value(&mut known)) else {
                 return Vec::new();
             };

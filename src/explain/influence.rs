@@ -87,10 +87,19 @@ impl Explainer {
         let mut knobs = Vec::new();
         for setting in &seen.model.settings {
             let parameter = setting.parameter;
-            if let (ParameterKind::Number { min, max, .. }, Value::Number(v)) = (&parameter.kind, &setting.value) {
+            if let (ParameterKind::Number { min, max, .. }, Value::Number(v)) =
+                (&parameter.kind, &setting.value)
+            {
                 let knob = Knob::Material { object, name: parameter.name };
                 let range = [f64::from(*min), f64::from(*max)];
-                knobs.push((knob, parameter.symbol, parameter.label.to_owned(), parameter.unit, f64::from(*v), range));
+                knobs.push((
+                    knob,
+                    parameter.symbol,
+                    parameter.label.to_owned(),
+                    parameter.unit,
+                    f64::from(*v),
+                    range,
+                ));
             }
         }
         for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
@@ -148,7 +157,9 @@ impl Knob {
 
     fn restore(&self, scene: &mut Scene, from: &Scene) {
         match *self {
-            Self::Material { object, .. } => scene.objects[object].material = from.objects[object].material.clone(),
+            Self::Material { object, .. } => {
+                scene.objects[object].material = from.objects[object].material.clone()
+            }
             Self::Intensity { light } => scene.lights[light] = from.lights[light].clone(),
         }
     }
@@ -167,7 +178,8 @@ mod tests {
         let mut explainer = Explainer::default();
         let light = explainer.pixel(&scene, &registry, &settings, [32, 18]).expect("inside").steps.light;
         let found = explainer.influences(&scene, &registry, &settings, [32, 18]).expect("inside");
-        let of = |symbol: &str| found.iter().find(|i| i.symbol == symbol).unwrap_or_else(|| panic!("{symbol}"));
+        let of =
+            |symbol: &str| found.iter().find(|i| i.symbol == symbol).unwrap_or_else(|| panic!("{symbol}"));
         for symbol in ["k_d", "I"] {
             let influence = of(symbol);
             let expected = light / influence.value as f32;
@@ -183,9 +195,17 @@ mod tests {
         let settings = Settings { width: 64, height: 36, ..Settings::default() };
         let mut scene = Scene::default();
         scene.lights.push(Light { enabled: false, ..scene.lights[0].clone() });
-        scene.objects.push(Object { position: glam::Vec3::new(0.5, 0.5, 0.5), size: 0.1, ..Object::default() });
+        scene.objects.push(Object {
+            position: glam::Vec3::new(0.5, 0.5, 0.5),
+            size: 0.1,
+            ..Object::default()
+        });
         let found = Explainer::default().influences(&scene, &registry, &settings, [32, 18]).expect("inside");
-        assert!(found.iter().all(|i| !matches!(i.knob, Knob::Intensity { light: 1 } | Knob::Material { object: 1, .. })));
+        assert!(
+            found
+                .iter()
+                .all(|i| !matches!(i.knob, Knob::Intensity { light: 1 } | Knob::Material { object: 1, .. }))
+        );
         let none = Explainer::default().influences(&scene, &registry, &settings, [0, 0]).expect("inside");
         assert_eq!(none, []);
     }

@@ -68,9 +68,7 @@ pub(super) fn sides(text: &str) -> Option<(&str, &str)> {
 /// The name and the arguments of a head: `H(μ)`.
 fn signature(head: &str) -> (&str, Vec<&str>) {
     match head.split_once('(') {
-        Some((name, rest)) => {
-            (name.trim(), rest.trim_end_matches(')').split(',').map(str::trim).collect())
-        }
+        Some((name, rest)) => (name.trim(), rest.trim_end_matches(')').split(',').map(str::trim).collect()),
         None => (head, Vec::new()),
     }
 }
@@ -126,7 +124,8 @@ impl<'a> Workings<'a> {
 
     /// Symbols with values, for putting them in: what is given, and what was asked for.
     pub(super) fn values(&self) -> impl Iterator<Item = (&str, Value)> {
-        let found = self.found.iter().filter_map(|(name, value)| Some((name.as_str(), *value.as_ref().ok()?)));
+        let found =
+            self.found.iter().filter_map(|(name, value)| Some((name.as_str(), *value.as_ref().ok()?)));
         self.known.iter().map(|(name, value)| (name.as_str(), *value)).chain(found)
     }
 
@@ -191,7 +190,7 @@ impl<'a> Workings<'a> {
             Some(geometry) => {
                 let Geometry { l, v, frame, .. } = geometry;
                 self.model.surface.0.quantity(&asked, arguments, *l, *v, frame)
-            },
+            }
             None => None,
         };
         let value = given.ok_or_else(|| format!("{name} is not defined"))?;
@@ -201,8 +200,11 @@ impl<'a> Workings<'a> {
             Value::colour(value.to_array().map(f64::from))
         };
         let quantity = self.model.declaration.quantities.iter().find(|q| same_symbol(q.symbol(), symbol));
-        let definition =
-            quantity.map(|quantity| Definition { term: Term::Total, text: quantity.text, quantity: Some(quantity) });
+        let definition = quantity.map(|quantity| Definition {
+            term: Term::Total,
+            text: quantity.text,
+            quantity: Some(quantity),
+        });
         self.worked.push(Worked { text: name.to_owned(), value, definition });
         Ok(value)
     }
@@ -252,8 +254,8 @@ fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String 
                 let argument = mathematics::parse(&arguments[i]);
                 let alone = argument.len() == 1 && atom.sup().is_empty();
                 // A scalar product without a power binds as one symbol does.
-                let product = atom.sup().is_empty()
-                    && matches!(argument.as_slice(), [_, dot, _] if dot.base() == "·");
+                let product =
+                    atom.sup().is_empty() && matches!(argument.as_slice(), [_, dot, _] if dot.base() == "·");
                 let upright = |base: &str, sup: String| Atom::Upright {
                     base: base.to_owned(),
                     sub: String::new(),

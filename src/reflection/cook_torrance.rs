@@ -128,8 +128,7 @@ impl ReflectionModel for CookTorrance {
             EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
             EquationPart { term: Term::Specular, text: "D = exp(−tan^2 θ_h / m^2) / (π m^2 cos^4 θ_h)" },
             EquationPart {
-                term: Term::Specular,
-                text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))",
+                term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
             },
             EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
         ],

@@ -34,7 +34,14 @@ pub trait Surface: Send + Sync {
 
     /// A quantity of the equation that no line defines; see [`ReflectionModel::quantity`]. Custom models also know the
     /// values of their WGSL for these directions.
-    fn quantity(&self, _symbol: &str, _arguments: &[f32], _l: Vec3, _v: Vec3, _frame: &Frame) -> Option<Vec3> {
+    fn quantity(
+        &self,
+        _symbol: &str,
+        _arguments: &[f32],
+        _l: Vec3,
+        _v: Vec3,
+        _frame: &Frame,
+    ) -> Option<Vec3> {
         None
     }
 

@@ -99,8 +99,7 @@ impl ReflectionModel for TorranceSparrow {
             EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
             EquationPart { term: Term::Specular, text: "D = exp(−θ_h^2 / β^2) / (π (β π/180°)^2)" },
             EquationPart {
-                term: Term::Specular,
-                text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))",
+                term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
             },
             EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
         ],

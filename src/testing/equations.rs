@@ -54,7 +54,8 @@ pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
     let lines = explained.lines(Some(geometry), &response, DIGITS);
     let wrong = |line: &Line, why: &str| {
         let numbers = line.numbers.as_deref().unwrap_or("no numbers");
-        let all: Vec<_> = lines.iter().map(|l| format!("{} | {:?} | {:?}", l.text, l.numbers, l.rgb())).collect();
+        let all: Vec<_> =
+            lines.iter().map(|l| format!("{} | {:?} | {:?}", l.text, l.numbers, l.rgb())).collect();
         format!("{}: {why}: {numbers}; value {:?}\n{}", line.text, line.value, all.join("\n"))
     };
     for line in &lines {
@@ -71,7 +72,8 @@ pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
 /// The reason why it does not.
 pub fn follows(line: &Line) -> Result<(), String> {
     let Some(value) = &line.value else { return Err("no value".to_owned()) };
-    let calculated = line.numbers.as_deref().or_else(|| Some(line.text.as_str()).filter(|text| text.contains('=')));
+    let calculated =
+        line.numbers.as_deref().or_else(|| Some(line.text.as_str()).filter(|text| text.contains('=')));
     // A quantity that the model gives has no equation.
     let Some(calculated) = calculated else { return Ok(()) };
     let read = reading(calculated)?;
@@ -84,7 +86,10 @@ fn every_term(model: &ModelEntry, lines: &[Line], response: &Terms) -> Outcome {
     for (symbol, value) in [("I_d", response.diffuse), ("I_s", response.specular)] {
         let said = lines.iter().any(|line| line.defines() == symbol && !line.text.is_empty());
         if value != glam::Vec3::ZERO && !said {
-            return Err(format!("{symbol} is {value}, and the equation of {} has no line for it", model.declaration.id));
+            return Err(format!(
+                "{symbol} is {value}, and the equation of {} has no line for it",
+                model.declaration.id
+            ));
         }
     }
     Ok(())

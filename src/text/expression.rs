@@ -458,8 +458,8 @@ impl<'a> Reader<'a> {
                     product = Node::Two(Sign::Divide, Box::new([product, self.divisor()?]));
                     continue;
                 }
-                "" | "+" | "−" | "-" | ")" | "]" | "," | "|" | "if" | "else" | "and" | "<" | "≤" | ">" | "≥"
-                | "=" => {
+                "" | "+" | "−" | "-" | ")" | "]" | "," | "|" | "if" | "else" | "and" | "<" | "≤" | ">"
+                | "≥" | "=" => {
                     return Ok(product);
                 }
                 _ => {
@@ -573,7 +573,8 @@ impl<'a> Reader<'a> {
 
     fn symbol(&mut self, atom: &Atom, symbol: String) -> Result<Node, String> {
         let is_vector = |atom: &Atom| {
-            atom.sub().is_empty() && matches!(atom, Atom::Symbol { base, .. } if VECTORS.contains(base.as_str()))
+            atom.sub().is_empty()
+                && matches!(atom, Atom::Symbol { base, .. } if VECTORS.contains(base.as_str()))
         };
         if let [dot, other, ..] = &self.atoms[self.at..]
             && dot.base() == "·"
@@ -744,7 +745,8 @@ mod tests {
 
     #[test]
     fn degrees_are_not_taken_for_numbers() {
-        for text in ["σ + 1", "exp(σ)", "max(σ, 0.3)", "1 if σ > 0.3 else 2", "√(σ)", "2^σ", "cos (σ^2)"] {
+        for text in ["σ + 1", "exp(σ)", "max(σ, 0.3)", "1 if σ > 0.3 else 2", "√(σ)", "2^σ", "cos (σ^2)"]
+        {
             let got = value(text).expect_err(text);
             assert!(got.contains("angle"), "{text}: {got}");
         }
@@ -753,7 +755,9 @@ mod tests {
         assert_eq!(value("σ^2/σ^2").map(|v| v.degrees), Ok(0));
         assert_eq!(value("√(σ^2)").map(|v| v.degrees), Ok(1));
         assert_eq!(value("max(0, σ)"), Ok(Value::angle(60.0)));
-        assert!(value("0 + C_b").is_ok_and(|v| v.is_colour) && value("mean(C_b)").is_ok_and(|v| !v.is_colour));
+        assert!(
+            value("0 + C_b").is_ok_and(|v| v.is_colour) && value("mean(C_b)").is_ok_and(|v| !v.is_colour)
+        );
     }
 
     #[test]

@@ -357,7 +357,9 @@ mod tests {
 
     #[test]
     fn atoms_are_written_as_they_were() {
-        for (text, power) in [("x^(1/(2 a)) y", "1/(2 a)"), ("x^1.98 + 1", "1.98"), ("x^2.", "2"), ("x^−2", "−2")] {
+        for (text, power) in
+            [("x^(1/(2 a)) y", "1/(2 a)"), ("x^1.98 + 1", "1.98"), ("x^2.", "2"), ("x^−2", "−2")]
+        {
             assert_eq!(parse(text)[0].sup(), power, "{text}");
         }
         for text in ["I_d = k_d max(0, N·L)^α", "F_{90} = 2^{a + 1} x_0^2", "tan^2 θ_h/π", "e^{x_{ab}^{2 y}}"]

@@ -98,7 +98,10 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
 /// The parts of an equation, one for each definition: a part may have several, with commas between.
 #[must_use]
 pub fn definitions(parts: &[EquationPart]) -> Vec<(Term, &'static str)> {
-    parts.iter().flat_map(|part| mathematics::definitions(part.text).into_iter().map(|text| (part.term, text))).collect()
+    parts
+        .iter()
+        .flat_map(|part| mathematics::definitions(part.text).into_iter().map(|text| (part.term, text)))
+        .collect()
 }
 
 /// True if an equation has a symbol that fits.

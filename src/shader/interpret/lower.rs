@@ -6,8 +6,8 @@
 use std::{collections::HashMap, rc::Rc};
 
 use naga::{
-    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Scalar, Statement, TypeInner,
-    front::Typifier, proc::ResolveContext,
+    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Scalar, Statement,
+    TypeInner, front::Typifier, proc::ResolveContext,
 };
 
 use super::{
