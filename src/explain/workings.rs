@@ -184,7 +184,7 @@ impl<'a> Workings<'a> {
     }
 
     /// A quantity that the model itself gives.
-    fn from_model(&mut self, symbol: &str, arguments: &[f32], name: &str) -> Result<Value, String> {
+    fn ask_model(&mut self, symbol: &str, arguments: &[f32], name: &str) -> Result<Value, String> {
         let asked = mathematics::plain_symbol(symbol);
         let given = match self.geometry {
             Some(geometry) => {
@@ -217,7 +217,7 @@ impl Scope for Workings<'_> {
         }
         self.look_up(symbol.to_owned(), |this| match this.definition(symbol, 0) {
             Some((definition, _)) => this.work_out(definition, definition.text.to_owned()),
-            None => this.from_model(symbol, &[], symbol).or_else(|why| match symbol {
+            None => this.ask_model(symbol, &[], symbol).or_else(|why| match symbol {
                 "e" => Ok(Value::number(std::f64::consts::E)),
                 _ => Err(why),
             }),
@@ -237,7 +237,7 @@ impl Scope for Workings<'_> {
                 for argument in arguments {
                     values.push(Expression::read(argument)?.value(this)?.rgb[0] as f32);
                 }
-                this.from_model(name, &values, &call)
+                this.ask_model(name, &values, &call)
             }
         })
     }

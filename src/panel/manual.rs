@@ -6,7 +6,7 @@ use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
 /// The pages, with their ids: the names of their files.
-pub const PAGES: [(&str, &str); 14] = [
+pub const PAGES: [(&str, &str); 15] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
     ("scenes", include_str!("../../docs/scenes.md")),
@@ -15,6 +15,7 @@ pub const PAGES: [(&str, &str); 14] = [
     ("comparing", include_str!("../../docs/comparing.md")),
     ("lessons", include_str!("../../docs/lessons.md")),
     ("command-line", include_str!("../../docs/command-line.md")),
+    ("worked-examples", include_str!("../../docs/worked-examples.md")),
     ("study", include_str!("../../docs/study.md")),
     ("exporting", include_str!("../../docs/exporting.md")),
     ("performance", include_str!("../../docs/performance.md")),

@@ -349,9 +349,10 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     let radius = lens.project(position(&bench) + radius * right).unwrap().distance(middle);
     for part in [HandleMode::Move, HandleMode::Turn, HandleMode::Size] {
         bench.apply(mode(part));
+        bench.frame(vec![Event::PointerMoved(middle + vec2(part as i32 as f32 + 1.0, 0.0))]);
         bench.settle();
         let points = painted(&mut bench);
-        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
+        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}: {points:?}");
         assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
     }
     bench.apply(mode(HandleMode::Move));

@@ -55,6 +55,7 @@ mod layout;
 mod lesson_window;
 mod lessons;
 mod lessons_played;
+mod levels;
 mod linked;
 mod links;
 mod lobe;

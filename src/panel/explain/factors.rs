@@ -41,7 +41,7 @@ pub(super) fn factor(
     if probe::is_sought(ui.ctx(), line.defines()) {
         row.scroll_to_me(None);
     }
-    if row.clicked() {
+    if row.clicked() && probe::once(ui.ctx()) {
         probe::unfold(ui.ctx(), line.defines(), !open);
     }
     if !open {

@@ -178,7 +178,7 @@ fn beside_button(ui: &mut Ui, view: usize) {
     let other = if view == 0 { LETTERS[1] } else { LETTERS[0] };
     let tip = format!("Explain the same point in view {other} beside it, with marks where the lines differ");
     let button = ui.add(Button::selectable(choice.beside, format!("Beside {other}"))).on_hover_text(tip);
-    if button.clicked() {
+    if button.clicked() && probe::once(ui.ctx()) {
         probe::choose(ui.ctx(), probe::Choice { beside: !choice.beside, ..choice });
     }
 }

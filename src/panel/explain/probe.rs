@@ -124,6 +124,8 @@ struct Probe {
     /// The scenes of views, without the camera of the window.
     scenes: Vec<(Revision, usize, Scene)>,
     choice: Choice,
+    /// The frame in which something was turned over last, counted from 1.
+    turned: u64,
     /// The quantities that are unfolded.
     unfolded: HashSet<String>,
     /// The quantity that is to come into sight.
@@ -183,6 +185,12 @@ pub(super) fn is_hovered(ctx: &Context) -> bool {
 
 pub(super) fn choice(ctx: &Context) -> Choice {
     lock(&shared(ctx)).choice
+}
+
+/// True once in a frame, for what turns something over: egui may lay out a frame twice, with the same click.
+pub(super) fn once(ctx: &Context) -> bool {
+    let frame = ctx.cumulative_frame_nr() + 1;
+    std::mem::replace(&mut lock(&shared(ctx)).turned, frame) != frame
 }
 
 pub(super) fn choose(ctx: &Context, choice: Choice) {

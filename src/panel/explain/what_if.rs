@@ -23,7 +23,10 @@ use crate::{
 /// More numbers are not listed.
 const MOST: usize = 8;
 /// The longest bar, points.
-const BAR: f32 = 56.0;
+const BAR: f32 = 48.0;
+/// The columns of symbols and of effects, points.
+const SYMBOL: f32 = 26.0;
+const EFFECT: f32 = 68.0;
 
 /// The list, folded at first.
 pub(super) fn what_if(
@@ -96,8 +99,11 @@ fn row(
 ) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let size = 14.0 * theme::scale_here(ui);
-        maths::symbol(ui, influence.symbol, size).on_hover_text(influence.label.as_str());
+        let scale = theme::scale_here(ui);
+        let (cell, symbol) = ui.allocate_exact_size(vec2(SYMBOL, 20.0) * scale, egui::Sense::hover());
+        let at = egui::pos2(cell.left(), cell.center().y + 5.0 * scale);
+        maths::paint_symbol(ui, at, influence.symbol, 14.0 * scale, theme::Palette::here(ui).text);
+        symbol.on_hover_text(influence.label.as_str());
         let limits = limits_of(influence, session, registry);
         let id = Id::new(("what if", influence.label.as_str()));
         let field = knob::field(ui, id, &influence.label, influence.value, &limits, 64.0);
@@ -105,11 +111,18 @@ fn row(
             probe::keep_before(ui.ctx());
             actions.push(Action::Edit(edit(influence, value as f32, session)));
         }
-        ui.label(theme::small(ui, influence.unit));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let effect = influence.effect();
             let sign = if effect > 0.0 { "+" } else { "" };
-            let text = ui.label(format!("{sign}{}", rounded(effect, 2)));
+            let number = ui.allocate_ui_with_layout(
+                vec2(EFFECT * scale, 20.0 * scale),
+                Layout::right_to_left(Align::Center),
+                |ui| {
+                    ui.set_min_width(EFFECT * scale);
+                    ui.label(format!("{sign}{}", rows::short(effect)))
+                },
+            );
+            let text = number.inner;
             let [r, g, b] = influence.derivative().to_array().map(|v| rounded(v, rows::DIGITS));
             text.on_hover_text(format!(
                 "Δ light/Δ {} = ({r}, {g}, {b}) between {} and {}",
@@ -123,7 +136,9 @@ fn row(
             ui.painter().rect_filled(bar, 2.0, palette.field);
             ui.painter().rect_filled(bar.with_min_x(bar.right() - part * bar.width()), 2.0, palette.accent);
             let room = ui.available_width();
-            let label = theme::elided(ui, &influence.label, egui::TextStyle::Small, palette.weak, room);
+            let unit = if influence.unit.is_empty() { "" } else { ", " };
+            let label = format!("{}{unit}{}", influence.label, influence.unit);
+            let label = theme::elided(ui, &label, egui::TextStyle::Small, palette.weak, room);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(label));
         });
     });
