@@ -19,7 +19,7 @@ use crate::{
     reflection::{
         Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
     },
-    shader::interpret::Program,
+    shader::interpret::{Program, StepLimit},
     text::mathematics::{parse, plain_symbol, same_symbol},
 };
 
@@ -97,9 +97,7 @@ impl crate::reflection::Interpreted for OnCpu {
     fn trouble(&self) -> Option<String> {
         match &self.programs {
             Err(what) => Some(what.clone()),
-            Ok(_) if self.endless.load(Ordering::Relaxed) => {
-                Some("a function runs too long; a loop may be endless".to_owned())
-            }
+            Ok(_) if self.endless.load(Ordering::Relaxed) => Some(StepLimit.to_string()),
             Ok(_) => None,
         }
     }

@@ -1,4 +1,4 @@
-//! Endless models: nothing can stop a GPU, but the interpreter stops itself, so the CPU tries a model first.
+//! Models that run too long, perhaps endlessly: nothing can stop a GPU, but the interpreter stops itself, so the CPU tries a model first.
 
 use glam::Vec3;
 use thiserror::Error;
@@ -7,13 +7,12 @@ use super::{ModelEntry, Surface, laws::Random};
 use crate::{
     optics::{Frame, colour::Encoding},
     parameter::Values,
+    shader::interpret::StepLimit,
 };
 
 /// A function of this model runs too long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error(
-    "{0} was not run on the GPU: on the CPU, which interprets it, a function runs too long; a loop may be endless"
-)]
+#[error("{0} was not run on the GPU: on the CPU, which interprets it, {limit}", limit = StepLimit)]
 pub struct Endless(pub &'static str);
 
 /// The number of pairs of a batch that the CPU tries first.

@@ -573,6 +573,9 @@ fn models_at_the_limits_are_drawn() {
     }
 }
 
+/// What is said of a function that the interpreter stops.
+const TOO_LONG: &str = "a function runs too long: more than 131072 instructions in its loops for one direction; a loop may be endless";
+
 /// Endless where the light is above the surface, which the text does not reveal.
 fn endless() -> String {
     model("", "var y = 0.0;\n    while y >= 0.0 { y += f32(frame.n.z >= 0.0); }")
@@ -592,10 +595,6 @@ fn a_loop_that_only_data_make_endless_is_not_given_to_the_graphics_card() {
         let arguments: Vec<_> = command.split(' ').chain(["--models", "models"]).collect();
         let run = watched(folder.path(), &arguments, Duration::from_secs(60));
         assert!(matches!(run.status, Some(1 | 3)), "{command}: {:?} {}", run.status, run.err);
-        assert!(
-            run.err.contains("a function runs too long; a loop may be endless"),
-            "{command}: {}",
-            run.err
-        );
+        assert!(run.err.contains(TOO_LONG), "{command}: {}", run.err);
     }
 }

@@ -32,7 +32,8 @@ use builder::{Operand, REGISTERS};
 use instruction::{Instruction, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
-/// The most instructions in loops of one run, a few milliseconds.
+/// The most instructions in loops of one run, those of a body counted in every round; a few milliseconds. A finite loop
+/// may need more.
 pub const STEPS: usize = 1 << 17;
 
 /// A construct of a function that cannot be run on the CPU.
@@ -48,7 +49,9 @@ pub type Lets = Vec<(String, usize)>;
 
 /// A program ran longer than [`STEPS`], perhaps forever; its results are undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it did not end within {STEPS} steps of its loops")]
+#[error(
+    "a function runs too long: more than {STEPS} instructions in its loops for one direction; a loop may be endless"
+)]
 pub struct StepLimit;
 
 /// A function of a module, with everything it calls, ready to run.
