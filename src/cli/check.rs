@@ -1,6 +1,6 @@
 //! `lcm check`: all problems of scenes.
 
-use std::{fmt::Write as _, path::PathBuf};
+use std::{collections::BTreeSet, fmt::Write as _, path::PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -13,20 +13,23 @@ use super::{
 use crate::{
     explain::finite::{Scope, Tried, probe},
     failure::Failure,
+    reflection::ModelEntry,
     registry::Registry,
     scene::{
         Scene,
-        error::{Path, Problem},
+        error::{LoadError, Path, Problem},
         load::Defaults,
     },
     shader::{check::ShaderProblem, report::annotated},
 };
 
-/// The problems of a legal scene that show when it is drawn, for people and for programs: shaders that are wrong, and
-/// light that is not finite, in any of its views.
+/// The problems of a legal scene that show when it is drawn, for people and for programs: shaders that are wrong,
+/// models that run too long, and light that is not finite, in any of its views.
 fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem>) {
     let (mut said, mut problems) = (Vec::new(), Vec::new());
     let mut tried = Tried::default();
+    // With the parameters of the scene before, a model may have run too long.
+    registry.models().iter().for_each(ModelEntry::run_again);
     for view in 0..=scene.variants.len() {
         let Some((seen, _)) = scene.seen(view, registry) else { continue };
         for (i, problem) in shader_problems(registry, &seen) {
@@ -38,12 +41,33 @@ fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem
                 said.push(annotated(&problem, &file));
             });
         }
-        for odd in probe(&seen, registry, Scope::All, &mut tried) {
+        let odd = probe(&seen, registry, Scope::All, &mut tried);
+        for odd in odd.into_iter().chain(tried.too_long().to_vec()) {
             let line = format!("{name}: {odd}");
             put(&mut problems, Problem::about(odd.path, odd.what), || said.push(line));
         }
     }
     (said.join("\n"), problems)
+}
+
+/// A line for each model of a legal scene that only a GPU runs, with the first object that has it in any of its views.
+fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
+    let (mut said, mut met) = (Vec::new(), BTreeSet::new());
+    for (seen, _) in (0..=scene.variants.len()).filter_map(|view| scene.seen(view, registry)) {
+        for (i, object) in seen.objects.iter().enumerate() {
+            let Some(model) = registry.model(seen.model_of(object)) else { continue };
+            let id = model.declaration.id;
+            let Some(why) = model.not_on_cpu().filter(|_| !model.runs_too_long() && met.insert(id)) else {
+                continue;
+            };
+            let path = Path::root().key("objects").index(i);
+            said.push(format!(
+                "{name}: {path} has the reflection model {id}, which the CPU renderer cannot run ({why}): only the GPU \
+                 draws it, and explain cannot explain it"
+            ));
+        }
+    }
+    said
 }
 
 /// Adds what is not there yet.
@@ -84,7 +108,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     for path in &arguments.scenes {
         let source = Source::named(path);
         let mut problems = Vec::new();
-        let read = source.read(workshop, defaults).map_err(|error| (error.to_string(), error.problems()));
+        let read = match source.read(workshop, defaults) {
+            Err(LoadError::Empty { .. }) if defaults == Defaults::Use => {
+                Source::Default.read(workshop, defaults)
+            }
+            read => read,
+        };
+        let read = read.map_err(|error| (error.to_string(), error.problems()));
         let checked =
             read.and_then(|loaded| match drawn(&loaded.scene, &source.name(), &workshop.registry) {
                 (_, problems) if problems.is_empty() => Ok(loaded),
@@ -92,6 +122,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             });
         match checked {
             Ok(loaded) => {
+                for line in only_on_gpu(&loaded.scene, &source.name(), &workshop.registry) {
+                    options.tell(line);
+                }
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
                 let mut counts = vec![

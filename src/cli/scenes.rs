@@ -134,11 +134,14 @@ impl Source {
                 options.detail(format_args!("{name}: missing: {}; defaults used", parts(&missing)));
                 Ok(scene)
             }
-            Err(error @ LoadError::Empty { .. }) => match answer(options, &error.to_string()) {
-                None => Err(Failure::Invalid(format!("{error} Use --use-defaults to accept."))),
-                Some(false) => Err(Failure::Invalid(format!("{} was not loaded", self.name()))),
-                Some(true) => Ok(Scene::default()),
-            },
+            Err(error @ LoadError::Empty { .. }) => {
+                let name = self.name();
+                match answer(options, &format!("{name} is empty. Load the default scene?")) {
+                    None => Err(Failure::Invalid(error.to_string())),
+                    Some(false) => Err(Failure::Invalid(format!("{name} was not loaded"))),
+                    Some(true) => Ok(Scene::default()),
+                }
+            }
             Err(error) => Err(invalid(error)),
         }
     }

@@ -118,7 +118,7 @@ pub(super) fn run(
                     Defaults::Ask => view.open = Some(path),
                     Defaults::Use => {}
                     Defaults::Refuse => {
-                        return Err(Failure::Invalid(format!("{error} Use --use-defaults to accept.")));
+                        return Err(Failure::Invalid(error.to_string()));
                     }
                 },
                 Ok(loaded) => {

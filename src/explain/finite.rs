@@ -1,7 +1,8 @@
 //! Light that is not finite: which light or reflection model of a scene gives it, and where.
 //!
 //! Renderers draw such light as something: NaN as black, infinity as white. This module finds out whose it is, by trying
-//! places and directions, or from pixels that are known to be wrong.
+//! places and directions, or from pixels that are known to be wrong. On the way it meets models that cannot be tried,
+//! since a function runs too long.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -11,13 +12,14 @@ use std::{
 use glam::Vec3;
 
 use super::{Seen, numbers::triple, pixel};
+use crate::files::Shown as _;
 use crate::{
     channel::colours::{INFINITE, NAN},
     light::Incident,
     optics::{Frame, Terms},
     parameter::words,
     reference::Settings,
-    reflection::{ModelEntry, Surface},
+    reflection::{ModelEntry, Surface, ends::check_that_it_ends},
     registry::Registry,
     scene::{Object, Scene, error::Path, record},
     text::quoted,
@@ -36,7 +38,7 @@ const MOST_SURFACES: usize = 512;
 /// Pixels that are traced to what is wrong.
 const MOST_PIXELS: usize = 16;
 
-/// A light, or an object by its reflection model, whose light is not finite.
+/// A light, or an object by its reflection model, whose light is not finite, or cannot be calculated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotFinite {
     /// Its path in the scene.
@@ -69,15 +71,28 @@ impl Scope {
 
 /// What surfaces gave, by model, version and parameters: each is tried once.
 #[derive(Debug, Default)]
-pub struct Tried(HashMap<(&'static str, u64, Vec<u32>), Option<String>>);
+pub struct Tried {
+    surfaces: HashMap<(&'static str, u64, Vec<u32>), Option<String>>,
+    too_long: Vec<NotFinite>,
+}
+
+impl Tried {
+    /// The objects of the last scene in whose models a function ran too long, the first of each model: neither renderer
+    /// runs them.
+    #[must_use]
+    pub fn too_long(&self) -> &[NotFinite] {
+        &self.too_long
+    }
+}
 
 /// Tries the lights of a scene at its objects and in its room, and its models for directions of light and viewer.
 /// Models that the CPU cannot run are left out.
 #[must_use]
 pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried) -> Vec<NotFinite> {
     let mut found = lights(scene, registry, scope);
-    if tried.0.len() > 8 * MOST_SURFACES {
-        tried.0.clear();
+    tried.too_long.clear();
+    if tried.surfaces.len() > 8 * MOST_SURFACES {
+        tried.surfaces.clear();
     }
     let mut met = HashSet::new();
     for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
@@ -90,8 +105,13 @@ pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried
         if met.len() >= MOST_SURFACES || !met.insert(key.clone()) {
             continue;
         }
-        let what = tried.0.entry(key).or_insert_with(|| surface(scene, object, model));
+        let what = tried.surfaces.entry(key).or_insert_with(|| surface(scene, object, model));
         found.extend(what.clone().map(|what| NotFinite { path: part("objects", i), what }));
+        // It did not before, so it is this object that shows it.
+        if model.runs_too_long() {
+            let what = too_long(object, model, registry);
+            tried.too_long.push(NotFinite { path: part("objects", i), what });
+        }
     }
     found
 }
@@ -159,9 +179,21 @@ fn direction(theta: f32, phi: f32) -> Vec3 {
 
 /// The first of these directions for which the surface of an object is not finite, in words.
 fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String> {
+    // As before a GPU runs it.
+    check_that_it_ends(model, &object.material, scene.display.encoding).ok()?;
     let surface = model.instantiate(&object.material, scene.display.encoding);
     let (value, where_) = directed(&*surface, model).or_else(|| everywhere(&*surface, scene))?;
     Some(of_model(object.name.as_deref(), model.declaration.id, value, &where_))
+}
+
+fn too_long(object: &Object, model: &ModelEntry, registry: &Registry) -> String {
+    let id = model.declaration.id;
+    let file = registry.custom_file(id).map_or_else(String::new, |file| format!(" of {}", file.shown()));
+    let why = model.not_on_cpu().unwrap_or_default();
+    format!(
+        "{}has the reflection model {id}{file}, which cannot be run: {why}",
+        named(object.name.as_deref())
+    )
 }
 
 fn of_model(object: Option<&str>, model: &str, value: Vec3, where_: &str) -> String {

@@ -76,6 +76,8 @@ pub(crate) trait Interpreted: Send + Sync {
     fn trouble(&self) -> Option<String>;
     /// True if a function ran too long.
     fn runs_too_long(&self) -> bool;
+    /// Forgets that a function ran too long: with other parameters it may not.
+    fn run_again(&self);
 }
 
 /// Creates a surface from parameters.
@@ -172,6 +174,13 @@ impl ModelEntry {
     #[must_use]
     pub fn runs_too_long(&self) -> bool {
         self.on_cpu.as_ref().is_some_and(|on_cpu| on_cpu.runs_too_long())
+    }
+
+    /// Lets a function run again that ran too long, for a scene that may have other parameters.
+    pub(crate) fn run_again(&self) {
+        if let Some(on_cpu) = &self.on_cpu {
+            on_cpu.run_again();
+        }
     }
 
     /// True if the CPU interprets the WGSL of the model.

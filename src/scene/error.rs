@@ -139,7 +139,7 @@ pub enum LoadError {
         source: io::Error,
     },
     /// Nothing but white space.
-    #[error("{name} is empty. Load the default scene?")]
+    #[error("{name} is empty; --use-defaults loads the default scene")]
     Empty {
         /// The file.
         name: String,

@@ -117,11 +117,14 @@ fn missing_parts_need_an_answer() {
         assert_eq!(run.err.lines().count(), 1);
     }
     assert_eq!(lcm(&["check", "-", "--use-defaults"], &text).status, Some(0));
-    refused(
-        &lcm(&["render", "-"], ""),
-        1,
-        "standard input is empty. Load the default scene? Use --use-defaults to accept.",
-    );
+    let empty = "standard input is empty; --use-defaults loads the default scene";
+    for arguments in [&["check", "-"][..], &["check", "-", "--no-defaults"], &["render", "-"]] {
+        let run = lcm(arguments, "");
+        refused(&run, 1, empty);
+        // Nobody is there to be asked.
+        assert!(!run.err.contains('?'), "{}", run.err);
+    }
+    assert_eq!(lcm(&["check", "-", "--use-defaults"], "").status, Some(0));
 }
 
 #[test]

@@ -23,7 +23,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::support::{command_in, root};
+use crate::support::{command_in, lcm_in, root};
 
 /// The stack of a thread of Bevy.
 const STACK: usize = 2 << 20;
@@ -597,4 +597,58 @@ fn a_loop_that_only_data_make_endless_is_not_given_to_the_graphics_card() {
         assert!(matches!(run.status, Some(1 | 3)), "{command}: {:?} {}", run.status, run.err);
         assert!(run.err.contains(TOO_LONG), "{command}: {}", run.err);
     }
+}
+
+#[test]
+fn a_check_tells_of_models_that_no_renderer_runs_or_the_gpu_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir(folder.path().join("models")).expect("writable");
+    let text = fs::read_to_string(root().join("scenes/default.json")).expect("readable");
+    let put = |name: &str, id: &str, wgsl: &str, material: serde_json::Value| {
+        fs::write(folder.path().join(format!("models/{id}.wgsl")), wgsl).expect("writable");
+        let mut scene: serde_json::Value = serde_json::from_str(&text).expect("a scene");
+        scene["reflection_model"] = id.into();
+        scene["objects"][0]["material"] = material;
+        fs::write(folder.path().join(format!("{name}.json")), scene.to_string()).expect("writable");
+    };
+    let run = |scenes: &[&str]| {
+        let arguments = [&["check"][..], scenes, &["--models", "models"]].concat();
+        lcm_in(folder.path(), &arguments, b"")
+    };
+    let too_long = |name: &str, id: &str| {
+        format!(
+            "{name}.json: objects[0] has the reflection model {id} of models/{id}.wgsl, which cannot be run: {TOO_LONG}"
+        )
+    };
+    let none = serde_json::json!({});
+    let long = "var y = 0.0;\n    for (var i = 0u; i < 20000u; i++) { y += 1e-6; }";
+    let sometimes = "var y = 0.0;\n    loop { y += 1.0; if y > 10.0 && l.y < 0.9 { break; } }";
+    for (id, wgsl) in [("endless", endless()), ("long", model("", long)), ("sometimes", model("", sometimes))]
+    {
+        put(id, id, &wgsl, none.clone());
+        let checked = run(&[&format!("{id}.json")]);
+        assert_eq!((checked.status, checked.out.as_str()), (Some(1), ""), "{}", checked.err);
+        assert_eq!(checked.err.trim_end(), too_long(id, id));
+    }
+    // Of one model, the values of another scene may be right.
+    let rounds = model("", &long.replace("20000u", "u32(m.rounds)")).replace(
+        "lcm {}",
+        r#"lcm { "parameters": [{ "name": "rounds", "min": 0, "max": 20000, "default": 5 }] }"#,
+    );
+    put("many", "rounds", &rounds, serde_json::json!({ "rounds": 20000 }));
+    put("few", "rounds", &rounds, serde_json::json!({ "rounds": 100 }));
+    let checked = run(&["many.json", "few.json"]);
+    assert_eq!(checked.status, Some(1), "{}", checked.err);
+    assert!(checked.out.starts_with("few.json: valid"), "{}", checked.out);
+    assert!(checked.err.contains(&too_long("many", "rounds")), "{}", checked.err);
+
+    // Its picture by the GPU is right.
+    put("packed", "packed", &model("", "let y = unpack4x8unorm(pack4x8unorm(vec4(x))).x;"), none);
+    let checked = run(&["packed.json"]);
+    assert_eq!(checked.status, Some(0), "{}", checked.err);
+    assert!(checked.out.starts_with("packed.json: valid"), "{}", checked.out);
+    let begin =
+        "packed.json: objects[0] has the reflection model packed, which the CPU renderer cannot run (it ";
+    assert!(checked.err.starts_with(begin) && checked.err.lines().count() == 1, "{}", checked.err);
+    assert!(checked.err.contains("only the GPU draws it"), "{}", checked.err);
 }
