@@ -13,7 +13,7 @@ use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
-    files::{self, Draft, FileError},
+    files::{self, Draft, FileError, FolderDraft},
     registry::Registry,
     study,
 };
@@ -52,8 +52,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     // A write error is better known now than in half a minute.
     outputs::spare(folder, &inputs([], [], registry))?;
     free(folder, arguments.overwrite)?;
-    // Around all of it, so that no empty folder stays if it is ended.
-    files::in_folder(folder, || report(arguments, options, registry).map_err(Stopped::Failed)).map_err(
+    // Around all of it, so that no empty folder stays if it is ended. A new report is made beside its place.
+    let within = if folder.exists() { folder } else { files::folder_of(folder) };
+    files::in_folder(within, || report(arguments, options, registry).map_err(Stopped::Failed)).map_err(
         |stopped| match stopped {
             Stopped::Folder(error) => unwritten(folder, &FileError::from(error)),
             Stopped::Failed(failure) => failure,
@@ -63,7 +64,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
 
 fn report(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
     let folder = &arguments.output;
-    Draft::new(&folder.join(study::PAGE)).map_err(|error| unwritten(folder, &error))?;
+    let begun = match folder.exists() {
+        true => Draft::new(&folder.join(study::PAGE)).map(drop),
+        false => FolderDraft::new(folder).map(drop),
+    };
+    begun.map_err(|error| unwritten(folder, &error))?;
     let had_report = study::is_report(folder);
     let start = Instant::now();
     let bar = progress(study::STEPS, options);

@@ -27,6 +27,21 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     draft.replace()
 }
 
+/// Writes several documents, each as [`write()`] does; none takes its place before all are on disk.
+///
+/// # Errors
+/// As [`write()`]. If one cannot be written there, as on a full disk, nothing is changed.
+pub fn write_all<'a>(documents: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<(), FileError> {
+    let draft = |(path, bytes): (PathBuf, &[u8])| -> Result<Draft, FileError> {
+        let mut draft = Draft::new(&path)?;
+        draft.write_all(bytes)?;
+        draft.sync()?;
+        Ok(draft)
+    };
+    let drafts = documents.into_iter().map(draft).collect::<Result<Vec<_>, _>>()?;
+    drafts.into_iter().try_for_each(Draft::replace)
+}
+
 /// Writes a new document, as [`write()`] does.
 ///
 /// # Errors

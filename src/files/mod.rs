@@ -10,8 +10,8 @@
 //!
 //! To write:
 //! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: the same for a new
-//!   file; [`Draft`]: the same in steps. They keep mode, owner, group, links and hard links, and refuse pipes, devices
-//!   and sockets.
+//!   file; [`write_all`]: the same for several; [`Draft`]: the same in steps. They keep mode, owner, group, links and
+//!   hard links, and refuse pipes, devices and sockets.
 //! - [`FolderDraft`]: a folder of files, all or nothing.
 //! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called before it is
 //!   calculated.
@@ -59,7 +59,7 @@ mod stamp;
 mod words;
 
 pub use before::Before;
-pub use draft::{Draft, create, write};
+pub use draft::{Draft, create, write, write_all};
 pub use folder::{FolderDraft, in_folder};
 pub use input::{is_descriptor, is_stream, read_input};
 pub use inside::inside;

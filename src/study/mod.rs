@@ -5,14 +5,14 @@
 //! the highlight), `layers`; their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
 //! Every sentence of a conclusion that depends on a number is chosen by that number.
 
-use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
+use std::{fmt::Write as _, fs, io, iter, path::Path, sync::Arc};
 
 use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
     curves::draw::Plot,
-    files,
+    files::{self, Before, FolderDraft},
     optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
     reference::{self, Picture},
@@ -125,18 +125,25 @@ pub struct Study {
 }
 
 impl Study {
-    /// Writes `index.html` and the tables into a folder, which is created if necessary. Each file appears complete or
-    /// not at all.
+    /// Writes `index.html` and the tables into a folder, all or nothing. The folder is made whole if there is none;
+    /// other files in an existing one stay.
     ///
     /// # Errors
     /// If the folder cannot be created or a file cannot be written.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
-        fs::create_dir_all(folder)?;
-        let put = |name: &str, text: &str| files::write(&folder.join(name), text.as_bytes());
-        for table in &self.tables {
-            put(&format!("{}.csv", table.name), &table.csv)?;
+        let tables = self.tables.iter().map(|table| (format!("{}.csv", table.name), table.csv.as_bytes()));
+        // The page is first: by it the report is known, and may be replaced, if a killed process left half of it.
+        let all = iter::once((PAGE.to_owned(), self.html.as_bytes())).chain(tables);
+        let before = Before::of(folder);
+        if !before.is_nothing() {
+            return Ok(files::write_all(all.map(|(name, text)| (folder.join(name), text)))?);
         }
-        Ok(put(PAGE, &self.html)?)
+        fs::create_dir_all(files::folder_of(folder))?;
+        let draft = FolderDraft::new(folder)?;
+        for (name, text) in all {
+            draft.add(&name, text, false)?;
+        }
+        Ok(draft.replace_if(&before)?)
     }
 }
 

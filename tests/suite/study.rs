@@ -2,7 +2,9 @@
 
 use std::{fs, path::Path};
 
-use crate::support::lcm;
+use lights_camera_models::study::{Study, Table};
+
+use crate::support::{lcm, names};
 
 /// The report of a quick run and its folder.
 fn quick() -> (tempfile::TempDir, String) {
@@ -98,4 +100,28 @@ fn where_the_study_cannot_write_it_says_so_at_once() {
     let run = lcm(&["study", "-o", file.join("below").to_str().unwrap()], "");
     assert_eq!(run.status, Some(4), "{}", run.err);
     assert!(run.err.contains("could not be written") && run.err.lines().count() == 1, "{}", run.err);
+}
+
+#[test]
+fn a_report_is_written_whole_or_not_at_all() {
+    let around = tempfile::tempdir().unwrap();
+    let report = |html: &str, last: &'static str| Study {
+        html: html.to_owned(),
+        tables: ["numbers", last].map(|name| Table { name, csv: format!("a,{html}\n") }).into(),
+    };
+    // A place that takes no file fails in the same place as a disk that is full.
+    let new = around.path().join("deep/new");
+    assert!(report("one", "../outside").write(&new).is_err());
+    assert!(!new.exists());
+    assert_eq!(names(&around.path().join("deep")), [""; 0]);
+    report("one", "more").write(&new).unwrap();
+    assert_eq!(names(&new), ["index.html", "more.csv", "numbers.csv"]);
+    // Over an earlier report, beside what is somebody's.
+    fs::create_dir(new.join("taken.csv")).unwrap();
+    assert!(report("two", "taken").write(&new).is_err());
+    let content = |name: &str| fs::read_to_string(new.join(name)).unwrap();
+    assert_eq!((content("index.html"), content("numbers.csv")), ("one".to_owned(), "a,one\n".to_owned()));
+    report("two", "more").write(&new).unwrap();
+    assert_eq!((content("index.html"), content("more.csv")), ("two".to_owned(), "a,two\n".to_owned()));
+    assert_eq!(names(&new), ["index.html", "more.csv", "numbers.csv", "taken.csv"]);
 }
