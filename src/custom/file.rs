@@ -1,6 +1,6 @@
 //! Reading shader files, and locating bytes that are not text.
 
-use std::{io, path::Path};
+use std::{fs, io, path::Path};
 
 use crate::{
     files::{self, FileError},
@@ -25,6 +25,9 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
     };
     let bytes = files::read(file, MAX_BYTES).map_err(|error| {
         failed(match error {
+            FileError::Io(e) if e.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(file).is_ok() => {
+                "this is a link to a file that is missing".to_owned()
+            }
             FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
                 "the file is missing; it reloads when restored".to_owned()
             }
@@ -52,8 +55,6 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     fn said(bytes: &[u8]) -> Result<String, String> {

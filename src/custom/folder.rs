@@ -13,7 +13,7 @@ use std::{
 
 use rayon::prelude::*;
 
-use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, read, source_path};
+use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, problem, read, source_path};
 use crate::files::Shown as _;
 use crate::{
     registry::{CustomModel, MODELS, Registry},
@@ -55,21 +55,26 @@ pub struct Declared {
 /// # Errors
 /// If the folder cannot be read.
 pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    Ok(names_in(folder)?.into_iter().filter(|path| path.is_file()).collect())
+}
+
+/// The same with what only has such a name: folders, pipes, links to nothing.
+fn names_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         Err(e) => return Err(e),
     };
-    let mut files = Vec::new();
+    let mut names = Vec::new();
     for entry in entries {
         let path = entry?.path();
         let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if path.extension().is_some_and(|e| e == EXTENSION) && !hidden && path.is_file() {
-            files.push(path);
+        if path.extension().is_some_and(|e| e == EXTENSION) && !hidden {
+            names.push(path);
         }
     }
-    files.sort();
-    Ok(files)
+    names.sort();
+    Ok(names)
 }
 
 /// Reads the complete model with that id, and the files that it imports, if the registry's folder has it and the
@@ -90,6 +95,10 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
         Err(problem) => return broken(id, vec![(path, problem)], registry),
     };
     if !is_model(&text) && registry.model(id).is_none() {
+        if is_empty(&text) {
+            let problem = empty(&path, &text);
+            return broken(id, vec![(path, problem)], registry);
+        }
         registry.sources_mut().edit(named(&path), text);
         return Reading::Missing;
     }
@@ -118,10 +127,21 @@ pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProb
     Ok(sources)
 }
 
-/// The file of a model unknown to the registry.
+/// What has the name of the file of a model unknown to the registry; it may be no file.
 fn file_of(id: &str, registry: &Registry) -> Option<PathBuf> {
     let file = registry.custom_folder()?.join(id).with_extension(EXTENSION);
-    (is_id(id) && file.is_file()).then_some(file)
+    (is_id(id) && fs::symlink_metadata(&file).is_ok()).then_some(file)
+}
+
+/// True if a text says nothing: it is no model, and nothing that models share.
+fn is_empty(text: &str) -> bool {
+    text.trim().is_empty()
+}
+
+/// What is wrong with an empty file.
+fn empty(path: &Path, text: &str) -> ShaderProblem {
+    let message = "the file is empty; a model begins with a comment /* lcm … */ and defines fn response";
+    problem(path, text, (0, message.to_owned()))
 }
 
 /// Notes why a file gives no model.
@@ -190,8 +210,8 @@ pub fn declare_folder(folder: &Path, registry: &mut Registry) -> Declared {
 /// read before are skipped, and so are completely known models.
 pub fn declare_rest(registry: &mut Registry) -> Declared {
     let Some(folder) = registry.custom_folder() else { return Declared::default() };
-    let paths = match files_in(folder) {
-        Ok(paths) => paths,
+    let (paths, others): (Vec<_>, Vec<_>) = match names_in(folder) {
+        Ok(paths) => paths.into_iter().partition(|path| path.is_file()),
         Err(e) => {
             let problem = ShaderProblem {
                 file: "models".to_owned(),
@@ -219,7 +239,14 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
         })
         .collect();
     let files = found.len();
-    let mut problems = Vec::new();
+    let mut problems = Problems::new();
+    for path in others {
+        let Err(problem) = file::read(&path, &named(&path)) else { continue };
+        problems.push((path.clone(), problem.clone()));
+        if let Some(id) = id_of(&path) {
+            broken(id, vec![(path.clone(), problem)], registry);
+        }
+    }
     let mut kinds: HashMap<_, _> =
         registry.material_parameters().map(|p| (p.name, discriminant(&p.kind))).collect();
     for (path, print, found) in found {
@@ -256,6 +283,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
         }
     }
     registry.sort_custom_models();
+    problems.sort_by(|(a, _), (b, _)| a.cmp(b));
     Declared { files, problems }
 }
 
@@ -267,6 +295,10 @@ fn look(path: &Path, registry: &Registry) -> Found {
             Ok(model) => Found::Model(Box::new(model)),
             Err(problems) => Found::Broken(problems),
         },
+        // One that was a model is none any more.
+        Ok(text) if is_empty(&text) && !id_of(path).is_some_and(|id| registry.model(id).is_some()) => {
+            Found::Broken(vec![empty(path, &text)])
+        }
         Ok(text) => Found::Shared(text),
     }
 }

@@ -60,6 +60,9 @@ impl Bench {
         bench.put("larger.wgsl", &"nonsense ".repeat(1 << 18));
         fs::write(bench.models().join("bytes.wgsl"), b"// \xff").unwrap();
         fs::create_dir(bench.models().join("folder.wgsl")).unwrap();
+        bench.put("nothing.wgsl", " \n");
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("gone", bench.models().join("lost.wgsl")).unwrap();
         // Reading it would wait forever.
         #[cfg(target_os = "linux")]
         assert!(
@@ -202,6 +205,12 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
         ("models duplicate bad mine", "", 1, bad),
         ("evaluate bytes", ANGLES, 1, "bytes.wgsl:1:4"),
         ("evaluate larger", ANGLES, 1, "larger than 1 MiB"),
+        ("evaluate folder", ANGLES, 1, "this is a folder, not a regular file"),
+        #[cfg(target_os = "linux")]
+        ("evaluate pipe", ANGLES, 1, "this is a named pipe, not a regular file"),
+        ("evaluate nothing", ANGLES, 1, "the file is empty"),
+        #[cfg(unix)]
+        ("evaluate lost", ANGLES, 1, "this is a link to a file that is missing"),
     ] {
         let told = bench.run(command, input);
         assert_eq!(told.status, Some(status), "{command}: {}", told.err);
@@ -212,11 +221,15 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
             assert!(!told.err.contains(other), "{command} tells of {other}: {}", told.err);
         }
     }
-    // Unreadable files, and files that are no models.
-    for none in ["pipe", "folder", "huge"] {
-        let told = bench.run(&format!("evaluate {none}"), ANGLES);
-        assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{none}: {}", told.err);
-    }
+    // A file that is no model is none of its errors.
+    let told = bench.run("evaluate huge", ANGLES);
+    assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{}", told.err);
+    assert!(told.err.contains("models/huge.wgsl is no model: it neither begins with"), "{}", told.err);
+    // A scene names it, too.
+    let told = bench.run("check -", &scene("nothing", &json!({}), None));
+    assert_eq!(told.status, Some(1));
+    let said = "the file of that custom model has an error: models/nothing.wgsl:1:1";
+    assert!(told.err.contains(said) && !told.err.contains("lambert"), "{}", told.err);
 }
 
 #[test]
@@ -281,10 +294,22 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
     // The declaration of the broken one is right.
     assert_eq!(models.len(), Registry::builtin().models().len() + MANY + 1);
     assert!(read(&listed).0.is_empty(), "{}", listed.err);
-    for expected in ["worse.wgsl:1:", "bytes.wgsl:1:4", "larger than 1 MiB"] {
+    for expected in [
+        "worse.wgsl:1:",
+        "bytes.wgsl:1:4",
+        "larger than 1 MiB",
+        "nothing.wgsl:1:1",
+        "the file is empty",
+        "folder.wgsl:1:1",
+        "this is a folder, not a regular file",
+        #[cfg(unix)]
+        "this is a link to a file that is missing",
+        #[cfg(target_os = "linux")]
+        "this is a named pipe, not a regular file",
+    ] {
         assert!(listed.err.contains(expected), "{expected} is not in {}", listed.err);
     }
-    for unexpected in ["bad.wgsl", "huge.wgsl", "pipe.wgsl", "folder.wgsl", "fuzz_"] {
+    for unexpected in ["bad.wgsl", "huge.wgsl", "fuzz_"] {
         assert!(!listed.err.contains(unexpected), "{unexpected} is in {}", listed.err);
     }
     let schema = bench.run("schema", "");

@@ -309,7 +309,10 @@ fn models_and_shaders_that_are_no_files_hold_nothing_up() {
     pipe(&at.join("models/pipe.wgsl"));
     symlink("/dev/zero", at.join("models/zero.wgsl")).expect("linked");
     let listed = run(&mut lcm(at, ["models", "--models", "models"]));
-    assert_eq!(listed.status, Some(0), "{}", listed.err);
+    assert_eq!(listed.status, Some(1), "{}", listed.err);
+    for said in ["this is a named pipe, not a regular file", "this is a device, not a regular file"] {
+        assert!(listed.err.contains(said), "{}", listed.err);
+    }
     // An export must not be compared with an endless file.
     let shader = at.join("assets/shaders/loop.wgsl");
     fs::create_dir_all(shader.parent().expect("has one")).expect("made");

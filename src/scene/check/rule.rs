@@ -249,11 +249,18 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     })
 }
 
-/// The detail for an id without a file in the folder of custom models, from which it may be missing.
+/// The detail for an id without a model in the folder of custom models: its file may be missing, or be no model.
 fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
     let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
     let file = folder.join(id).with_extension(custom::EXTENSION);
-    Some(format!("the folder of custom models has no {}", file.shown()))
+    let file_shown = file.shown();
+    Some(if file.is_file() {
+        format!(
+            "{file_shown} is no model: it neither begins with a comment /* lcm … */ nor defines fn response"
+        )
+    } else {
+        format!("the folder of custom models has no {file_shown}")
+    })
 }
 
 /// The id of a shading model.
