@@ -3,6 +3,11 @@
 use super::error::LoadError;
 use crate::text::place::Lines;
 
+/// The bytes of a text in UTF-8 without the byte order mark that some programs write before it.
+pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}
+
 /// The text of the bytes, or a guess at their encoding.
 pub(crate) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadError> {
     let not_text = |at: usize, what: String| {
@@ -11,8 +16,7 @@ pub(crate) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadErr
         LoadError::NotUtf8 { name: name.to_owned(), place: Lines::new(before).place(at), what }
     };
     let first = |what: &str| Err(not_text(0, what.to_owned()));
-    let magic: [(&[u8], &str); 9] = [
-        (b"\xEF\xBB\xBF", "the file begins with a byte order mark (EF BB BF); save it as UTF-8 without one"),
+    let magic: [(&[u8], &str); 8] = [
         (b"\xFF\xFE\0\0", "the file is UTF-32; save it as UTF-8"),
         (b"\0\0\xFE\xFF", "the file is UTF-32; save it as UTF-8"),
         (b"\xFF\xFE", "the file is UTF-16 (little-endian); save it as UTF-8"),

@@ -604,8 +604,8 @@ fn what_is_not_utf_8_json_is_recognised() {
         ),
         (utf16(b"", u16::to_le_bytes), "scene.json:1:1: not UTF-8 text: the file seems to be UTF-16"),
         (
-            b"\xEF\xBB\xBF{}".to_vec(),
-            "scene.json:1:1: not UTF-8 text: the file begins with a byte order mark",
+            b"\xEF\xBB\xBF{\"a\": \xE9}".to_vec(),
+            "scene.json:1:7: not UTF-8 text: unexpected byte 0xE9; the file may be Latin-1",
         ),
         (
             b"\x89PNG\r\n\x1a\n\0\0".to_vec(),
@@ -620,6 +620,8 @@ fn what_is_not_utf_8_json_is_recognised() {
         (b"{\"a\": \"\xE2\x82".to_vec(), "the file ends within a character; it seems to be truncated"),
         (Vec::new(), "scene.json is empty; --use-defaults loads the default scene"),
         (b" \n\t\n".to_vec(), "scene.json is empty; --use-defaults loads the default scene"),
+        (b"\xEF\xBB\xBF".to_vec(), "scene.json is empty; --use-defaults loads the default scene"),
+        (b"\xEF\xBB\xBF{\"a\": nul}".to_vec(), "scene.json:1:7: not JSON: nul is not JSON"),
         (b"[]".to_vec(), "scene.json:1:1: the scene is [], but a scene must be an object"),
         (b"\"x\"".to_vec(), "scene.json:1:1: the scene is \"x\", but a scene must be an object"),
         (br#"{"name": "\ud800"}"#.to_vec(), "not JSON"),

@@ -3,7 +3,9 @@
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     registry::Registry,
-    scene::{Scene, error::LoadError, read, save::to_json, schema, syntax::check_syntax},
+    scene::{
+        Scene, encoding::after_mark, error::LoadError, read, save::to_json, schema, syntax::check_syntax,
+    },
     text::{
         json::{self, STRICT},
         place::Lines,
@@ -72,5 +74,5 @@ fn schema_of(bytes: &[u8]) -> Option<String> {
         #[serde(rename = "$schema")]
         schema: Option<String>,
     }
-    serde_json::from_slice::<Head>(bytes).ok()?.schema
+    serde_json::from_slice::<Head>(after_mark(bytes)).ok()?.schema
 }

@@ -3,7 +3,10 @@
 use std::{cell::OnceCell, path::Path as FilePath};
 
 use crate::{
-    scene::{encoding::decode, error::LoadError},
+    scene::{
+        encoding::{after_mark, decode},
+        error::LoadError,
+    },
     text::place::Place,
 };
 
@@ -25,24 +28,12 @@ impl<'a> Source<'a> {
         Self { bytes, name, folder, derived: OnceCell::new() }
     }
 
-    /// The content as text.
+    /// The content as text, after the byte order mark with which some programs begin: places do not count it.
     ///
     /// # Errors
     /// [`LoadError`] if it is not UTF-8, with a guess at what it is instead, or nothing but white space.
     pub fn text(&self) -> Result<&str, LoadError> {
-        self.text_of(self.bytes)
-    }
-
-    /// The content as text, after the byte order mark with which spreadsheets begin.
-    ///
-    /// # Errors
-    /// As [`text`](Self::text).
-    pub fn text_after_mark(&self) -> Result<&str, LoadError> {
-        self.text_of(self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(self.bytes))
-    }
-
-    fn text_of<'b>(&self, bytes: &'b [u8]) -> Result<&'b str, LoadError> {
-        let text = decode(bytes, self.name)?;
+        let text = decode(after_mark(self.bytes), self.name)?;
         if text.trim().is_empty() {
             return Err(LoadError::Empty { name: self.name.to_owned() });
         }

@@ -17,7 +17,7 @@ use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     light::MAX_LIGHTS,
     registry::Registry,
-    scene::{MAX_OBJECTS, Scene, error::LoadError, read, save::to_json},
+    scene::{MAX_OBJECTS, Scene, encoding::after_mark, error::LoadError, read, save::to_json},
     text::place::Lines,
 };
 
@@ -57,15 +57,14 @@ impl SceneFormat for Csv {
 
     /// True if the first line that is no comment begins with the name of the first column.
     fn recognises(&self, content: &[u8]) -> bool {
-        let text = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
-        let mut lines = text.split(|b| b"\r\n".contains(b)).map(<[u8]>::trim_ascii);
+        let mut lines = after_mark(content).split(|b| b"\r\n".contains(b)).map(<[u8]>::trim_ascii);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
         let first = first.split(|b| b",;\t".contains(b)).next().unwrap_or_default().trim_ascii();
         [columns::PART.as_bytes(), b"\"part\""].contains(&first)
     }
 
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
-        let text = source.text_after_mark()?;
+        let text = source.text()?;
         let lines = grid::with_line_feeds(text);
         let syntax = |(at, what): (usize, String)| {
             source.syntax_error(self.name(), Lines::new(&lines).place(at), what)
