@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::{
     formats::{self, UnknownExtension},
-    load::{MAX_FILE_BYTES, Missing},
+    load::{MAX_PICTURE_BYTES, Missing},
 };
 use crate::files::Shown as _;
 pub use crate::text::{
@@ -124,11 +124,13 @@ pub enum LoadError {
         /// The file.
         name: String,
     },
-    /// Larger than any legal scene.
-    #[error("{name} is larger than {} MiB, the most allowed for a scene; it was not read", MAX_FILE_BYTES >> 20)]
+    /// Larger than any legal scene, or picture with one.
+    #[error("{name} is larger than {} MiB, the most allowed for a {}; it was not read", .most >> 20, kind_of(*.most))]
     TooLarge {
         /// The file.
         name: String,
+        /// The limit in bytes.
+        most: u64,
     },
     /// Another failure of the operating system.
     #[error("{name} could not be read: {}", words(.source))]
@@ -220,7 +222,7 @@ impl LoadError {
         match error {
             FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path, registry), name },
             FileError::Kind(kind) => Self::NoFile { name, kind },
-            FileError::TooLarge(_) => Self::TooLarge { name },
+            FileError::TooLarge(most) => Self::TooLarge { name, most },
             error => Self::from_io(path, &name, error.into(), registry),
         }
     }
@@ -239,12 +241,17 @@ impl LoadError {
             Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
             Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
             Self::PermissionDenied { .. } => (None, "could not be read: no permission".to_owned()),
-            Self::TooLarge { .. } => (None, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)),
+            Self::TooLarge { most, .. } => (None, format!("is larger than {} MiB", most >> 20)),
             Self::Io { source, .. } => (None, format!("could not be read: {}", words(source))),
             Self::Empty { .. } => (None, "is empty".to_owned()),
         };
         vec![Problem { place, ..Problem::about(Path::root(), what) }]
     }
+}
+
+/// What has this limit.
+fn kind_of(most: u64) -> &'static str {
+    if most == MAX_PICTURE_BYTES { "picture with a scene in it" } else { "scene" }
 }
 
 /// One line per problem.

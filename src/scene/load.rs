@@ -168,7 +168,7 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     // A stream does not report its length.
     from.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(LoadError::TooLarge { name: name.to_owned() });
+        return Err(LoadError::TooLarge { name: name.to_owned(), most: MAX_FILE_BYTES });
     }
     Ok(bytes)
 }

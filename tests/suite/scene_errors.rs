@@ -649,6 +649,9 @@ fn files_that_cannot_be_read_say_why() {
     fs::write(at.join("empty.json"), "").expect("written");
     let huge = fs::File::create(at.join("huge.json")).expect("created");
     huge.set_len(65 << 20).expect("a hole takes no space");
+    fs::write(at.join("picture.png"), b"\x89PNG\r\n\x1a\n").expect("written");
+    let picture = fs::File::options().write(true).open(at.join("picture.png")).expect("there");
+    picture.set_len(1025 << 20).expect("a hole takes no space");
     fs::write(at.join("broken.json"), "{\"lights\": [").expect("written");
     for (file, expected) in [
         ("scenes/rom.json", "scenes/rom.json: file not found. Did you mean scenes/room.json?"),
@@ -656,6 +659,10 @@ fn files_that_cannot_be_read_say_why() {
         ("scenes", "scenes is a folder; a scene is a single file; this one holds room.json"),
         ("empty.json", "empty.json is empty; --use-defaults loads the default scene"),
         ("huge.json", "huge.json is larger than 64 MiB, the most allowed for a scene; it was not read"),
+        (
+            "picture.png",
+            "picture.png is larger than 1024 MiB, the most allowed for a picture with a scene in it; it was not read",
+        ),
         ("broken.json", "broken.json:1:13: not JSON: the file ends within a list; it seems to be truncated"),
         ("scenes/room.json/x", "scenes/room.json/x could not be read"),
     ] {
