@@ -20,7 +20,7 @@ use crate::{
     registry::Registry,
 };
 
-pub use super::syntax::MAX_DEPTH;
+pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
 
 /// Larger files are refused before they are read. Reading takes time proportional to the file, whatever is in it, and at
 /// most two seconds per mebibyte, as for all readers: `tests/suite/hostile_text.rs`. The largest legal scene, with every parameter of 10 000 objects

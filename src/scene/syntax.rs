@@ -4,35 +4,59 @@ use serde::{Deserialize as _, de::IgnoredAny};
 
 /// The deepest nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
+/// The most values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`. In memory each takes
+/// up to 300 bytes, whereas its text may have two. 10 000 objects with every parameter of all models have about half.
+pub const MAX_VALUES: usize = 2_000_000;
 
 /// Strict JSON, or the first wrong byte and the expectation there.
 pub(crate) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
     let mut json = serde_json::Deserializer::from_str(text);
     let strict = IgnoredAny::deserialize(&mut json).and_then(|_| json.end());
     strict.map_err(|e| explain(text, &e))?;
-    match too_deep(text) {
-        Some(at) => Err((at, format!("nested more than {MAX_DEPTH} levels deep; a scene needs four"))),
+    match too_much(text, MAX_VALUES) {
+        Some(problem) => Err(problem),
         None => Ok(()),
     }
 }
 
-/// The place where nesting exceeds [`MAX_DEPTH`], in text that is JSON.
-fn too_deep(text: &str) -> Option<usize> {
-    let (mut depth, mut in_text, mut escaped) = (0usize, false, false);
+/// The place where a text that is JSON exceeds [`MAX_DEPTH`] or has more values than `most`, and which.
+/// Asked before a tree of it is built.
+fn too_much(text: &str, most: usize) -> Option<(usize, String)> {
+    let (mut depth, mut values) = (0usize, 0usize);
+    let (mut in_text, mut escaped, mut in_word) = (false, false, false);
     for (at, byte) in text.bytes().enumerate() {
+        let mut begins = false;
         match byte {
             _ if escaped => escaped = false,
             b'\\' if in_text => escaped = true,
-            b'"' => in_text = !in_text,
+            b'"' => {
+                in_text = !in_text;
+                begins = in_text;
+            }
             _ if in_text => {}
             b'{' | b'[' => {
                 depth += 1;
                 if depth > MAX_DEPTH {
-                    return Some(at);
+                    let what = format!("nested more than {MAX_DEPTH} levels deep; a scene needs four");
+                    return Some((at, what));
                 }
+                begins = true;
             }
-            b'}' | b']' => depth -= 1,
-            _ => {}
+            b'}' | b']' => (depth, in_word) = (depth - 1, false),
+            // What was counted last is a key.
+            b':' => values -= 1,
+            b',' | b' ' | b'\t' | b'\n' | b'\r' => in_word = false,
+            // A number, true, false or null.
+            _ => begins = !std::mem::replace(&mut in_word, true),
+        }
+        if begins {
+            values += 1;
+            if values > most {
+                let what = format!(
+                    "more than {most} values (lists, objects, numbers and texts); the largest scene has fewer"
+                );
+                return Some((at, what));
+            }
         }
     }
     None
@@ -135,6 +159,8 @@ mod tests {
         scene::load::{Defaults, from_text},
     };
 
+    use super::{MAX_VALUES, check_syntax, too_much};
+
     #[test]
     fn syntax_errors_say_where_and_what_was_expected() {
         for (text, place, expected) in [
@@ -179,5 +205,32 @@ mod tests {
             error.to_string(),
             "s.json:1:65: not JSON: nested more than 64 levels deep; a scene needs four"
         );
+    }
+
+    #[test]
+    fn more_values_than_a_scene_has_are_an_error_before_they_take_memory() {
+        let said = |most| {
+            format!(
+                "more than {most} values (lists, objects, numbers and texts); the largest scene has fewer"
+            )
+        };
+        for (unit, values) in [
+            ("[], ", 1),
+            ("-1.5e3 ,\n", 1),
+            ("\"a\\\",[\",", 1),
+            ("{\"a\":[true]},", 3),
+            ("[{}],", 2),
+            ("{\"a\" : \"b\" ,\"c\":null},", 3),
+        ] {
+            // The object, the lists, and the last number of each are five values.
+            let text = format!("{{\"a\": [{0}0], \"q\": [{0}0]}}", unit.repeat(10));
+            let most = 5 + 20 * values;
+            assert_eq!(too_much(&text, most), None, "{unit}");
+            assert_eq!(too_much(&text, most - 1), Some((text.len() - 3, said(most - 1))), "{unit}");
+        }
+        let zeros = |count| format!("[{}0]", "0,".repeat(count - 1));
+        assert_eq!(check_syntax(&zeros(MAX_VALUES - 1)), Ok(()));
+        let text = zeros(MAX_VALUES);
+        assert_eq!(check_syntax(&text), Err((text.len() - 2, said(MAX_VALUES))));
     }
 }

@@ -452,6 +452,7 @@ fn lesson_limits() -> String {
         ("brackets within brackets of an equation", mathematics::MAX_DEPTH.to_string()),
         ("values that a `scene` block sets, lines of `view` and `point`", MAX_LINES.to_string()),
         ("steps of a path in a `scene` block, lists within lists of a value", load::MAX_DEPTH.to_string()),
+        ("values in JSON", load::MAX_VALUES.to_string()),
         ("a condition", format!("{LONGEST_CONDITION} characters, {MAX_COMPARISONS} comparisons")),
         ("brackets and negations within each other in a condition", DEEPEST_CONDITION.to_string()),
         ("problems that the check prints", MAX_PROBLEMS.to_string()),
