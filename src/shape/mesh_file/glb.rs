@@ -3,13 +3,16 @@
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{
-    Accessor, Document, Gltf, Mesh, Semantic,
+    Accessor, Document, Glb, Mesh, Semantic,
     accessor::{DataType, Dimensions},
     buffer::Source,
     mesh::Mode,
 };
 
-use super::model::{Builder, Corner, MAX_VERTICES};
+use super::{
+    json,
+    model::{Builder, Corner, MAX_VERTICES},
+};
 use crate::parameter::FileProblem;
 
 /// The first bytes of such a file.
@@ -28,9 +31,9 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
         (Some(version), _) => return Err(format!("it is glTF of version {version}; version 2 is read")),
     }
     let wrong = |e: gltf::Error| format!("it is no valid glTF: {e}");
-    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(wrong)?;
+    let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(wrong)?;
+    let json = json::read(json.into_owned()).map_err(|what| format!("it is no valid glTF: {what}"))?;
     // The validation of the library trusts these.
-    let json = document.into_json();
     for (i, mesh) in json.meshes.iter().enumerate() {
         let mut attributes = mesh.primitives.iter().flat_map(|p| p.attributes.values());
         if let Some(stray) = attributes.find(|accessor| accessor.value() >= json.accessors.len()) {
@@ -42,7 +45,7 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
         }
     }
     let document = Document::from_json(json).map_err(wrong)?;
-    let blob = blob.unwrap_or_default();
+    let blob = bin.unwrap_or_default();
     for (mesh, place) in placed(&document)? {
         polygons(&mesh, place, &blob, to).map_err(|what| format!("meshes[{}]: {what}", mesh.index()))?;
     }
@@ -253,6 +256,19 @@ mod tests {
     }
 
     #[test]
+    fn whatever_authors_add_is_passed_over() {
+        for extras in [json!("made by hand"), json!(1), json!(null), json!([1, [2]]), json!({ "extras": 3 })]
+        {
+            let mesh = after(|json| {
+                json["extras"] = extras.clone();
+                json["nodes"][0]["extras"] = extras.clone();
+                json["meshes"][0]["primitives"][0]["extras"] = extras.clone();
+            });
+            assert_eq!(mesh, after(|_| {}), "{extras}");
+        }
+    }
+
+    #[test]
     fn nodes_place_their_meshes_and_a_mirror_turns_the_corners() {
         let turned = |node: Value| {
             after(|json| {
@@ -332,6 +348,9 @@ mod tests {
                 json.as_object_mut().expect("an object").retain(|key, _| !key.starts_with("scene"));
             }),
             ("it is no valid glTF: ", |json| json["nodes"][1]["mesh"] = json!(7)),
+            ("it is no valid glTF: string \"none\" in the place of a list (line 1, column ", |json| {
+                json["nodes"] = json!("none")
+            }),
             ("it is no valid glTF: ", |json| {
                 json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
                 json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);

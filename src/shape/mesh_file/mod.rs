@@ -7,6 +7,7 @@ use crate::{
 };
 
 mod glb;
+mod json;
 mod model;
 mod obj;
 mod ply;
