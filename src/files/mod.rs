@@ -5,6 +5,7 @@
 //! - [`read`]`(path, limit)`: the content of a regular file, links followed. It never waits: pipes, devices,
 //!   sockets and folders are refused before they are opened, and so are files larger than the limit.
 //! - [`read_start`]: its first bytes; [`read_range`]: some in the middle.
+//! - [`identity`]: tells a file from all others.
 //! - [`inside`]: tells whether a path leads out of a folder.
 //! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!
@@ -255,6 +256,17 @@ fn options() -> OpenOptions {
 #[must_use]
 pub fn same(a: &Path, b: &Path) -> bool {
     matches!((file_id::get_file_id(a), file_id::get_file_id(b)), (Ok(a), Ok(b)) if a == b)
+}
+
+/// What tells a file from all others, whatever paths lead to it.
+pub type Identity = file_id::FileId;
+
+/// The identity of a regular file, links followed, and its length in bytes.
+#[must_use]
+pub fn identity(path: &Path) -> Option<(Identity, u64)> {
+    let metadata = fs::metadata(path).ok()?;
+    regular(&metadata).ok()?;
+    Some((file_id::get_file_id(path).ok()?, metadata.len()))
 }
 
 /// The end of a path, links followed; nothing need exist there.

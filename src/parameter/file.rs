@@ -80,14 +80,22 @@ struct Content {
 #[derive(Default)]
 struct State {
     /// The numbers of the last version that was legal.
-    numbers: Option<Arc<[f32]>>,
-    /// Another one for every change of the numbers of any file.
-    version: u64,
+    numbers: Option<Arc<Numbers>>,
     /// The mistake in the present version.
     problem: Option<String>,
     /// The present version, if a later one would have another stamp.
     stamp: Option<files::Stamp>,
 }
+
+/// The numbers of a file, which all paths that lead to it share.
+struct Numbers {
+    all: Arc<[f32]>,
+    /// Another one for every change of the numbers of any file.
+    version: u64,
+}
+
+/// What tells files apart, whatever their paths: identity and format.
+type Key = (files::Identity, &'static str);
 
 /// The contents of files on disk that are in use, by path, by the folder of the scene and by format.
 type Contents = HashMap<(PathBuf, PathBuf, &'static str), Weak<Content>>;
@@ -96,6 +104,8 @@ type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
 
 static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
 static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
+/// The numbers in use. An entry keeps none of them.
+static NUMBERS: LazyLock<Mutex<HashMap<Key, Weak<Numbers>>>> = LazyLock::new(Mutex::default);
 static CHANGES: AtomicU64 = AtomicU64::new(0);
 /// The files that [`read_all`] has read and is about to read.
 static READING: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
@@ -106,17 +116,74 @@ pub fn file_changes() -> u64 {
     CHANGES.load(Ordering::Relaxed)
 }
 
-/// Reads all of these that were not read yet, as many at once as there are processors.
-pub fn read_all<'f>(files: impl Iterator<Item = &'f NamedFile>) {
-    let mut contents: Vec<_> = files.map(|file| &file.content).filter(|c| c.first.get().is_none()).collect();
+/// The most bytes of all files that a scene names, each counted once, whatever leads to it. Twenty large models of 20 MiB
+/// are within it.
+pub const MAX_FILES_BYTES: u64 = 512 << 20;
+/// The most numbers of all files that a scene names: 1 GiB in memory. Models in text have a third as many numbers as
+/// bytes, binary ones about as many; but a small file may show the same triangles often.
+pub const MAX_FILES_NUMBERS: usize = 256 << 20;
+
+/// Reads all files of a scene that were not read yet, as many at once as there are processors. A file that several names
+/// lead to is read once.
+///
+/// # Errors
+/// If they have more than [`MAX_FILES_BYTES`] together, which is known before any is read, or more than
+/// [`MAX_FILES_NUMBERS`]: the rest is not read then. The message follows the scene: "names files of …".
+pub fn read_all<'f>(files: impl Iterator<Item = &'f NamedFile>) -> Result<(), String> {
+    read_within(files, MAX_FILES_BYTES, MAX_FILES_NUMBERS)
+}
+
+fn read_within<'f>(
+    files: impl Iterator<Item = &'f NamedFile>,
+    max_bytes: u64,
+    max_numbers: usize,
+) -> Result<(), String> {
+    let mut contents: Vec<_> = files.map(|file| &file.content).collect();
     contents.sort_by_key(|content| Arc::as_ptr(content));
     contents.dedup_by_key(|content| Arc::as_ptr(content));
+    // Each with the others that are the same file.
+    let mut groups: Vec<Vec<&Arc<Content>>> = Vec::with_capacity(contents.len());
+    let mut known: HashMap<Key, usize> = HashMap::new();
+    let mut bytes = 0u64;
+    for content in contents {
+        match content.identity() {
+            None => groups.push(vec![content]),
+            Some((key, length)) => match known.get(&key) {
+                Some(group) => groups[*group].push(content),
+                None => {
+                    known.insert(key, groups.len());
+                    groups.push(vec![content]);
+                    // Larger files are refused one by one, unread.
+                    bytes += if length > content.format.max_bytes { 0 } else { length };
+                }
+            },
+        }
+    }
+    if bytes > max_bytes {
+        let [all, most] = [bytes.div_ceil(1 << 20), max_bytes >> 20];
+        return Err(format!("names files of {all} MiB together; at most {most} MiB are read"));
+    }
+    let is_new = |group: &[&Arc<Content>]| group.iter().any(|content| content.first.get().is_none());
+    let numbers = AtomicUsize::new(0);
     let [done, all] = &READING;
-    all.fetch_add(contents.len(), Ordering::Relaxed);
-    contents.par_iter().for_each(|content| {
-        drop(content.state());
-        done.fetch_add(1, Ordering::Relaxed);
+    all.fetch_add(groups.iter().filter(|group| is_new(group)).count(), Ordering::Relaxed);
+    groups.par_iter().for_each(|group| {
+        let is_new = is_new(group);
+        if let Some((first, others)) = group.split_first()
+            && numbers.load(Ordering::Relaxed) <= max_numbers
+        {
+            let count = first.state().numbers.as_ref().map_or(0, |numbers| numbers.all.len());
+            numbers.fetch_add(count, Ordering::Relaxed);
+            others.iter().for_each(|other| other.read_as(first));
+        }
+        done.fetch_add(usize::from(is_new), Ordering::Relaxed);
     });
+    if numbers.into_inner() > max_numbers {
+        return Err(format!(
+            "names files with more than {max_numbers} numbers together, the most that are read"
+        ));
+    }
+    Ok(())
 }
 
 /// The number of files that [`read_all`] has read, and of those that it was asked to read, in this process.
@@ -219,7 +286,7 @@ impl NamedFile {
     /// The numbers of the last version that was legal, if there was one.
     #[must_use]
     pub fn numbers(&self) -> Option<Arc<[f32]>> {
-        self.content.state().numbers.clone()
+        self.content.state().numbers.as_ref().map(|numbers| numbers.all.clone())
     }
 
     /// The mistake in the present version: file, line, mistake.
@@ -238,7 +305,7 @@ impl NamedFile {
     /// The version of the numbers: another one for other numbers, also of other files.
     #[must_use]
     pub fn version(&self) -> u64 {
-        self.content.state().version
+        self.content.state().numbers.as_ref().map_or(0, |numbers| numbers.version)
     }
 
     /// Something that all that share the content have in common, and nobody else.
@@ -277,22 +344,50 @@ impl Content {
         self.state.read().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Takes over what another content has that is the same file, unless this was read already.
+    fn read_as(&self, other: &Self) {
+        self.first.get_or_init(|| {
+            let (numbers, problem, stamp) = {
+                let state = other.state();
+                (state.numbers.clone(), state.problem.clone(), state.stamp)
+            };
+            // Each is told by its own name.
+            let names = [other, self].map(|content| content.path().map(|path| path.shown().to_string()));
+            let problem = match (problem, names) {
+                (Some(problem), [Some(theirs), Some(ours)]) => Some(
+                    problem.strip_prefix(&theirs).map_or(problem.clone(), |what| format!("{ours}{what}")),
+                ),
+                (problem, _) => problem,
+            };
+            *self.state.write().unwrap_or_else(PoisonError::into_inner) = State { numbers, problem, stamp };
+        });
+    }
+
+    /// What tells the file from others, if it may be read, and its length.
+    fn identity(&self) -> Option<(Key, u64)> {
+        let (identity, length) = files::identity(&self.place(self.path()?).ok()?)?;
+        Some(((identity, self.format.name), length))
+    }
+
+    /// The path of the file from which it is read, if it may be.
+    fn place(&self, path: &Path) -> Result<PathBuf, String> {
+        if outside::is_allowed(path) {
+            return Ok(path.to_owned());
+        }
+        files::inside(&self.folder, path).map_err(|error| match error {
+            files::FileError::Outside(_) => {
+                format!(
+                    "{error}, and a scene may read only what is in its own, unless {} is given",
+                    outside::OPTION
+                )
+            }
+            error => error.to_string(),
+        })
+    }
+
     /// The bytes of the file, if it may be read.
     fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
-        let place = if outside::is_allowed(path) {
-            path.to_owned()
-        } else {
-            files::inside(&self.folder, path).map_err(|error| match error {
-                files::FileError::Outside(_) => {
-                    format!(
-                        "{error}, and a scene may read only what is in its own, unless {} is given",
-                        outside::OPTION
-                    )
-                }
-                error => error.to_string(),
-            })?
-        };
-        files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())
+        files::read(&self.place(path)?, self.format.max_bytes).map_err(|error| error.to_string())
     }
 
     /// True if the file is the one that was read last.
@@ -307,6 +402,7 @@ impl Content {
 
     fn read(&self) -> bool {
         let stamp = self.path().and_then(files::Stamp::settled);
+        let key = self.identity().map(|(key, _)| key);
         let read = match &self.source {
             Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
             Ok(path) => {
@@ -322,10 +418,9 @@ impl Content {
         state.stamp = stamp;
         match read {
             Ok(numbers) => {
-                let others = state.numbers.as_deref() != Some(&numbers[..]);
+                let others = state.numbers.as_ref().is_none_or(|known| known.all[..] != numbers[..]);
                 if others {
-                    state.numbers = Some(numbers.into());
-                    state.version = CHANGES.fetch_add(1, Ordering::Relaxed) + 1;
+                    state.numbers = Some(shared(key, numbers));
                 }
                 state.problem.take().is_some() || others
             }
@@ -336,6 +431,23 @@ impl Content {
             }
         }
     }
+}
+
+/// Numbers that were just read: those in use, if another path to the same file has the same.
+fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
+    let mut all = NUMBERS.lock().unwrap_or_else(PoisonError::into_inner);
+    all.retain(|_, numbers| numbers.strong_count() > 0);
+    if let Some(known) = key.and_then(|key| all.get(&key)?.upgrade())
+        && known.all[..] == numbers[..]
+    {
+        return known;
+    }
+    let version = CHANGES.fetch_add(1, Ordering::Relaxed) + 1;
+    let numbers = Arc::new(Numbers { all: numbers.into(), version });
+    if let Some(key) = key {
+        all.insert(key, Arc::downgrade(&numbers));
+    }
+    numbers
 }
 
 /// The same name for the same file.
@@ -375,60 +487,4 @@ impl PartialEq for Table {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// How often the files of the test were read.
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    static FORMAT: FileFormat = FileFormat {
-        name: "a file of bytes",
-        extensions: &["counted"],
-        max_bytes: 16,
-        read: |bytes| {
-            COUNT.fetch_add(1, Ordering::Relaxed);
-            Ok(bytes.iter().map(|byte| f32::from(*byte)).collect())
-        },
-        shipped: &[],
-    };
-
-    #[test]
-    fn every_file_is_read_once_however_often_it_is_named() {
-        let folder = tempfile::tempdir().expect("a folder");
-        for name in ["a.counted", "b.counted"] {
-            std::fs::write(folder.path().join(name), name).expect("written");
-        }
-        let named = |name: &str| NamedFile::named(name, folder.path(), &FORMAT);
-        let files: Vec<_> = (0..20).map(|i| named(["a.counted", "b.counted"][i % 2])).collect();
-        assert_eq!(COUNT.load(Ordering::Relaxed), 0, "naming a file does not read it");
-        let before = files_read();
-        read_all(files.iter());
-        assert_eq!(COUNT.load(Ordering::Relaxed), 2);
-        let after = files_read();
-        assert!(after[0] >= before[0] + 2 && after[1] >= before[1] + 2, "{before:?} {after:?}");
-        for (i, file) in files.iter().enumerate() {
-            let first = file.numbers().and_then(|numbers| numbers.first().copied());
-            assert_eq!(first, Some(f32::from([b'a', b'b'][i % 2])), "{i}");
-        }
-        std::fs::write(folder.path().join("a.counted"), "c").expect("written");
-        assert!(files[0].read_again() && !files[2].read_again());
-        assert_eq!(files[2].numbers().as_deref(), Some(&[f32::from(b'c')][..]));
-    }
-    #[test]
-    fn a_shipped_file_is_read_once_when_its_numbers_are_needed() {
-        static READ: AtomicUsize = AtomicUsize::new(0);
-        static FORMAT: FileFormat = FileFormat {
-            name: "a counted file",
-            extensions: &["shipped"],
-            max_bytes: 8,
-            read: |bytes| {
-                READ.fetch_add(1, Ordering::Relaxed);
-                Ok(bytes.iter().map(|&byte| f32::from(byte)).collect())
-            },
-            shipped: &[("one", &[1, 2])],
-        };
-        let file = NamedFile::shipped("one", &FORMAT);
-        assert_eq!(READ.load(Ordering::Relaxed), 0);
-        assert_eq!(file.numbers().as_deref(), Some(&[1.0, 2.0][..]));
-        assert_eq!((READ.load(Ordering::Relaxed), file.problem()), (1, None));
-    }
-}
+mod tests;

@@ -18,7 +18,10 @@ mod value;
 
 pub use component::{TypeComponent, Watch};
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
-pub use file::{FileFormat, FileProblem, NamedFile, Table, file_changes, files_read, read_all};
+pub use file::{
+    FileFormat, FileProblem, MAX_FILES_BYTES, MAX_FILES_NUMBERS, NamedFile, Table, file_changes, files_read,
+    read_all,
+};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
 pub use parse::ParseError;
 pub use set::ParameterSet;

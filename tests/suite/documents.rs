@@ -10,7 +10,7 @@ use lights_camera_models::{
     light::{MAX_LIGHTS, ies},
     matching::What,
     optics::{Frame, colour::Encoding},
-    parameter::{Parameter, Value, Values},
+    parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Parameter, Value, Values},
     reference::{self, Settings},
     reflection::ModelEntry,
     registry::Registry,
@@ -474,6 +474,10 @@ fn scene_limits() -> String {
         ("columns of a table", Csv::MAX_COLUMNS.to_string()),
         ("cells and remarks of a table", Csv::MAX_CELLS.to_string()),
         ("objects, lights", format!("{MAX_OBJECTS}, {MAX_LIGHTS}")),
+        (
+            "all files that a scene names",
+            format!("{}, {} numbers in them", mib(MAX_FILES_BYTES), MAX_FILES_NUMBERS),
+        ),
         ("the file of a mesh", mib(mesh_file::FORMAT.max_bytes)),
         (
             "vertices, polygons, corners of a polygon of a mesh",

@@ -107,7 +107,10 @@ pub(in crate::scene) fn checked(
     let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
     // Each with the place in whose order it is listed.
     let mut all: Vec<_> = Vec::with_capacity(problems.len());
-    read_all(scene.files());
+    if let Err(what) = read_all(scene.files()) {
+        let problems = vec![Problem::about(Path::root(), what)];
+        return Err(LoadError::Invalid { name: name.to_owned(), problems });
+    }
     let mut found = check::scene(&scene, registry);
     if !unread.is_empty() {
         found.retain(|problem| !problem.path.ancestors().any(|path| unread.contains(&path)));
