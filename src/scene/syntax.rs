@@ -5,7 +5,7 @@ use serde::{Deserialize as _, de::IgnoredAny};
 /// The deepest nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
 /// The most values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`. In memory each takes
-/// up to 300 bytes, whereas its text may have two. 10 000 objects with every parameter of all models have about half.
+/// up to 300 bytes, whereas its text may have two. 10 000 objects with every parameter of all models have half.
 pub const MAX_VALUES: usize = 2_000_000;
 
 /// Strict JSON, or the first wrong byte and the expectation there.

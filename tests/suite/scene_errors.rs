@@ -15,6 +15,7 @@ use crate::support::{changed, check_wording, full_scene, lcm_in, said, said_of_b
 fn the_full_scene_is_valid() {
     assert_eq!(said(&full_scene().to_string()), "");
     assert_eq!(said(&changed(|_| {})), "");
+    assert_eq!(said(&format!("\u{FEFF}{}", full_scene())), "", "after a byte order mark");
 }
 
 #[test]
