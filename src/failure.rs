@@ -2,6 +2,8 @@
 
 use std::{fmt, io};
 
+use crate::files::words;
+
 /// The reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
@@ -33,7 +35,7 @@ impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::Closed,
-            _ => Self::Write(format!("standard output: {error}")),
+            _ => Self::Write(format!("standard output: {}", words(&error))),
         }
     }
 }

@@ -73,8 +73,9 @@ pub mod program;
 
 pub mod caught;
 
-pub mod failure;
 pub mod files;
+
+pub mod failure;
 pub mod progress;
 pub mod signals;
 pub mod watch;

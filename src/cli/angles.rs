@@ -4,7 +4,7 @@
 use std::io::{BufRead, Read as _};
 
 use super::Outcome;
-use crate::{failure::Failure, parameter::ABOVE_ZERO, scene::load::STDIN, text::quoted};
+use crate::{failure::Failure, files::words, parameter::ABOVE_ZERO, scene::load::STDIN, text::quoted};
 
 /// The longest line, in bytes: four numbers, each written out in full, take a fraction of it.
 const MAX_LINE: usize = 4096;
@@ -129,7 +129,7 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
     fn line(&mut self) -> Result<Option<String>, Failure> {
         let mut line = Vec::new();
         if let Err(e) = (&mut self.input).take(MAX_LINE as u64 + 1).read_until(b'\n', &mut line) {
-            return Err(self.give_up(format!("{STDIN} could not be read: {e}")));
+            return Err(self.give_up(format!("{STDIN} could not be read: {}", words(&e))));
         }
         if line.is_empty() {
             return Ok(None);

@@ -15,7 +15,7 @@ use super::{
     views::{Choice, find},
     workshop::{Workshop, drawable},
 };
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     export::write::inputs,
@@ -369,7 +369,7 @@ fn write(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -
     outputs::tidy_beside(output);
     png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
         io::ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::Write(format!("{} could not be written: {e}", output.shown())),
+        _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(&e))),
     })
 }
 

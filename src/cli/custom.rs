@@ -8,7 +8,7 @@ use super::{
     print, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     custom,
     failure::Failure,
@@ -69,7 +69,7 @@ fn write(id: &str, text: &str, options: Options, places: &Places, known: &Regist
         io::ErrorKind::AlreadyExists => {
             Failure::Write(format!("{} already exists and was kept", path.shown()))
         }
-        _ => Failure::Write(format!("{} could not be written: {e}", path.shown())),
+        _ => Failure::Write(format!("{} could not be written: {}", path.shown(), words(&e))),
     })?;
     print_paths([path.as_path()])?;
     let flags = places.flags();

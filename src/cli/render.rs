@@ -25,7 +25,7 @@ use crate::{
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
-    files::{Kind, is_descriptor, kind as kind_on_disk, printable},
+    files::{Kind, is_descriptor, kind as kind_on_disk, printable, words},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference,
     reflection::ends::check_that_it_ends,
@@ -424,11 +424,11 @@ impl Painter {
         // Not earlier: what is interrupted leaves no empty folder behind.
         let folder = crate::files::folder_of(job.file);
         fs::create_dir_all(folder).map_err(|e| {
-            Failure::Write(format!("the folder {} could not be created: {e}", folder.shown()))
+            Failure::Write(format!("the folder {} could not be created: {}", folder.shown(), words(&e)))
         })?;
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
-            _ => Failure::Write(format!("{} could not be written: {e}", job.file.shown())),
+            _ => Failure::Write(format!("{} could not be written: {}", job.file.shown(), words(&e))),
         })?;
         Ok(remarks)
     }

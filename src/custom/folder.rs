@@ -14,7 +14,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, problem, read, source_path};
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     registry::{CustomModel, MODELS, Registry},
     shader::{
@@ -218,7 +218,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
                 line: 1,
                 column: 1,
                 source: String::new(),
-                message: format!("the folder could not be read: {e}"),
+                message: format!("the folder could not be read: {}", words(&e)),
             };
             return Declared { files: 0, problems: vec![(folder.to_owned(), problem)] };
         }

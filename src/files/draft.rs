@@ -13,7 +13,9 @@ use super::{
     before::{Before, Turn},
     folder_of, follow, is_same, litter,
     living::{self, Living, Temporary},
-    options, regular, tidy,
+    options, regular,
+    shown::Shown as _,
+    tidy,
 };
 
 /// Writes a document, replacing any that exists: all or nothing, and on disk when this returns. Links are followed;
@@ -103,7 +105,15 @@ impl Draft {
                 |file| (file.as_file(), file.path().to_owned()),
             )
         };
-        let (file, living) = Living::making(make, |file| Temporary::File(file.path().to_owned()))?;
+        let missing = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => {
+                let message = format!("there is no folder {}", folder_of(&target).shown());
+                io::Error::new(io::ErrorKind::NotFound, message)
+            }
+            _ => error,
+        };
+        let (file, living) =
+            Living::making(make, |file| Temporary::File(file.path().to_owned())).map_err(missing)?;
         Ok(Self { target, file, living, synced, executable: false })
     }
 

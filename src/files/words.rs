@@ -36,6 +36,8 @@ mod tests {
             (libc::ENOTDIR, "a part of its path is not a folder"),
             (libc::EBUSY, "the system needs it as it is"),
             (libc::ENAMETOOLONG, "the name is too long"),
+            (libc::ENOSPC, "the disk is full"),
+            (libc::EROFS, "the disk is read-only"),
             (libc::EIO, "Input/output error"),
         ] {
             assert_eq!(words(&io::Error::from_raw_os_error(number)), expected);

@@ -8,7 +8,7 @@ use std::{
 
 use thiserror::Error;
 
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
@@ -44,7 +44,7 @@ pub enum AssetError {
     #[error("--models is {}, but it must be a folder", .0.shown())]
     NotAFolder(PathBuf),
     /// It, or something in it, could not be written.
-    #[error("{} could not be written: {error}", .path.shown())]
+    #[error("{} could not be written: {}", .path.shown(), words(.error))]
     Write {
         /// The file or folder.
         path: PathBuf,
@@ -275,8 +275,9 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = files::folder_of(path);
     // A file in the place of the folder must not look as if the file itself were there.
-    fs::create_dir_all(folder)
-        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.shown())))?;
+    fs::create_dir_all(folder).map_err(|e| {
+        io::Error::other(format!("the folder {} could not be made: {}", folder.shown(), words(&e)))
+    })?;
     Ok(files::create(path, text.as_bytes())?)
 }
 

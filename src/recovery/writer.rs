@@ -12,7 +12,7 @@ use std::{
 };
 
 use super::{About, Journal, Store};
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     document::{Document, Revision},
     registry::Registry,
@@ -115,7 +115,7 @@ impl Keeper {
         if let Err(error) =
             thread::Builder::new().name("recovery".to_owned()).spawn(move || shared.run(writer, &trouble))
         {
-            keeper.0.lock().problem = Some(error.to_string());
+            keeper.0.lock().problem = Some(words(&error));
         }
         keeper
     }
@@ -238,7 +238,7 @@ impl Shared {
                     false
                 }
                 Err(error) => {
-                    state.problem = Some(error.to_string());
+                    state.problem = Some(words(&error));
                     true
                 }
             };

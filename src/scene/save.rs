@@ -16,7 +16,7 @@ use super::{
     layout::{ShortNumbers, pretty},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
 };
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     files::{self, Draft, FileError, Kind},
     registry::Registry,
@@ -115,7 +115,7 @@ pub enum SaveError {
         folder: PathBuf,
     },
     /// A failure of the operating system: no permission, no space.
-    #[error("{} was not written: {source}", .path.shown())]
+    #[error("{} was not written: {}", .path.shown(), words(.source))]
     Io {
         /// The file.
         path: PathBuf,

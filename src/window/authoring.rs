@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 pub use crate::library::assets::write_new;
 use crate::{
     custom,
@@ -87,7 +87,9 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
                 format!("{} exists already and was left as it is; choose another name.", path.shown()),
             );
         }
-        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.shown())),
+        Err(e) => {
+            session.say(Severity::Error, format!("{} could not be written: {}.", path.shown(), words(&e)))
+        }
     }
 }
 
@@ -114,7 +116,9 @@ fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
             Severity::Error,
             format!("{} exists already and was left as it is; rename the other file.", path.shown()),
         ),
-        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.shown())),
+        Err(e) => {
+            session.say(Severity::Error, format!("{} could not be written: {}.", path.shown(), words(&e)))
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use bevy::{
 };
 
 use super::{ViewOptions, WindowView, watching::complain};
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     failure::Failure,
     panel::state::Session,
@@ -124,7 +124,7 @@ fn write(
             }
             _ => About::program(),
         };
-        png::write(file, image.width(), image.height(), image.as_raw(), &about).map_err(|e| e.to_string())
+        png::write(file, image.width(), image.height(), image.as_raw(), &about).map_err(|e| words(&e))
     });
     let Err(what) = written else {
         exit.write(AppExit::Success);

@@ -318,7 +318,7 @@ fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> 
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|e| format!("the command {program}{of} does not start ({e})"))?;
+        .map_err(|e| format!("the command {program}{of} does not start ({})", files::words(&e)))?;
     let started = Instant::now();
     match child.wait() {
         Ok(status) if !status.success() && started.elapsed() < PATIENCE => {
@@ -333,5 +333,5 @@ fn otherwise(file: &Path) -> Result<(), String> {
     if cfg!(target_os = "linux") {
         return Err("no editor with a window was found".to_owned());
     }
-    open::that_detached(file).map_err(|e| e.to_string())
+    open::that_detached(file).map_err(|e| files::words(&e))
 }

@@ -163,6 +163,9 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
 /// Shows a folder in the file manager.
 pub(super) fn reveal(folder: &Path, session: &mut Session) {
     if let Err(error) = ::open::that_detached(folder) {
-        session.say(Severity::Warning, format!("The folder {} could not be shown: {error}.", folder.shown()));
+        session.say(
+            Severity::Warning,
+            format!("The folder {} could not be shown: {}.", folder.shown(), files::words(&error)),
+        );
     }
 }

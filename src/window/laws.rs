@@ -12,7 +12,7 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
-use crate::{library::assets::Folders, reflection::law_report::LawReport};
+use crate::{files, library::assets::Folders, reflection::law_report::LawReport};
 
 /// The longest that a check may take: software Vulkan needs seconds for a model at the limits.
 const LONGEST: Duration = Duration::from_secs(120);
@@ -67,7 +67,7 @@ fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
         command.arg("--models").arg(models);
     }
     let streams = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = streams.spawn().map_err(|e| format!("the check did not start: {e}"))?;
+    let mut child = streams.spawn().map_err(|e| format!("the check did not start: {}", files::words(&e)))?;
     let read = |stream: Option<Box<dyn std::io::Read + Send>>| {
         thread::spawn(move || {
             let mut text = String::new();

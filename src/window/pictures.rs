@@ -23,7 +23,7 @@ use super::{
     readback::{Reading, codes},
     views::ShownViews,
 };
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     caption,
     compare::{Shown, compose, size_around},
@@ -253,7 +253,7 @@ impl Job {
     fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
         let about = About::scene(&self.pictured(), &self.registry).with("Renderer", "GPU");
         png::write(file, width, height, rgb8, &about)
-            .map_err(|error| format!("{} could not be written: {error}.", file.shown()))
+            .map_err(|error| format!("{} could not be written: {}.", file.shown(), words(&error)))
     }
 
     /// The scene that the picture shows, with its observer where the camera is: whoever opens the picture sees the same.

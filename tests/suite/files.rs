@@ -350,8 +350,11 @@ fn pictures_go_to_devices_and_pipes() {
     assert_eq!(files::kind(Path::new("/dev/null")).expect("there"), Kind::Device);
     symlink("/dev/full", at.join("full.png")).expect("linked");
     for full in ["/dev/full", "full.png"] {
-        refused(&run(&mut render(at, &["-o", full])), 4, "No space left");
+        refused(&run(&mut render(at, &["-o", full])), 4, "could not be written: the disk is full\n");
     }
+    symlink("nowhere/x.png", at.join("dangling.png")).expect("linked");
+    let said = "dangling.png could not be written: there is no folder nowhere\n";
+    refused(&run(&mut render(at, &["-o", "dangling.png"])), 4, said);
     // A named pipe, with a reader that comes late.
     pipe(&at.join("pipe.png"));
     let from = at.join("pipe.png");
@@ -733,13 +736,13 @@ fn output_that_cannot_be_written_has_status_4() {
         "models new mine --models models",
     ] {
         let ran = run(&mut shell(at, &format!("\"$LCM\" {arguments} > /dev/full")));
-        refused(&ran, 4, "standard output: No space left on device");
+        refused(&ran, 4, "standard output: the disk is full\n");
     }
     for (command, table) in
         [("evaluate", "theta_i,phi_i,theta_o,phi_o\\n1,2,3,4\\n"), ("albedo", "mu\\n1\\n")]
     {
         let script = format!("printf '{table}' | \"$LCM\" {command} lambert > /dev/full");
-        refused(&run(&mut shell(at, &script)), 4, "standard output: No space left on device");
+        refused(&run(&mut shell(at, &script)), 4, "standard output: the disk is full\n");
     }
     // Nobody is left to inform.
     let ran = run(&mut shell(at, "\"$LCM\" --help 2>&1 >&3 3>&- | cat; \"$LCM\" --hlp 2> /dev/full"));

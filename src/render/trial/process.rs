@@ -18,7 +18,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::verdict::Verdict;
-use crate::files::Shown as _;
+use crate::files::{Shown as _, words};
 use crate::{
     files,
     shader::{
@@ -279,8 +279,8 @@ impl Worker {
     /// Starts a process and waits until it can be asked.
     fn start(&self) -> Result<Running, String> {
         let program = self.program.shown();
-        let mut process =
-            Running::start(&self.program).map_err(|e| format!("{program} could not be started: {e}"))?;
+        let mut process = Running::start(&self.program)
+            .map_err(|e| format!("{program} could not be started: {}", words(&e)))?;
         match process.answer(START, u64::MAX, || self.shared.lock().closed) {
             Fate::Answered(Answer::Ready) => Ok(process),
             Fate::Died(Some(status)) => Err(format!("{program} ended at once: {status}")),
