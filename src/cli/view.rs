@@ -151,6 +151,9 @@ fn meant_command(path: &Path) -> Outcome {
     let commands =
         program.get_subcommands().filter(|c| !c.is_hide_set()).map(|c| (c.get_name(), c.get_name()));
     match crate::text::nearest(word, commands) {
+        Some(command) if command == word => {
+            Err(Failure::Usage(format!("there is no scene file {word}; the command is lcm {word}")))
+        }
         Some(command) => Err(Failure::Usage(format!(
             "there is no command {word}, and no scene file of that name; did you mean lcm {command}?"
         ))),

@@ -3,7 +3,7 @@
 use std::{ffi::OsStr, io, path::Path};
 
 use super::Sheet;
-use crate::files::{self, Signature};
+use crate::files::{self, Shown as _, Signature};
 
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,10 +31,17 @@ impl Format {
             Some(format) => Ok(format),
             // A device or a pipe has no format in its name.
             None if extension.is_none() && files::is_stream(path) => Ok(Self::Csv),
-            None => Err(format!(
-                "a plot is written as .svg, .png or .csv; did you mean {}?",
-                path.with_extension("svg").display()
-            )),
+            None => {
+                let named = path.with_extension("svg");
+                Err(match named == path {
+                    // A folder such as `.`, which takes no extension.
+                    true => "a plot is written as .svg, .png or .csv; name a file".to_owned(),
+                    false => {
+                        let named = named.shown();
+                        format!("a plot is written as .svg, .png or .csv; did you mean {named}?")
+                    }
+                })
+            }
         }
     }
 
@@ -83,6 +90,10 @@ mod tests {
         for name in ["a.jpg", "a", "svg"] {
             let Err(said) = Format::of(Path::new(name)) else { panic!("{name}") };
             assert!(said.contains(".svg, .png or .csv; did you mean"), "{said}");
+        }
+        for folder in [".", "..", "/"] {
+            let Err(said) = Format::of(Path::new(folder)) else { panic!("{folder}") };
+            assert_eq!(said, "a plot is written as .svg, .png or .csv; name a file");
         }
     }
 }

@@ -14,7 +14,7 @@ pub use crate::text::{
     place::Place,
 };
 use crate::{
-    files::{FileError, Kind, words},
+    files::{FileError, Kind, follow, words},
     registry::Registry,
 };
 
@@ -99,7 +99,7 @@ pub enum LoadError {
     NotFound {
         /// The file.
         name: String,
-        /// Similar files that exist.
+        /// Similar files that exist, or where a link leads.
         hint: Option<String>,
     },
     /// The path leads to a folder.
@@ -208,7 +208,9 @@ impl LoadError {
     pub fn from_io(path: &FilePath, name: &str, source: io::Error, registry: &Registry) -> Self {
         let name = name.to_owned();
         match source.kind() {
-            io::ErrorKind::NotFound => Self::NotFound { hint: similar_file(path), name },
+            io::ErrorKind::NotFound => {
+                Self::NotFound { hint: broken_link(path).or_else(|| similar_file(path)), name }
+            }
             io::ErrorKind::PermissionDenied => Self::PermissionDenied { name },
             io::ErrorKind::IsADirectory => Self::Folder { hint: scenes_within(path, registry), name },
             _ => Self::Io { name, source },
@@ -273,6 +275,14 @@ fn declined(missing: &[Missing]) -> String {
     )
 }
 
+/// "; it is a link to room.json, which is not there" if it is one.
+fn broken_link(path: &FilePath) -> Option<String> {
+    if !std::fs::symlink_metadata(path).ok()?.is_symlink() {
+        return None;
+    }
+    Some(format!("; it is a link to {}, which is not there", follow(path).ok()?.shown()))
+}
+
 /// ". Did you mean scenes/room.json?" if there is a file with a similar name.
 fn similar_file(path: &FilePath) -> Option<String> {
     let wanted = path.file_name()?.to_str()?.to_lowercase();
@@ -282,6 +292,8 @@ fn similar_file(path: &FilePath) -> Option<String> {
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        // A hint at what was given helps nobody.
+        .filter(|name| path.file_name().is_none_or(|given| given != name.as_str()))
         .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness > 0.85)
         .max_by(|a, b| a.0.total_cmp(&b.0))?;

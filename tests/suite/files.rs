@@ -338,6 +338,15 @@ fn render(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 #[test]
+fn a_link_to_nothing_says_so() {
+    let folder = folder();
+    let at = folder.path();
+    symlink("nowhere/x.png", at.join("link.png")).expect("linked");
+    let ran = run(&mut lcm(at, ["check", "link.png"]));
+    refused(&ran, 1, "link.png: file not found; it is a link to nowhere/x.png, which is not there\n");
+}
+
+#[test]
 fn pictures_go_to_devices_and_pipes() {
     let folder = folder();
     let at = folder.path();
