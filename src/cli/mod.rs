@@ -285,6 +285,12 @@ enum Command {
     TryShaders,
 }
 
+/// The parser of numbers of things.
+fn above_zero(text: &str) -> Result<u32, String> {
+    let parsed = text.trim().parse::<u32>().ok().filter(|number| *number > 0);
+    parsed.ok_or_else(|| format!("it must be a whole number from 1 to {}", u32::MAX))
+}
+
 /// The result of a command.
 type Outcome = Result<(), Failure>;
 

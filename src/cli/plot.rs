@@ -36,6 +36,11 @@ fn channel() -> impl clap::builder::TypedValueParser<Value = Channel> {
         .map(|id| Channel::from_id(&id).unwrap_or(Channel::Luminance))
 }
 
+/// The range depends on the kind of plot.
+fn angle(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "it must be a number of degrees, e.g. 22.5".to_owned())
+}
+
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// IDs of models, each with parameters of its own if it has any: phong, phong:alpha=20, phong:alpha=20:k_s=0.3; with
@@ -49,10 +54,10 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true)]
     kind: Kind,
     /// The angle between light and normal, degrees, for kinds in the plane of incidence
-    #[arg(long, value_name = "DEG", default_value_t = 45.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, allow_negative_numbers = true, value_parser = angle)]
     theta_i: f64,
     /// The azimuth of the plane from the tangent, degrees, for anisotropic models
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = angle)]
     phi_i: f64,
     /// What figures show of three channels: luminance by default, for slices colour
     #[arg(long, value_parser = channel())]

@@ -79,7 +79,7 @@ pub(super) struct Arguments {
     ))]
     tone_mapping: Option<String>,
     /// Use this exposure in EV instead of the scene's; each step up doubles the light
-    #[arg(long, value_name = "EV", allow_hyphen_values = true)]
+    #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = exposure)]
     exposure: Option<f32>,
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
@@ -153,6 +153,11 @@ impl FromStr for Size {
                 format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600")
             })
     }
+}
+
+/// Its range is checked where those of all changes are.
+fn exposure(text: &str) -> Result<f32, String> {
+    text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {

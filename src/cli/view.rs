@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use bevy::app::App;
 use clap::{Args, CommandFactory as _};
 
-use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
+use super::{Options, Outcome, above_zero, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
@@ -27,10 +27,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME_OR_FILE")]
     lesson: Option<PathBuf>,
     /// Begin at this step of the lesson
-    #[arg(long, value_name = "NUMBER", requires = "lesson", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "NUMBER", requires = "lesson", value_parser = above_zero)]
     step: Option<u32>,
     /// Close the window after this many frames
-    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "FRAMES", value_parser = above_zero)]
     exit_after: Option<u32>,
     /// Write the whole window, panels included, to a PNG file before it closes
     #[arg(long, value_name = "FILE", requires = "exit_after", value_parser = outputs::place())]
