@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::{
     parameter::{FileFormat, FileProblem},
-    text::plural,
+    text::{plural, shortened},
 };
 
 /// The most candela values of a file, given for the whole circle: a value for every degree.
@@ -48,7 +48,8 @@ impl<'a> Numbers<'a> {
         };
         self.line = line;
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| self.problem(format!("{what} must be a number, and it is “{word}”")))
+        number
+            .ok_or_else(|| self.problem(format!("{what} must be a number, and it is {}", shown(word, true))))
     }
 
     /// The next number, which counts something.
@@ -96,6 +97,15 @@ impl<'a> Numbers<'a> {
     }
 }
 
+/// A part of the file in a message; bytes that are no text have no words.
+fn shown(part: &str, in_quotes: bool) -> String {
+    if part.contains(|c: char| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
+        return "not text".to_owned();
+    }
+    let part = shortened(part);
+    if in_quotes { format!("“{part}”") } else { part }
+}
+
 fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = (1..).zip(text.lines());
@@ -110,7 +120,8 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         "INCLUDE" => upright(&mut numbers)?,
         other => {
             let message = format!(
-                "TILT= must be NONE or INCLUDE, and it is {other}: tables in other files are not read"
+                "TILT= must be NONE or INCLUDE, and it is {}: tables in other files are not read",
+                shown(other, false)
             );
             return Err(numbers.problem(message));
         }
@@ -408,6 +419,11 @@ mod tests {
                 "1000 1 3",
                 "1000 zero 3",
                 "4: the multiplier of the candelas must be a number, and it is “zero”",
+            ),
+            (
+                "1000 1 3",
+                "1000 \0 3",
+                "4: the multiplier of the candelas must be a number, and it is not text",
             ),
             ("1000 1 3", "1000 0 3", "4: the multiplier of the candelas must be greater than 0, and it is 0"),
             (

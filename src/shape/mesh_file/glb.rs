@@ -5,7 +5,9 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{
     Accessor, Document, Glb, Mesh, Semantic,
     accessor::{DataType, Dimensions},
+    binary,
     buffer::Source,
+    json::validation::Error as Mistake,
     mesh::Mode,
 };
 
@@ -13,7 +15,7 @@ use super::{
     json,
     model::{Builder, Corner, MAX_VERTICES},
 };
-use crate::parameter::FileProblem;
+use crate::{parameter::FileProblem, text::shortened};
 
 /// The first bytes of such a file.
 pub const BEGIN: &[u8] = b"glTF";
@@ -30,7 +32,7 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
         (Some(2) | None, _) => return Err("the file ends before the glTF does".to_owned()),
         (Some(version), _) => return Err(format!("it is glTF of version {version}; version 2 is read")),
     }
-    let wrong = |e: gltf::Error| format!("it is no valid glTF: {e}");
+    let wrong = |e: gltf::Error| format!("it is no valid glTF: {}", mistake(&e));
     let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(wrong)?;
     let json = json::read(json.into_owned()).map_err(|what| format!("it is no valid glTF: {what}"))?;
     // The validation of the library trusts these.
@@ -50,6 +52,30 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
         polygons(&mesh, place, &blob, to).map_err(|what| format!("meshes[{}]: {what}", mesh.index()))?;
     }
     Ok(())
+}
+
+/// A mistake in words of our own: the library's are written for its authors.
+fn mistake(error: &gltf::Error) -> String {
+    match error {
+        gltf::Error::Validation(mistakes) => {
+            let Some((path, mistake)) = mistakes.first() else { return "a value is wrong".to_owned() };
+            let path = shortened(path.as_str());
+            match mistake {
+                Mistake::Missing => format!("{path} is missing"),
+                Mistake::IndexOutOfBounds => format!("{path} is the index of something that is not there"),
+                Mistake::Invalid => format!("{path} has a value that it must not have"),
+                Mistake::Oversize => format!("{path} is too large"),
+                Mistake::Unsupported => format!("{path} names an extension that is not read"),
+            }
+        }
+        gltf::Error::Deserialize(error) => {
+            format!("its JSON has a mistake in line {}, column {}", error.line(), error.column())
+        }
+        gltf::Error::Binary(binary::Error::Length { .. } | binary::Error::ChunkLength { .. }) => {
+            "one of its chunks is longer than the file".to_owned()
+        }
+        _ => "its chunks must be JSON and BIN, in this order".to_owned(),
+    }
 }
 
 /// The meshes of the scene with their places: those of the nodes below its roots.
@@ -347,7 +373,9 @@ mod tests {
             ("it shows no scene", |json| {
                 json.as_object_mut().expect("an object").retain(|key, _| !key.starts_with("scene"));
             }),
-            ("it is no valid glTF: ", |json| json["nodes"][1]["mesh"] = json!(7)),
+            ("it is no valid glTF: nodes[1].mesh is the index of something that is not there", |json| {
+                json["nodes"][1]["mesh"] = json!(7)
+            }),
             ("it is no valid glTF: string \"none\" in the place of a list (line 1, column ", |json| {
                 json["nodes"] = json!("none")
             }),

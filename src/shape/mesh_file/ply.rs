@@ -1,6 +1,8 @@
 //! PLY files: G. Turk (1994), *The PLY Polygon File Format*, Stanford University; as text or binary. Read are the elements
 //! `vertex`, with positions, normals and texture coordinates, and `face`.
 
+use std::io::ErrorKind;
+
 use glam::{Vec2, Vec3};
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
@@ -83,7 +85,7 @@ impl PropertyAccess for Other {
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
     let mut reader = Reader::new(bytes);
-    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| told(&e, true))?;
+    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| in_header(&e, bytes))?;
     let whole = |message: String| FileProblem { line: None, message };
     let is_text = header.encoding == Encoding::Ascii;
     let (vertex, face) = (header.elements.get("vertex"), header.elements.get("face"));
@@ -115,7 +117,7 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
             }
             _ => Parser::<Other>::new().read_payload_for_element(&mut reader, element, &header).map(|_| ()),
         };
-        read.map_err(|e| told(&e, is_text))?;
+        read.map_err(|e| in_element(&e, element, is_text, bytes))?;
     }
     for (i, Face(face)) in faces.iter().enumerate() {
         let corner = |index: &u32| {
@@ -153,15 +155,70 @@ fn declared<'a>(element: Option<&'a ElementDef>, name: &str) -> Result<&'a Eleme
     }
 }
 
-/// A mistake that the library found, in one line, with the line of the file if it is text.
-fn told(error: &ParseError, is_text: bool) -> FileProblem {
+/// A mistake in the header in words of our own: the library's are written for its authors.
+fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
+    /// The beginnings of its words, which tell the kind of an error by nothing else, and ours.
+    const KINDS: &[(&str, &str)] = &[
+        ("No format line", "its header has no line format"),
+        ("Invalid version", "its header names no version behind the format, such as 1.0"),
+        ("Expected magic number", "its first line must be ply alone"),
+        ("Unexpected 'ply'", "its header has the line ply twice"),
+        ("Found contradicting format", "its header has two lines format that differ"),
+        ("Property", "its header has a property before the first element"),
+    ];
     let said = error.to_string();
     let said = said.split_once(": ").filter(|_| error.line().is_some()).map_or(&*said, |(_, said)| said);
-    // What follows the first line repeats that of the file.
-    let said = said.lines().next().unwrap_or_default().trim_end_matches(['.', ' ']);
+    let line = error.line().and_then(|line| bytes.split(|byte| *byte == b'\n').nth(line.checked_sub(1)?));
+    let what = match KINDS.iter().find(|(theirs, _)| said.starts_with(*theirs)) {
+        Some((_, ours)) => *ours,
+        None if error.kind() == ErrorKind::UnexpectedEof => "the file ends before the line end_header",
+        None if error.line().is_none() => "its header is not text",
+        None => match line.unwrap_or_default().split(u8::is_ascii_whitespace).next() {
+            Some(b"element") => "behind element must come a name and a whole number, 0 or more",
+            Some(b"property") => {
+                "behind property must come a type and a name, such as float x or list uchar int vertex_indices"
+            }
+            Some(b"format") => {
+                "behind format must come ascii, binary_little_endian or binary_big_endian, and 1.0"
+            }
+            _ => {
+                "a line of its header must begin with format, comment, obj_info, element, property or \
+                 end_header"
+            }
+        },
+    };
+    no_valid(error, true, what, bytes)
+}
+
+/// A mistake in an element, in the same way.
+fn in_element(error: &ParseError, element: &ElementDef, is_text: bool, bytes: &[u8]) -> FileProblem {
+    let name = shortened(&element.name);
+    let what = match error.kind() {
+        ErrorKind::UnexpectedEof => {
+            format!("the file ends before all {} of the element {name}", element.count)
+        }
+        _ if is_text && error.line().is_none() => "it is not text, as its header says".to_owned(),
+        _ if is_text => format!(
+            "this line must have a number for each property of the element {name}, and the length of each list \
+             before it"
+        ),
+        _ => format!("the element {name} is not as its header says"),
+    };
+    no_valid(error, is_text, &what, bytes)
+}
+
+/// A mistake, with its line if that is text.
+fn no_valid(error: &ParseError, is_text: bool, what: &str, bytes: &[u8]) -> FileProblem {
+    // The library does not tell where a file stops to be text.
+    let stops =
+        |error: std::str::Utf8Error| bytes[..error.valid_up_to()].split(|byte| *byte == b'\n').count();
+    let line = match error.kind() {
+        ErrorKind::InvalidData if error.line().is_none() => std::str::from_utf8(bytes).err().map(stops),
+        _ => error.line(),
+    };
     FileProblem {
-        line: error.line().filter(|line| is_text && *line > 0),
-        message: format!("it is no valid PLY file: {}", shortened(said)),
+        line: line.filter(|line| is_text && *line > 0),
+        message: format!("it is no valid PLY file: {what}"),
     }
 }
 
@@ -239,8 +296,28 @@ mod tests {
     #[test]
     fn mistakes_are_told_with_their_lines() {
         for (from, to, expected) in [
-            ("format ascii 1.0\n", "", "0: it is no valid PLY file: No format line found"),
-            ("element vertex 4", "element vertex four", "4: it is no valid PLY file: "),
+            ("format ascii 1.0\n", "", "0: it is no valid PLY file: its header has no line format"),
+            (
+                "element vertex 4",
+                "element vertex four",
+                "4: it is no valid PLY file: behind element must come a name",
+            ),
+            (
+                "element vertex 4",
+                "element vertex -1",
+                "4: it is no valid PLY file: behind element must come a name",
+            ),
+            (
+                "property double y",
+                "property y",
+                "6: it is no valid PLY file: behind property must come a type",
+            ),
+            (
+                "comment a square",
+                "remark a square",
+                "3: it is no valid PLY file: a line of its header must begin",
+            ),
+            ("end_header\n", "", "11: it is no valid PLY file: a line of its header must begin"),
             ("element vertex 4", "element point 4", "0: its header has no element vertex"),
             (
                 "property float z\n",
@@ -259,8 +336,16 @@ mod tests {
                 "0: it has 5000000 vertices; at most 2000000 are read",
             ),
             ("element face 1", "element face 500001", "0: it has 500001 polygons; at most 500000 are read"),
-            ("element face 1", "element face 2", "17: it is no valid PLY file: Unexpected end of file"),
-            ("2 1 0 7", "2 one 0 7", "14: it is no valid PLY file: "),
+            (
+                "element face 1",
+                "element face 2",
+                "17: it is no valid PLY file: the file ends before all 2 of the element face",
+            ),
+            (
+                "2 1 0 7",
+                "2 one 0 7",
+                "14: it is no valid PLY file: this line must have a number for each property",
+            ),
             ("2 1 0 7", "2 1", "14: it is no valid PLY file: "),
             ("4 0 1 2 3", "4 0 1 2", "16: it is no valid PLY file: "),
             (
@@ -277,7 +362,9 @@ mod tests {
             assert!(said.starts_with(expected), "{said}\n{expected}");
             assert!(!said.contains('\n'), "{said}");
         }
-        assert!(numbers(b"ply").is_err() && numbers(b"ply\n\xff\xfe").is_err());
+        assert!(numbers(b"ply").is_err());
+        let said = numbers(b"ply\n\xff\xfe").expect_err("no text");
+        assert_eq!(said, "2: it is no valid PLY file: its header is not text");
     }
 
     #[test]
