@@ -170,6 +170,9 @@ fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Ve
                 continue;
             }
             match setting(model, name, value) {
+                Ok((name, _)) if i < alone && values.0.contains_key(name) => {
+                    problems.push(format!("{place}: {name} is given twice"));
+                }
                 Ok((name, value)) => values.set(name, value),
                 Err(problem) => problems.push(format!("{place}: {problem}")),
             }

@@ -153,6 +153,8 @@ fn mistakes_are_explained() {
             &["--data", "krylon_blue", "--kind", "slice"],
             "--kind slice: Krylon blue was measured at single directions only: there is no image slice of it",
         ),
+        (&["phong:alpha=20:alpha=30"], "phong:alpha=20:alpha=30: alpha is given twice"),
+        (&["phong:base_color=1,2,3:base_colour=4,5,6"], "base_colour is given twice"),
         (&["phong", "-o", "x.jpg"], "-o x.jpg: a plot is written as .svg, .png or .csv; did you mean x.svg?"),
         (&["phong", "--kind", "brdf"], "invalid value 'brdf'"),
         (&["phong", "--channel", "x"], "luminance, r, g, b"),
