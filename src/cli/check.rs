@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Options, Outcome, complain, print, print_text,
+    Options, Outcome, complain, print_json, print_text,
     scenes::Source,
     workshop::{Workshop, on_disk, shader_problems},
 };
@@ -151,7 +151,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     if arguments.json {
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
-        print(&format!("{json}\n"))?;
+        print_json(&format!("{json}\n"))?;
     } else if !options.quiet {
         print_text(&listed)?;
     }

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Options, Outcome, outputs, pictures, print,
+    Options, Outcome, outputs, pictures, print_json,
     render::{self, Size, cpu_can_draw, samples},
     scenes::Source,
     views::{Choice, find},
@@ -345,7 +345,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         covered: measured.covered.map(Numbers::from),
         largest: differences.largest.map(Place::from),
     };
-    let printed = print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
+    let printed = print_json(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
     let broken = broken(arguments, &measured, differences.largest)?;
     // The numbers matter even if the picture cannot be written.
     if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {

@@ -5,7 +5,7 @@ use std::{io, path::PathBuf};
 use super::{
     Options, Outcome, complain,
     evaluate::find,
-    print, print_paths, print_text,
+    print_json, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
 use crate::files::{Shown as _, words};
@@ -105,7 +105,7 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     bar.finish_and_clear();
     let report = LawReport::new(model, &findings);
     if as_json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()))?;
+        print_json(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()))?;
     } else {
         print_text(&report.to_string())?;
     }

@@ -5,7 +5,7 @@ use std::{path::PathBuf, str::FromStr};
 use clap::Args;
 
 use super::{
-    Options, Outcome, print, print_text,
+    Options, Outcome, print_json, print_text,
     render::{Size, cpu_can_draw, term},
     scenes::Source,
     views::{Plan, find},
@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         if let Some(other) = &other {
             json["beside"] = other.explanation.to_json();
         }
-        return print(&format!("{json:#}\n"));
+        return print_json(&format!("{json:#}\n"));
     }
     let markdown = arguments.markdown;
     let mut text = match markdown {

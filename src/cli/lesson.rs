@@ -8,7 +8,7 @@ use std::{
 use clap::Subcommand;
 use serde::Serialize;
 
-use super::{Options, Outcome, Reach, complain, print, print_text};
+use super::{Options, Outcome, Reach, complain, print_json, print_text};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
@@ -107,7 +107,7 @@ fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -
     }
     if json {
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
-        print(&format!("{json}\n"))?;
+        print_json(&format!("{json}\n"))?;
     } else if !options.quiet {
         print_text(&listed)?;
     }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::{
-    Options, Outcome, outputs, print, print_text, progress,
+    Options, Outcome, outputs, print_json, print_text, progress,
     scenes::Source,
     views::find,
     workshop::{Workshop, drawable},
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     })?;
     let before: Vec<Value> = found.values.iter().map(|(name, _)| now(&scene, view, name, registry)).collect();
     if arguments.json {
-        print(&as_json(&found, view, what))?;
+        print_json(&as_json(&found, view, what))?;
     } else {
         print_text(&in_words(&found, &before, view, what))?;
     }

@@ -6,7 +6,7 @@
 use crate::{
     export::payload,
     failure::Failure,
-    files::{self, printable},
+    files::{self, printable, printable_json},
     parameter::outside,
     program::{self, in_own_words},
     registry::Registry,
@@ -476,6 +476,11 @@ fn print_text(text: &str) -> Outcome {
 fn print_paths<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Outcome {
     let lines: String = paths.into_iter().map(|path| format!("{}\n", path.display())).collect();
     if io::stdout().is_terminal() { print_text(&lines) } else { print(&lines) }
+}
+
+/// Prints JSON to standard output.
+fn print_json(text: &str) -> Outcome {
+    print(&printable_json(text))
 }
 
 /// Prints a result for programs to standard output.

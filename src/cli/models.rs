@@ -1,6 +1,6 @@
 //! `lcm models`: the reflection models, shading models, light types and object types.
 
-use super::{Options, Outcome, custom, print, print_text, workshop::Places};
+use super::{Options, Outcome, custom, print_json, print_text, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
@@ -81,7 +81,7 @@ fn list(as_json: bool, registry: &Registry) -> Outcome {
     if as_json {
         let models = registry.models().iter().map(|m| model(m, registry));
         let others = others(registry).map(|other| other.to_json());
-        return print(&format!("{:#}\n", models.chain(others).collect::<Json>()));
+        return print_json(&format!("{:#}\n", models.chain(others).collect::<Json>()));
     }
     print_text(&table(registry))
 }

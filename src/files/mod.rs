@@ -23,7 +23,8 @@
 //!
 //! To report:
 //! - [`words()`]: a failure of the system without its number.
-//! - [`printable`]: a text without the characters that a terminal would act on; [`Shown`]: a path on one line.
+//! - [`printable`]: a text without the characters that a terminal would act on, and [`printable_json`] the same for
+//!   programs; [`Shown`]: a path on one line.
 //!
 //! # How a file is replaced
 //!
@@ -67,7 +68,7 @@ pub use inside::inside;
 pub use litter::{Unfinished, tidy};
 pub use living::give_up;
 pub use output::{Output, PNG, Refused, Signature, may_overwrite, spare};
-pub use shown::{OnOneLine, Shown, printable};
+pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use words::words;
 

@@ -7,8 +7,8 @@ use std::{
 };
 
 /// A text without the characters that a terminal would act on instead of showing them: control characters other than
-/// line ends and tabs, and those that change the direction of writing, are written as escapes such as `\u{1b}`. File
-/// names may hold all of these.
+/// line ends and tabs, those that change the direction of writing, and those that end a line unseen, are written as
+/// escapes such as `\u{1b}`. File names may hold all of these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(is_unfit) {
@@ -18,6 +18,25 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     for c in text.chars() {
         if is_unfit(c) {
             shown.extend(c.escape_default());
+        } else {
+            shown.push(c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// The same of a text in JSON, whose strings have escapes such as `\u001b` and stay the same.
+#[must_use]
+pub fn printable_json(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_unfit) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if is_unfit(c) {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                let _ = write!(shown, "\\u{unit:04x}");
+            }
         } else {
             shown.push(c);
         }
@@ -44,7 +63,7 @@ pub struct OnOneLine<'a>(&'a Path);
 impl fmt::Display for OnOneLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for c in self.0.to_string_lossy().chars() {
-            if is_unfit(c) || matches!(c, '\n' | '\t' | '\u{2028}' | '\u{2029}') {
+            if is_unfit(c) || matches!(c, '\n' | '\t') {
                 write!(f, "{}", c.escape_default())?;
             } else {
                 f.write_char(c)?;
@@ -55,7 +74,8 @@ impl fmt::Display for OnOneLine<'_> {
 }
 
 fn is_unfit(c: char) -> bool {
-    c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+    // U+2028 and U+2029 end a line and a paragraph.
+    c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 #[cfg(test)]
@@ -71,9 +91,12 @@ mod tests {
     #[test]
     fn what_a_terminal_obeys_is_written_as_an_escape() {
         assert_eq!(
-            printable("a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}"),
-            r"a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}"
+            printable("a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}\u{2028}"),
+            r"a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}\u{2028}"
         );
+        let (odd, json) = ("a\u{9b}2J\u{202e}\u{2028}b", r#""a\u009b2J\u202e\u2028b""#);
+        assert_eq!(printable_json(&serde_json::to_string(odd).expect("written")), json);
+        assert_eq!(serde_json::from_str::<String>(json).expect("read"), odd);
         let plain = "größe → „ö“\n\tα² 中文 🙂";
         assert!(matches!(printable(plain), Cow::Borrowed(text) if text == plain));
         let once = printable("\u{1b}").into_owned();

@@ -19,8 +19,13 @@ pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
 }
 
 fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String {
-    // The annotation crate escapes control characters only in ASCII.
-    let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
+    // The annotation crate escapes control characters only in ASCII, and no line separators.
+    let fit = |text: &str| {
+        text.replace(
+            |c: char| c.is_control() && !c.is_ascii() || matches!(c, '\u{2028}' | '\u{2029}'),
+            "\u{fffd}",
+        )
+    };
     let (source, message) = (fit(&problem.source), fit(&problem.message));
     let mut characters = source.char_indices().skip(problem.column.saturating_sub(1));
     let end = source.len();
@@ -65,7 +70,7 @@ mod tests {
 
     #[test]
     fn nothing_that_a_terminal_obeys_comes_through() {
-        let odd = "a\u{1b}[2J\u{9b}2J\u{202e}b";
+        let odd = "a\u{1b}[2J\u{9b}2J\u{202e}\u{2028}b";
         let problem = ShaderProblem {
             file: odd.to_owned(),
             line: 1,
@@ -74,7 +79,8 @@ mod tests {
             message: odd.to_owned(),
         };
         let text = annotated(&problem, odd);
-        let obeyed = text.chars().find(|c| c.is_control() && *c != '\n' || *c == '\u{202e}');
+        let obeyed =
+            text.chars().find(|c| c.is_control() && *c != '\n' || matches!(c, '\u{202e}' | '\u{2028}'));
         assert_eq!(obeyed, None, "{text:?}");
     }
 }

@@ -827,10 +827,11 @@ fn what_a_terminal_obeys_does_not_reach_it() {
         // clap's quotations of it lose their colours.
         assert!(out.contains(r"\u{9b}") || ran.err.contains(r"\u{9b}"), "{arguments:?}: {out}{}", ran.err);
     }
-    // Results for programs are unchanged.
+    // Results for programs mean the same.
     let ran = run(&mut lcm(at, ["check", "--json", &valid]));
     let report: serde_json::Value = serde_json::from_slice(&ran.out).expect("JSON");
     assert_eq!(report[0]["file"], valid);
+    assert!(!String::from_utf8_lossy(&ran.out).contains(['\u{9b}', '\u{202e}']), "escaped");
     // A name that is not text does no harm either.
     let bytes = OsStr::from_bytes(b"\xff\x1b[2J.json");
     assert!(!run(&mut lcm(at, [OsStr::new("check"), bytes])).err.contains('\u{1b}'));
