@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    fs, io,
+    io,
     path::{Path, PathBuf},
     str::FromStr,
     sync::atomic::AtomicBool,
@@ -426,11 +426,6 @@ impl Painter {
         };
         let about = if job.with_scene { about } else { about.without_scene() };
         let (rgb8, [width, height]) = captioned(job, registry, rgb8);
-        // Not earlier: what is interrupted leaves no empty folder behind.
-        let folder = crate::files::folder_of(job.file);
-        fs::create_dir_all(folder).map_err(|e| {
-            Failure::Write(format!("the folder {} could not be created: {}", folder.shown(), words(&e)))
-        })?;
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
             _ => Failure::Write(format!("{} could not be written: {}", job.file.shown(), words(&e))),

@@ -268,17 +268,23 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     Ok(exported)
 }
 
-/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none.
+/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none. If that fails, no new
+/// folder stays.
 ///
 /// # Errors
 /// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = files::folder_of(path);
-    // A file in the place of the folder must not look as if the file itself were there.
-    fs::create_dir_all(folder).map_err(|e| {
-        io::Error::other(format!("the folder {} could not be made: {}", folder.shown(), words(&e)))
-    })?;
-    Ok(files::create(path, text.as_bytes())?)
+    let mut made = false;
+    let written = files::in_folder(folder, || {
+        made = true;
+        files::create(path, text.as_bytes())
+    });
+    written.map_err(|error| match made {
+        true => error.into(),
+        // A file in the place of the folder must not look as if the file itself were there.
+        false => io::Error::other(format!("the folder {} could not be made: {error}", folder.shown())),
+    })
 }
 
 #[cfg(test)]
@@ -313,6 +319,21 @@ mod tests {
         // Without any there are the built-in ones, and models in the user's data.
         let none = Folders::find_in(None, None, &surroundings(&[], &data)).expect("there");
         assert_eq!(none, Folders { models: Some(data.join("models")), ..Folders::default() });
+        Ok(())
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_no_folder() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let root = folder.path();
+        let long = root.join("new/models").join("x".repeat(300));
+        assert!(write_new(&long, "").is_err() && !root.join("new").exists());
+        fs::write(root.join("file"), "")?;
+        let said = write_new(&root.join("file/models/a.wgsl"), "").expect_err("a file").to_string();
+        assert!(said.contains("could not be made") && said.ends_with("file is not a folder"), "{said}");
+        write_new(&root.join("new/models/a.wgsl"), "")?;
+        let again = write_new(&root.join("new/models/a.wgsl"), "").expect_err("there");
+        assert_eq!(again.kind(), io::ErrorKind::AlreadyExists);
         Ok(())
     }
 

@@ -364,6 +364,10 @@ fn pictures_go_to_devices_and_pipes() {
     symlink("nowhere/x.png", at.join("dangling.png")).expect("linked");
     let said = "dangling.png could not be written: there is no folder nowhere\n";
     refused(&run(&mut render(at, &["-o", "dangling.png"])), 4, said);
+    // What fails leaves no new folder.
+    let long = format!("new/folder/{}.png", "x".repeat(300));
+    refused(&run(&mut render(at, &["-o", &long])), 4, "the name is too long");
+    assert!(!at.join("new").exists());
     // A named pipe, with a reader that comes late.
     pipe(&at.join("pipe.png"));
     let from = at.join("pipe.png");

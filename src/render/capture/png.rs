@@ -1,7 +1,6 @@
 //! PNG files: pictures that say what they show.
 
 use std::{
-    fs,
     io::{self, BufWriter, Write},
     path::Path,
 };
@@ -11,7 +10,7 @@ use png::{
 };
 
 use crate::{
-    files::Output,
+    files::{self, Output},
     registry::Registry,
     scene::{Scene, formats::SCENE_KEYWORD, save::to_json},
 };
@@ -57,19 +56,18 @@ impl About {
 
 /// Writes an sRGB picture (red, green, blue, row by row from the top) with what it says of itself.
 ///
-/// Missing folders are created. A file appears complete or not at all; standard output, devices and pipes are
-/// written straight, as [`Output`] says.
+/// Missing folders are created, and go again if the picture cannot be written. A file appears complete or not at all;
+/// standard output, devices and pipes are written straight, as [`Output`] says.
 ///
 /// # Errors
 /// If `rgb8` is not `width · height · 3` bytes, a keyword is empty or longer than 79 characters, or
 /// the file cannot be written.
 pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        fs::create_dir_all(folder)?;
-    }
-    let mut output = Output::open(path)?;
-    encode(BufWriter::new(&mut output), width, height, rgb8, about)?;
-    Ok(output.finish()?)
+    files::in_folder(files::folder_of(path), || {
+        let mut output = Output::open(path)?;
+        encode(BufWriter::new(&mut output), width, height, rgb8, about)?;
+        Ok(output.finish()?)
+    })
 }
 
 /// The picture as the bytes of a PNG file.
@@ -112,7 +110,7 @@ fn plain(error: EncodingError) -> io::Error {
 
 #[cfg(test)]
 mod tests {
-    use std::fs::File;
+    use std::fs::{self, File};
 
     use super::*;
     use crate::scene::load::{self, Defaults};
