@@ -255,13 +255,23 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     let models = EXAMPLES.iter().map(|(name, text)| (folder.join("models").join(name), *text));
     let mut exported = Exported::default();
     for (path, text) in sources.chain(models) {
-        match files::read(&path, file::MAX_BYTES) {
+        let mut there = files::read(&path, file::MAX_BYTES);
+        if matches!(&there, Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound) {
+            match write_new(&path, text) {
+                Ok(()) => {
+                    exported.written.push(path);
+                    continue;
+                }
+                // Somebody else wrote it meanwhile, such as another export.
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
+                    there = files::read(&path, file::MAX_BYTES);
+                }
+                Err(error) => return Err(AssetError::Write { path, error }),
+            }
+        }
+        match there {
             Ok(there) if there == text.as_bytes() => exported.same += 1,
             Ok(_) | Err(FileError::TooLarge(_)) => exported.kept.push(path),
-            Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => {
-                write_new(&path, text).map_err(|error| AssetError::Write { path: path.clone(), error })?;
-                exported.written.push(path);
-            }
             Err(error) => return Err(AssetError::Write { path, error: error.into() }),
         }
     }
@@ -319,6 +329,24 @@ mod tests {
         // Without any there are the built-in ones, and models in the user's data.
         let none = Folders::find_in(None, None, &surroundings(&[], &data)).expect("there");
         assert_eq!(none, Folders { models: Some(data.join("models")), ..Folders::default() });
+        Ok(())
+    }
+
+    #[test]
+    fn several_exports_at_once_complete_each_other() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let registry = Registry::builtin();
+        let all: Vec<_> = std::thread::scope(|scope| {
+            let begun: Vec<_> = (0..3).map(|_| scope.spawn(|| export(folder.path(), &registry))).collect();
+            begun.into_iter().map(|thread| thread.join().expect("no panic")).collect()
+        });
+        let all: Vec<_> = all.into_iter().map(|exported| exported.expect("written")).collect();
+        let count = built_in_sources(&registry).len() + EXAMPLES.len();
+        assert_eq!(all.iter().map(|exported| exported.written.len()).sum::<usize>(), count);
+        for exported in &all {
+            assert!(exported.kept.is_empty());
+            assert_eq!(exported.written.len() + exported.same, count);
+        }
         Ok(())
     }
 
