@@ -38,7 +38,10 @@ pub(super) fn show(session: &mut Session) {
     let folder = data_folder().unwrap_or_else(|| std::env::temp_dir().join("lights-camera-models"));
     let shown = write(&folder).and_then(|path| match ::open::that_detached(&path) {
         Ok(()) => Ok(path),
-        Err(why) => Err(format!("No browser could be started ({why}): the manual is {}.", path.shown())),
+        Err(why) => {
+            let why = files::words(&why);
+            Err(format!("No browser could be started ({why}): the manual is {}.", path.shown()))
+        }
     });
     match shown {
         Ok(path) => session.say(Severity::Info, format!("The browser shows the manual, {}.", path.shown())),
