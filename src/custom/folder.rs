@@ -296,7 +296,7 @@ fn look(path: &Path, registry: &Registry) -> Found {
             Err(problems) => Found::Broken(problems),
         },
         // One that was a model is none any more.
-        Ok(text) if is_empty(&text) && !id_of(path).is_some_and(|id| registry.model(id).is_some()) => {
+        Ok(text) if is_empty(&text) && id_of(path).is_none_or(|id| registry.model(id).is_none()) => {
             Found::Broken(vec![empty(path, &text)])
         }
         Ok(text) => Found::Shared(text),
