@@ -6,7 +6,7 @@
     "summary": "Velvet and other cloth: upright fibres make the surface bright at grazing views and dark at normal ones. The opposite of a highlight.",
     "equation": [
         { "term": "diffuse", "text": "I_d = (1 − w) C_b (N·L)" },
-        { "term": "specular", "text": "I_s = w π D C_f/(4 (N·V) (1 + Λ(L) + Λ(V))), D = (2 + 1/r) sin^{1/r} θ_h/(2π)" },
+        { "term": "specular", "text": "I_s = w π D C_f/(4 (N·V) (1 + Λ_l + Λ_v)), D = (2 + 1/r) sin^{1/r} θ_h/(2π)" },
     ],
     "laws": ["reciprocal", "energy conserving", "non-negative"],
     "parameters": [
@@ -58,7 +58,9 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let sin_h = sqrt(max(1.0 - cos_h * cos_h, 0.0));
     let r = m.sheen_roughness;
     let d = (2.0 + 1.0 / r) * power(sin_h, 1.0 / r) / (2.0 * PI);
-    let seen = 1.0 + sheen_lambda(cos_l, r) + sheen_lambda(cos_v, r);
+    let Lambda_l = sheen_lambda(cos_l, r);
+    let Lambda_v = sheen_lambda(cos_v, r);
+    let seen = 1.0 + Lambda_l + Lambda_v;
     // The guard is for grazing views, which have the highest values.
     let sheen = PI * d / (4.0 * max(cos_v, 1e-6) * seen);
     return Terms(

@@ -5,7 +5,7 @@
     "source": "A. Gooch, B. Gooch, P. Shirley, E. Cohen (1998), A Non-Photorealistic Lighting Model for Automatic Technical Illustration, SIGGRAPH 98",
     "summary": "The look of technical drawings: surfaces shade from warm facing the light to cool facing away, so their shape is visible everywhere, even in shadow. Deliberately breaks every law but one.",
     "equation": [
-        { "term": "diffuse", "text": "I_d = t (y C_y + β C_b) + (1 − t)(b C_u + α C_b), t = (1 + N·L)/2" },
+        { "term": "diffuse", "text": "I_d = t (y (1, 1, 0) + β C_b) + (1 − t)(b (0, 0, 1) + α C_b), t = (1 + N·L)/2" },
     ],
     "laws": ["non-negative"],
     "parameters": [

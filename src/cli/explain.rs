@@ -3,6 +3,7 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
+use glam::Vec3;
 
 use super::{
     Options, Outcome, print_json, print_text,
@@ -83,7 +84,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if arguments.json {
         let mut json = first.explanation.to_json();
         if let Some(influences) = &influences {
-            json["derivatives"] = influences.iter().map(Influence::to_json).collect();
+            let moves = influences.iter().filter(|influence| influence.derivative() != Vec3::ZERO);
+            json["derivatives"] = moves.map(Influence::to_json).collect();
         }
         if let Some(other) = &other {
             json["beside"] = other.explanation.to_json();

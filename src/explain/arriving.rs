@@ -2,7 +2,7 @@
 
 use super::{
     Lit,
-    lines::{agrees, reading},
+    lines::calculation,
     numbers::of_value,
     put::{Symbols, put_in},
 };
@@ -81,8 +81,7 @@ fn with_numbers(body: &str, known: &Known, value: &Value, digits: usize) -> Stri
         }
         put_in(body, &symbols).unwrap_or_else(|| body.to_owned())
     };
-    let fits = |text: &String| reading(text).is_ok_and(|read| agrees(&read, value, digits));
-    (digits..=12).map(with).find(fits).unwrap_or_else(|| with(digits))
+    calculation(digits, value, with)
 }
 
 impl Lit {

@@ -23,6 +23,8 @@ pub enum Knob {
         object: usize,
         /// The name of the parameter.
         name: &'static str,
+        /// True for a whole number.
+        whole: bool,
     },
     /// The intensity or the luminous flux of a light.
     Intensity {
@@ -68,8 +70,8 @@ impl Influence {
 }
 
 impl Explainer {
-    /// The numbers of a scene that a pixel depends on, that with the largest [effect](Influence::effect) first: those of the
-    /// material of its object and the intensities of the lights. Each takes two renderings of the pixel, so this is for the
+    /// The numbers of a scene, that with the largest [effect](Influence::effect) on a pixel first: those of the material of its
+    /// object, without colours, and the intensities of the lights. Each takes two renderings of the pixel, so this is for the
     /// asking, not for every frame.
     ///
     /// # Errors
@@ -87,20 +89,18 @@ impl Explainer {
         let mut knobs = Vec::new();
         for setting in &seen.model.settings {
             let parameter = setting.parameter;
-            if let (ParameterKind::Number { min, max, .. }, Value::Number(v)) =
-                (&parameter.kind, &setting.value)
-            {
-                let knob = Knob::Material { object, name: parameter.name };
-                let range = [f64::from(*min), f64::from(*max)];
-                knobs.push((
-                    knob,
-                    parameter.symbol,
-                    parameter.label.to_owned(),
-                    parameter.unit,
-                    f64::from(*v),
-                    range,
-                ));
-            }
+            let (value, range) = match (&parameter.kind, &setting.value) {
+                (ParameterKind::Number { min, max, .. }, Value::Number(v)) => {
+                    (f64::from(*v), [f64::from(*min), f64::from(*max)])
+                }
+                (ParameterKind::Integer { min, max, slider_max, .. }, Value::Integer(v)) => {
+                    (*v as f64, [*min as f64, max.unwrap_or(*slider_max) as f64])
+                }
+                _ => continue,
+            };
+            let whole = matches!(parameter.kind, ParameterKind::Integer { .. });
+            let knob = Knob::Material { object, name: parameter.name, whole };
+            knobs.push((knob, parameter.symbol, parameter.label.to_owned(), parameter.unit, value, range));
         }
         for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
             let Some(entry) = registry.light(&light.light_type) else { continue };
@@ -110,13 +110,15 @@ impl Explainer {
             };
             let name = light.name.clone().unwrap_or_else(|| format!("{} {}", entry.declaration.name, i + 1));
             let range = [0.0, limits.slider_max];
-            let label = format!("intensity of {name}");
+            let label = format!("{name}: intensity");
             knobs.push((Knob::Intensity { light: i }, "I", label, unit, f64::from(value), range));
         }
         let mut found = Vec::new();
         let mut changed = scene.clone();
         for (knob, symbol, label, unit, value, [min, max]) in knobs {
-            let hundredth = STEP * (max - min);
+            // Whole numbers change by whole ones.
+            let whole = matches!(knob, Knob::Material { whole: true, .. });
+            let hundredth = if whole { (STEP * (max - min)).round().max(1.0) } else { STEP * (max - min) };
             // A light may be brighter than its slider.
             let tried = [(value - hundredth).max(min), (value + hundredth).min(max.max(value))];
             let mut light = [Vec3::ZERO; 2];
@@ -125,10 +127,7 @@ impl Explainer {
                 *light = self.pixel(&changed, registry, settings, pixel)?.steps.light;
             }
             knob.restore(&mut changed, scene);
-            let influence = Influence { knob, symbol, label, unit, value, tried, light, hundredth };
-            if influence.derivative() != Vec3::ZERO {
-                found.push(influence);
-            }
+            found.push(Influence { knob, symbol, label, unit, value, tried, light, hundredth });
         }
         let size = |influence: &Influence| influence.effect().abs();
         found.sort_by(|a, b| size(b).total_cmp(&size(a)));
@@ -139,9 +138,10 @@ impl Explainer {
 impl Knob {
     fn set(&self, scene: &mut Scene, value: f32) {
         match *self {
-            Self::Material { object, name } => {
+            Self::Material { object, name, whole } => {
                 if let Some(object) = scene.objects.get_mut(object) {
-                    object.material.set(name, Value::Number(value));
+                    let whole = whole.then_some(Value::Integer(value.round() as i64));
+                    object.material.set(name, whole.unwrap_or(Value::Number(value)));
                 }
             }
             Self::Intensity { light } => {
@@ -174,13 +174,14 @@ mod tests {
     fn the_light_of_a_lambertian_surface_is_proportional_to_its_coefficient_and_the_intensity() {
         let registry = Registry::builtin();
         let settings = Settings { width: 64, height: 36, ..Settings::default() };
-        let scene = Scene::default();
+        let scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
         let mut explainer = Explainer::default();
         let light = explainer.pixel(&scene, &registry, &settings, [32, 18]).expect("inside").steps.light;
         let found = explainer.influences(&scene, &registry, &settings, [32, 18]).expect("inside");
         let of =
             |symbol: &str| found.iter().find(|i| i.symbol == symbol).unwrap_or_else(|| panic!("{symbol}"));
-        for symbol in ["k_d", "I"] {
+        // The diffuse term is all of the light here, but for the ambient one.
+        for (symbol, light) in [("k_d", light - of("k_a").derivative() * 0.1), ("I", light)] {
             let influence = of(symbol);
             let expected = light / influence.value as f32;
             let off = (influence.derivative() - expected).length() / expected.length();
@@ -190,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_pixel_does_not_depend_on_is_left_out() {
+    fn what_another_pixel_depends_on_is_left_out() {
         let registry = Registry::builtin();
         let settings = Settings { width: 64, height: 36, ..Settings::default() };
         let mut scene = Scene::default();

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     optics::{TermSelection, Terms},
     parameter::{Parameter, ParameterKind, Value as Given},
-    reflection::{Quantity, Term},
+    reflection::{Ambient, Quantity, Term},
     text::{
         expression::{Expression, Scope, Value},
         mathematics,
@@ -21,6 +21,12 @@ use crate::{
 
 /// The most digits of a number in a line; enough for any that the program has.
 const MOST_DIGITS: usize = 12;
+
+/// The answer to light from everywhere of models that have no formula for it.
+const ALBEDO: Quantity = Quantity::new(
+    "I_a",
+    "directional albedo towards V: the integral of f_r N·L over the hemisphere, by the program",
+);
 
 /// A line of the equation of a model for one light.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,15 +110,36 @@ pub fn reading(numbers: &str) -> Result<Value, String> {
     Expression::read(body)?.value(&mut Nameless)
 }
 
-/// True if two values agree to so many significant digits, or both are next to nothing.
+/// True if two values agree to so many significant digits, or both are next to nothing: below a billionth.
 #[must_use]
 pub fn agrees(a: &Value, b: &Value, digits: usize) -> bool {
+    agrees_above(a, b, digits, 1e-9)
+}
+
+/// The same with another size of next to nothing: at most one unit of the last digit apart, and half of one of a number that
+/// begins with 1.
+fn agrees_above(a: &Value, b: &Value, digits: usize, nothing: f64) -> bool {
     let most = b.rgb.iter().fold(0.0f64, |most, v| most.max(v.abs()));
     let near = |(a, b): (&f64, &f64)| {
-        let bound = 0.5 * 10f64.powi(1 - digits as i32) * b.abs().max(1e-3 * most) + 1e-9;
+        let size = b.abs().max(1e-3 * most);
+        let digit = 10f64.powi(1 - digits as i32);
+        let unit = digit * 10f64.powf(size.max(1e-300).log10().floor());
+        let bound = unit.min(0.5 * digit * size) + nothing;
         (a - b).abs() <= bound || a == b || a.is_nan() && b.is_nan()
     };
     a.rgb.iter().zip(&b.rgb).all(near)
+}
+
+/// True if two values are written alike with so many digits, or nearly: rounding may hang on the last digit of all.
+fn reads_as(a: &Value, b: &Value, digits: usize) -> bool {
+    agrees_above(a, b, digits + 1, 1e-15)
+        || agrees_above(a, b, digits, 1e-15) && of_value(a, digits) == of_value(b, digits)
+}
+
+/// A calculation with as many digits as it takes to get its value from them: at least so many.
+pub(super) fn calculation(digits: usize, value: &Value, with: impl Fn(usize) -> String) -> String {
+    let fits = |text: &String| reading(text).is_ok_and(|read| reads_as(&read, value, digits));
+    (digits..=MOST_DIGITS).map(&with).find(fits).unwrap_or_else(|| with(digits))
 }
 
 impl Lit {
@@ -191,13 +218,15 @@ impl Lines<'_> {
         // An equation is for light from a direction, except for its ambient term.
         let said = term == Term::Ambient || self.geometry.is_some();
         let before = self.lines.len();
+        // A model without a formula for light from everywhere answers with its albedo.
+        let albedo = term == Term::Ambient && self.model.declaration.ambient == Ambient::Albedo;
         let blank = Line {
             term,
-            text: String::new(),
+            text: if albedo { "I_a".to_owned() } else { String::new() },
             numbers: None,
             symbols: Vec::new(),
             value: Some(value),
-            quantity: None,
+            quantity: albedo.then_some(&ALBEDO),
         };
         let texts: Vec<_> = parts(self.model, term).filter(|_| said).collect();
         let is_head = |text: &str| sides(text).is_some_and(|(head, _)| head == blank.symbol());
@@ -239,7 +268,7 @@ impl Lines<'_> {
 
     /// The line about the sum of the terms, if it has numbers.
     fn total(&mut self, text: &'static str, total: Vec3) {
-        if self.lines.iter().any(|line| line.text == text) {
+        if self.lines.iter().any(|line| line.text == text) || total == Vec3::ZERO {
             return;
         }
         let start = self.workings.worked.len();
@@ -293,7 +322,7 @@ impl Lines<'_> {
         };
         let first = with(self.digits)?;
         let Some(value) = value else { return Some(first) };
-        let fits = |put: &Put| reading(&put.text).is_ok_and(|read| agrees(&read, value, self.digits));
+        let fits = |put: &Put| reading(&put.text).is_ok_and(|read| reads_as(&read, value, self.digits));
         if fits(&first) {
             return Some(first);
         }

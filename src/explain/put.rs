@@ -126,11 +126,14 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
             if i > 0 && !applied && ends(&atoms[i - 1]) {
                 out.push(" × ", None);
             }
+            let before = atoms[..i].iter().rfind(|atom| **atom != Atom::Space);
+            let of_function =
+                before.is_some_and(|atom| atom.base().len() > 1 && begins(atom) && !is_number(atom));
             let raised = !atoms[last].sup().is_empty();
             // (−0.5)(1 − s): a sign would take what follows with it.
             let begun = atoms.get(last + 1).is_some_and(|next| next.base() == "(");
             let after_sign = out.text.trim_end().ends_with(['+', '−', '×', '/', '·']);
-            let bracketed = value.starts_with('−') && (raised || after_sign || begun) || raised && value.ends_with('°') || applied
+            let bracketed = value.starts_with('−') && (raised || after_sign || begun || of_function) || raised && value.ends_with('°') || applied
                     // A power of ten is one number.
                     || value.contains('·') && !value.starts_with('(') && (raised || out.text.ends_with('/'));
             if bracketed {

@@ -5,15 +5,17 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Explanation, Influence, Line, Lit, Part, Place, Seen, Spot, angle, lines, number,
+    Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
+    lines::{self, calculation, reading},
+    number,
     numbers::{DIGITS, number_or_triple, of_value},
-    pairs, rounded, triple,
+    pairs, rounded, rounded_triple, triple,
 };
 use crate::{
     optics::{TermSelection, colour::Encoding},
-    reflection::Term,
+    reflection::{Family, Term},
     shading::Stage,
-    text::plural,
+    text::{expression::Value, plural},
 };
 
 impl Explanation {
@@ -36,10 +38,10 @@ impl Explanation {
         let form = if markdown { Form::Markdown } else { Form::Text };
         let mut out = Writer { text: String::new(), form };
         out.heading("What would move this pixel most, by differences");
-        if influences.is_empty() {
+        if influences.iter().all(|influence| influence.derivative() == Vec3::ZERO) {
             out.line(1, "No number of the material or of a light changes this pixel.");
         }
-        for influence in influences {
+        for influence in influences.iter().filter(|influence| influence.derivative() != Vec3::ZERO) {
             let Influence { symbol, label, unit, value, tried, .. } = influence;
             let space = if matches!(*unit, "" | "°") { "" } else { " " };
             let [low, high] = tried.map(|v| rounded(v, DIGITS));
@@ -98,7 +100,7 @@ impl Explanation {
                                     "",
                                 );
                             }
-                            None => out.line(2, format_args!("{name}: {} does not occur", pair.defines())),
+                            None => out.line(2, format_args!("{name}: no line for {}", pair.defines())),
                         }
                     }
                 }
@@ -210,6 +212,7 @@ impl Explanation {
             let cosines: Vec<_> =
                 cosines.map(|(name, c)| format!("{name} = {} ({}°)", number(c), number(angle(c)))).collect();
             out.line(2, cosines.join(", "));
+            angles(out, seen, geometry);
         }
         arriving(out, lit);
         if lit.is_dark() {
@@ -247,13 +250,15 @@ impl Explanation {
             several => format!("({})", several.join(" + ")),
         };
         let symbols = of(terms.iter().map(|(.., symbol)| (*symbol).to_owned()).collect());
-        let numbers = of(terms.iter().map(|(_, value, _)| triple(*value)).collect());
-        let (arriving, contribution) = (triple(lit.arriving), triple(lit.contribution));
-        out.line(2, format_args!("light to the observer: {symbols} × {arriving}"));
+        let numbers = |digits: usize| {
+            let terms = of(terms.iter().map(|(_, value, _)| rounded_triple(*value, digits)).collect());
+            format!("{terms} × {}", rounded_triple(lit.arriving, digits))
+        };
+        out.line(2, format_args!("light to the observer: {symbols} × {}", triple(lit.arriving)));
         if !terms.is_empty() {
-            out.mathematics(3, "= ", &format!("{numbers} × {arriving}"), "");
+            out.mathematics(3, "= ", &calculation(DIGITS, &colour(lit.contribution), numbers), "");
         }
-        out.mathematics(3, "= ", &contribution, "");
+        out.mathematics(3, "= ", &triple(lit.contribution), "");
         if !lit.is_finite() {
             out.line(2, "Some of these are not finite numbers.");
         }
@@ -317,7 +322,8 @@ fn equation(out: &mut Writer, line: &Line) {
         (Some(value), false) => out.mathematics(2, "", &format!("{} = {value}", line.defines()), &about),
         _ => {
             out.mathematics(2, "", &line.text, &about);
-            if let Some(numbers) = line.right() {
+            let numbers = line.right().filter(|numbers| Some(*numbers) != value.as_deref());
+            if let Some(numbers) = numbers {
                 out.mathematics(3, "= ", numbers, "");
             }
             if let Some(value) = value {
@@ -346,6 +352,9 @@ fn model(out: &mut Writer, seen: &Seen) {
     out.heading(&format!("Reflection model: {}{author}", d.name));
     for part in d.equation {
         out.mathematics(1, "", part.text, "");
+    }
+    if d.family != Family::Basic && !d.equation.is_empty() {
+        out.line(1, "I is the answer to light of unit intensity: for a BRDF f_r, π f_r N·L.");
     }
     for setting in &seen.model.settings {
         out.line(1, lines::setting(setting));
@@ -397,6 +406,28 @@ fn result(out: &mut Writer, seen: &Seen) {
     out.line(1, format_args!("= {}", triple(seen.light)));
 }
 
+/// The angles of directions, by the symbols that equations have for them; those around the normal, and the tangent from which they
+/// are measured, where the model has them.
+fn angles(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
+    let d = seen.model.declaration;
+    let texts = d.equation.iter().map(|part| part.text).chain(d.quantities.iter().map(|q| q.text));
+    let around = d.anisotropic || texts.clone().any(|text| text.contains('φ'));
+    let named = |symbol: &str| texts.clone().any(|text| text.contains(symbol));
+    let all: Vec<_> = geometry
+        .angles()
+        .into_iter()
+        .filter(|(symbol, _)| if symbol.starts_with('φ') { around && named(symbol) } else { named(symbol) })
+        .map(|(symbol, angle)| format!("{symbol} = {}°", rounded(angle, DIGITS)))
+        .collect();
+    if around {
+        let [t, b] = [geometry.frame.t, geometry.frame.b].map(triple);
+        out.line(2, format_args!("tangent T = {t}, B = {b}"));
+    }
+    if !all.is_empty() {
+        out.line(2, format_args!("angles: {}", all.join(", ")));
+    }
+}
+
 /// The light that arrives at a point.
 fn arriving(out: &mut Writer, lit: &Lit) {
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
@@ -412,20 +443,45 @@ fn arriving(out: &mut Writer, lit: &Lit) {
             out.mathematics(3, "= ", &of_value(&step.value, DIGITS), "");
         }
     }
-    let factors = lit.factors.iter().map(|factor| {
-        let value = number_or_triple(factor.value);
-        if matches!(factor.unit, "" | "×") { value } else { format!("{value} {}", factor.unit) }
-    });
-    let factors = factors.collect::<Vec<_>>().join(" × ");
+    let factors = |digits: usize| {
+        let factors = lit.factors.iter().map(|factor| {
+            let value = rounded_number_or_triple(factor.value, digits);
+            if matches!(factor.unit, "" | "×") { value } else { format!("{value} {}", factor.unit) }
+        });
+        factors.collect::<Vec<_>>().join(" × ")
+    };
     let intensity = number_or_triple(lit.intensity);
     let equation = lit.arrival();
-    let all = if lit.factors.len() > 1 { format!("{factors} = {intensity}") } else { factors };
+    let plain = |digits: usize| {
+        let values = lit.factors.iter().map(|factor| rounded_number_or_triple(factor.value, digits));
+        values.collect::<Vec<_>>().join(" × ")
+    };
+    // As many digits as the product of the numbers without their units takes.
+    let value = colour(lit.intensity);
+    let fits = |digits: &usize| reading(&plain(*digits)).is_ok_and(|read| agrees(&read, &value, DIGITS));
+    let digits = (DIGITS..=9).find(fits).unwrap_or(DIGITS);
+    let all =
+        if lit.factors.len() > 1 { format!("{} = {intensity} lx", factors(digits)) } else { factors(digits) };
     out.mathematics(2, "", &format!("{equation} = {all}"), "");
     if lit.colour != Vec3::ONE && lit.intensity != Vec3::ZERO {
-        let (colour, arriving) = (triple(lit.colour), triple(lit.arriving));
-        let all = format!("{intensity} × {colour} = {arriving}");
+        let numbers = |digits: usize| {
+            let intensity = rounded_number_or_triple(lit.intensity, digits);
+            format!("{intensity} × {}", rounded_triple(lit.colour, digits))
+        };
+        let numbers = calculation(DIGITS, &colour(lit.arriving), numbers);
+        let all = format!("{numbers} = {} lx", triple(lit.arriving));
         out.mathematics(2, "", &all, ": times the colour of the light");
     }
+}
+
+/// A colour as equations have it.
+fn colour(v: Vec3) -> Value {
+    Value::colour(v.to_array().map(f64::from))
+}
+
+/// A number if red, green and blue are the same, and otherwise the three.
+fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
+    if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
 }
 
 /// The form of the text.

@@ -413,7 +413,7 @@ mod tests {
         let file = folder.path().join("file");
         fs::write(&file, "").expect("writable");
         for (store, reason) in
-            [(None, "LCM_DATA_DIR"), (Some(Store::new(file.join("copies"))), "ot a directory")]
+            [(None, "LCM_DATA_DIR"), (Some(Store::new(file.join("copies"))), "is not a folder")]
         {
             let (send, told) = mpsc::channel();
             let keeper = Keeper::start(store, move || {

@@ -91,7 +91,7 @@ const CLEARCOAT_GLOSS: Parameter = fraction(
 );
 
 const SCHLICK: &str = "C. Schlick 1994";
-const SMITH: &str = "B. Smith 1967; B. Walter and others 2007";
+const SMITH: &str = "B. Smith 1967; E. Heitz 2014; B. Burley, disney.brdf";
 
 parameters! {
     /// **Disney** — B. Burley's "principled" model: few intuitive parameters, all from 0 to 1, every combination
@@ -248,22 +248,25 @@ impl ReflectionModel for Disney {
             Quantity::new("F_{ss} = r (L·H)^2", "grazing factor of the flat diffuse term"),
             Quantity::new("C_h = 1 − h_t + h_t C_t", "colour of the sheen"),
             Quantity::new("C_t = C_b/Y if Y > 0 else 1", "hue of the base colour: at luminance 1"),
-            Quantity::new("Y = 3 mean((0.3, 0.6, 0.1) C_b)", "luminance of the base colour"),
+            Quantity::new(
+                "Y = 3 mean((0.3, 0.6, 0.1) C_b)",
+                "luminance of the base colour, with the weights of Burley's program",
+            ),
             Quantity::new("α_x = max(0.001, r^2/q)", "roughness along the tangent"),
             Quantity::new("α_y = max(0.001, r^2 q)", "roughness across the tangent"),
             Quantity::new(
                 "q = √(1 − 0.9 a)",
                 "root of the ratio of the roughness across and along the tangent",
             ),
-            Quantity::new("G_s = g_L g_V", "masking of the base, over 4 (N·L)(N·V)").source(SMITH),
+            Quantity::new("G_s = g_L g_V", "masking of the base, divided by 4 (N·L)(N·V)").source(SMITH),
             Quantity::new(
                 "g_L = 1/(N·L + √((N·L)^2 + α_x^2 (L·T)^2 + α_y^2 (L·B)^2))",
-                "masking from the light, over 2 N·L",
+                "masking from the light, divided by 2 N·L",
             )
             .source(SMITH),
             Quantity::new(
                 "g_V = 1/(N·V + √((N·V)^2 + α_x^2 (V·T)^2 + α_y^2 (V·B)^2))",
-                "masking from the observer, over 2 N·V",
+                "masking from the observer, divided by 2 N·V",
             )
             .source(SMITH),
             Quantity::new(
@@ -272,7 +275,7 @@ impl ReflectionModel for Disney {
             ),
             Quantity::new("w = 0.1 (1 − c_g) + 0.001 c_g", "roughness of the clear coat"),
             Quantity::new("F_r = 0.04 + 0.96 F_H", "Fresnel reflectance of the clear coat").source(SCHLICK),
-            Quantity::new("G_r = g(N·L) g(N·V)", "masking of the clear coat, over 4 (N·L)(N·V)")
+            Quantity::new("G_r = g(N·L) g(N·V)", "masking of the clear coat, divided by 4 (N·L)(N·V)")
                 .source(SMITH),
             Quantity::new(
                 "g(μ) = 1/(μ + √(μ^2 + 0.25^2 (1 − μ^2)))",

@@ -113,7 +113,7 @@ impl ReflectionModel for MetallicRoughness {
             "Λ(θ) = (√(1 + α^2 tan^2 θ) − 1)/2",
             "hidden area of the facets per visible area, from this angle",
         )
-        .source("B. Smith 1967; B. Walter and others 2007")],
+        .source("B. Smith 1967; height-correlated by E. Heitz 2014")],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
         anisotropic: false,

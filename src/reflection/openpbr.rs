@@ -757,7 +757,7 @@ impl ReflectionModel for OpenPbr {
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {
                 term: Term::Total,
-                text: "Z = 1 − F_z E_f(N·V), W = max(0, 1 − C E_c(N·V)) T_L T_V Δ if C > 0 else 1",
+                text: "Z = 1 − F_z E_f(N·V), W = max(0, 1 − C E_c(N·V)) T_L T_V Δ",
             },
             EquationPart { term: Term::Diffuse, text: "I_d = π f_b W Z (N·L)" },
             EquationPart { term: Term::Specular, text: "I_s = π (F_z C_f f_f + Z (C f_c + W f_g)) (N·L)" },

@@ -3,6 +3,7 @@
 use std::fs;
 
 use lights_camera_models::{
+    custom,
     explain::{self, agrees, reading},
     reference::Settings,
     reflection::{Declaration, EquationPart, ModelEntry, Quantity, Term},
@@ -11,7 +12,7 @@ use lights_camera_models::{
     testing::{equations, random, random_values},
 };
 
-use crate::support::lcm_in;
+use crate::support::{lcm_in, root};
 
 #[test]
 fn every_line_of_every_model_gives_its_own_value() {
@@ -20,6 +21,17 @@ fn every_line_of_every_model_gives_its_own_value() {
         |model: &ModelEntry| Some(format!("{}: {}", model.declaration.id, equations::followed(model).err()?));
     let failures: Vec<_> = registry.models().iter().filter_map(wrong).collect();
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+}
+
+#[test]
+fn shipped_custom_models_can_be_followed_too() {
+    let registry = Registry::builtin();
+    for id in ["gooch", "charlie_sheen"] {
+        let file = root().join(format!("assets/models/{id}.wgsl"));
+        let text = fs::read_to_string(&file).expect("shipped");
+        let model = custom::read(&file, &text, &registry).unwrap_or_else(|what| panic!("{what:?}"));
+        assert_eq!(equations::followed(&model.entry).err().unwrap_or_default(), "", "{id}");
+    }
 }
 
 /// A built-in model with another declaration.

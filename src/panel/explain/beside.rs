@@ -57,7 +57,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
                 let (own, model) = if i == 0 { (&pair.a, a) } else { (&pair.b, b) };
                 match own {
                     Some(line) => side(ui, line, model),
-                    None => drop(rows::note(ui, &format!("{} does not occur here", pair.defines()))),
+                    None => drop(rows::note(ui, &format!("no line for {} here", pair.defines()))),
                 }
             });
         }

@@ -11,7 +11,7 @@ use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 use super::held::{Held, Holding};
 use crate::{
     document::Revision,
-    explain::{Explainer, Explanation, Influence, Lit, Seen, Sight, Spot},
+    explain::{Explainer, Explanation, Influence, Knob, Lit, Seen, Sight, Spot},
     library::status::Reloaded,
     optics::TermSelection,
     panel::{
@@ -132,6 +132,8 @@ struct Probe {
     sought: Option<String>,
     /// The pixel before its numbers were changed here: its code, and the pin that it belongs to.
     before: Option<(Pin, [u8; 3])>,
+    /// The numbers that are listed, in the order that they had when the pixel was chosen.
+    ranking: Option<(Pin, Vec<Knob>)>,
     /// The numbers that move the pixel, for one explanation.
     influences: Option<(u64, Arc<Vec<Influence>>)>,
 }
@@ -258,6 +260,25 @@ pub(super) fn keep_before(ctx: &Context) {
 /// Forgets the pixel before the changes.
 pub(super) fn forget_before(ctx: &Context) {
     lock(&shared(ctx)).before = None;
+}
+
+/// The numbers that are listed for a pixel: those that moved it most when it was chosen, so that none leaves its place while it
+/// is changed.
+pub(super) fn ranking(ctx: &Context, all: &[Influence], most: usize) -> Vec<Knob> {
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    let Some(pin) = probe.pin else { return Vec::new() };
+    match &probe.ranking {
+        Some((of, known)) if *of == pin && known.iter().all(|k| all.iter().any(|i| i.knob == *k)) => {
+            known.clone()
+        }
+        _ => {
+            let moves = all.iter().filter(|influence| influence.derivative() != glam::Vec3::ZERO);
+            let order: Vec<_> = moves.take(most).map(|influence| influence.knob.clone()).collect();
+            probe.ranking = Some((pin, order.clone()));
+            order
+        }
+    }
 }
 
 /// The numbers of the scene that move the pixel most, calculated once for each explanation.
@@ -418,6 +439,10 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     };
     if probe.asked.as_ref() == Some(&question) {
         return None;
+    }
+    // Another camera is no change of a number.
+    if probe.asked.as_ref().is_some_and(|asked| asked.observer != question.observer) {
+        probe.before = None;
     }
     let gone = |held: Held| {
         let object = session.document.object(held.object);

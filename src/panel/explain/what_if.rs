@@ -54,15 +54,17 @@ pub(super) fn what_if(
                 return;
             }
             let all = probe::influences(ui.ctx(), registry);
-            if all.is_empty() {
+            let order = probe::ranking(ui.ctx(), &all, MOST);
+            let shown: Vec<_> = order.iter().filter_map(|knob| all.iter().find(|i| i.knob == *knob)).collect();
+            if shown.is_empty() {
                 rows::note(ui, "No number of the material or of a light changes this pixel.");
                 return;
             }
-            let most = all[0].effect().abs();
-            for influence in all.iter().take(MOST) {
+            let most = shown.iter().map(|influence| influence.effect().abs()).fold(0.0, f32::max);
+            for influence in shown {
                 row(ui, influence, most, session, registry, actions);
             }
-            rows::note(ui, "Change of luminance for 1 % of the range, by differences.");
+            rows::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
         });
 }
 
@@ -146,7 +148,7 @@ fn row(
 
 fn limits_of(influence: &Influence, session: &Session, registry: &Registry) -> Limits {
     match influence.knob {
-        Knob::Material { object, name } => {
+        Knob::Material { object, name, .. } => {
             let scene = session.scene();
             let model = scene.objects.get(object).and_then(|object| registry.model(scene.model_of(object)));
             let parameter = model.and_then(|model| model.parameter(name));
@@ -158,8 +160,9 @@ fn limits_of(influence: &Influence, session: &Session, registry: &Registry) -> L
 
 fn edit(influence: &Influence, value: f32, session: &Session) -> Edit {
     match influence.knob {
-        Knob::Material { object, name } => {
-            Edit::Object(object, ObjectField::Material(name, Value::Number(value)))
+        Knob::Material { object, name, whole } => {
+            let whole = whole.then_some(Value::Integer(value.round() as i64));
+            Edit::Object(object, ObjectField::Material(name, whole.unwrap_or(Value::Number(value))))
         }
         Knob::Intensity { light } => {
             let flux = session.scene().lights.get(light).is_some_and(|light| light.luminous_flux.is_some());

@@ -83,6 +83,10 @@ pub(in crate::panel) fn meaning(model: &ModelEntry, symbol: &str) -> Option<Stri
     }
     let defined =
         maths::definition(model.declaration.equation, symbol).map(|text| format!("defined here: {text}"));
+    let mut quantities = model.declaration.quantities.iter();
+    let quantity = quantities.find(|quantity| maths::same_symbol(quantity.symbol(), symbol));
+    let named = quantity.map(|quantity| format!("{}: {}", quantity.label, quantity.text));
+    let defined = defined.or(named);
     let general = maths::meaning(symbol).map(str::to_owned);
     // A letter that the equation uses for something of its own does not mean what it usually does.
     let terms = ["I", "I_a", "I_d", "I_s"];

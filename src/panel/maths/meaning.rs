@@ -137,7 +137,8 @@ mod tests {
             for symbol in d.equation.iter().flat_map(|p| parse(p.text)).filter_map(|a| a.symbol()) {
                 let known = model.parameters.iter().any(|p| same_symbol(p.symbol, &symbol))
                     || meaning(&symbol).is_some()
-                    || definition(d.equation, &symbol).is_some();
+                    || definition(d.equation, &symbol).is_some()
+                    || d.quantities.iter().any(|quantity| same_symbol(quantity.symbol(), &symbol));
                 if !known {
                     unexplained.push(format!("{}: {symbol}", d.id));
                 }
