@@ -37,35 +37,43 @@ pub(super) fn what_if(
     actions: &mut Vec<Action>,
 ) {
     change(ui, explained, actions);
-    let id = ui.make_persistent_id("what would change this pixel");
-    let title = "What would change this pixel?";
-    let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false);
-    state
-        .show_header(ui, |ui| {
-            ui.label(theme::strong(ui, title)).on_hover_text(
-                "The numbers of the material and the intensities of the lights, the one that moves the pixel most first: by \
-                 how much the luminance of its light changes when the number changes by a hundredth of its range. \
-                 Calculated by differences: the pixel is drawn with a little less and a little more.",
-            );
-        })
-        .body(|ui| {
-            if explained.view != session.active() {
-                rows::note(ui, "Choose the view of this pixel to change its numbers.");
-                return;
-            }
-            let all = probe::influences(ui.ctx(), registry);
-            let order = probe::ranking(ui.ctx(), &all, MOST);
-            let shown: Vec<_> = order.iter().filter_map(|knob| all.iter().find(|i| i.knob == *knob)).collect();
-            if shown.is_empty() {
-                rows::note(ui, "No number of the material or of a light changes this pixel.");
-                return;
-            }
-            let most = shown.iter().map(|influence| influence.effect().abs()).fold(0.0, f32::max);
-            for influence in shown {
-                row(ui, influence, most, session, registry, actions);
-            }
-            rows::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
-        });
+    let header = egui::CollapsingHeader::new(theme::strong(ui, "What would change this pixel?"))
+        .id_salt("what would change this pixel")
+        .show_unindented(ui, |ui| list(ui, explained, session, registry, actions));
+    header.header_response.on_hover_text(
+        "The numbers of the material and the intensities of the lights, the one that moves the pixel most first: by how much \
+         the luminance of its light changes when the number changes by a hundredth of its range. Calculated by differences: \
+         the pixel is drawn with a little less and a little more.",
+    );
+}
+
+/// The numbers with their knobs.
+fn list(
+    ui: &mut Ui,
+    explained: &Explained,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    if explained.view != session.active() {
+        rows::note(
+            ui,
+            "Click the view of this pixel to make it the active one; then its numbers can be changed here.",
+        );
+        return;
+    }
+    let all = probe::influences(ui.ctx(), registry);
+    let order = probe::ranking(ui.ctx(), &all, MOST);
+    let shown: Vec<_> = order.iter().filter_map(|knob| all.iter().find(|i| i.knob == *knob)).collect();
+    if shown.is_empty() {
+        rows::note(ui, "No number of the material or of a light changes this pixel.");
+        return;
+    }
+    let most = shown.iter().map(|influence| influence.effect().abs()).fold(0.0, f32::max);
+    for influence in shown {
+        row(ui, influence, most, session, registry, actions);
+    }
+    rows::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
 }
 
 /// The pixel before and after changes that were made here.
