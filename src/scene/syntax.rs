@@ -6,7 +6,7 @@ use serde::{Deserialize as _, de::IgnoredAny};
 pub const MAX_DEPTH: usize = 64;
 /// The most values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`. In memory each takes
 /// up to 300 bytes, whereas its text may have two. 10 000 objects with every parameter of all models have half.
-pub const MAX_VALUES: usize = 2_000_000;
+pub const MAX_VALUES: usize = 4_000_000;
 
 /// Strict JSON, or the first wrong byte and the expectation there.
 pub(crate) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
