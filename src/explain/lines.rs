@@ -232,12 +232,16 @@ impl Lines<'_> {
         let is_head = |text: &str| sides(text).is_some_and(|(head, _)| head == blank.symbol());
         for text in texts.iter().filter(|text| is_head(text)) {
             let start = self.workings.worked.len();
-            match self.workings.evaluate(text) {
-                Ok(worked) if light == Vec3::ZERO && !agrees(&worked, &value, self.digits) => {
-                    self.workings.worked.truncate(start);
-                    let gate = self.geometry.and_then(|geometry| gate(geometry, blank.symbol()));
-                    self.push(term, gate.unwrap_or(text), Some(value), None);
-                }
+            let outcome = self.workings.evaluate(text);
+            // Behind the surface an equation may give something else, or nothing: a shader has returned before its `let`s.
+            let off = outcome.as_ref().map_or(true, |worked| !agrees(worked, &value, self.digits));
+            let gate = self.geometry.and_then(|geometry| gate(geometry, blank.symbol()));
+            if let Some(gate) = gate.filter(|_| off && light == Vec3::ZERO) {
+                self.workings.worked.truncate(start);
+                self.push(term, gate, Some(value), None);
+                continue;
+            }
+            match outcome {
                 Ok(worked) => {
                     // The digits are those that the equation needs, whose last ones differ from those of 32 bits.
                     self.push_with(term, text, (Some(value), Some(&worked)), None);

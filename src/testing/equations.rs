@@ -12,6 +12,8 @@ use crate::{
 
 /// Digits of numbers, which a line must give; the terms themselves are calculated with 32 bits and must agree to one less.
 const DIGITS: usize = 4;
+/// Terms that are no farther apart agree: the light of white is 1.
+const DARK: f64 = 1e-5;
 /// Random parameters, and directions for each.
 const SURFACES: usize = 60;
 const DIRECTIONS: usize = 8;
@@ -77,6 +79,11 @@ pub fn follows(line: &Line) -> Result<(), String> {
     // A quantity that the model gives has no equation.
     let Some(calculated) = calculated else { return Ok(()) };
     let read = reading(calculated)?;
+    // What 32 bits lose in a dark tail is not seen.
+    let apart = read.rgb.iter().zip(&value.rgb).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if line.is_term() && apart <= DARK {
+        return Ok(());
+    }
     let digits = if line.is_term() { DIGITS - 1 } else { DIGITS };
     if agrees(&read, value, digits) { Ok(()) } else { Err(format!("gives {:?}", read.rgb)) }
 }

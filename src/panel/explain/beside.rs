@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     document::Selection,
-    explain::{Line, Lit, Pair, Seen, of_value, pairs},
+    explain::{Line, Lit, Pair, Seen, Spot, of_value, pairs},
     panel::{
         maths,
         state::Session,
@@ -37,7 +37,13 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         if a.object.index != b.object.index {
             rows::note(ui, "The views show different objects here.");
         }
-        let lit = [a, b].map(|seen| shown(seen, choice));
+        // The same light in both, which may be the brightest in one alone.
+        let first = shown(a, choice);
+        let index = first.map(|lit| lit.light.index);
+        let lit = [
+            first,
+            spot(b, choice).and_then(|spot| spot.lights.iter().find(|l| Some(l.light.index) == index)),
+        ];
         let [Some(first), Some(second)] = lit else {
             rows::note(ui, "No light is switched on here.");
             return;
@@ -72,8 +78,13 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
 
 /// The light whose block is unfolded, at the point that counts most.
 fn shown(seen: &Seen, choice: Choice) -> Option<&Lit> {
-    let spot = *probe::spots(seen).get(probe::shown_spot(seen, choice))?;
+    let spot = spot(seen, choice)?;
     probe::shown_light(spot, choice).or_else(|| spot.brightest().first().copied())
+}
+
+/// The point that is shown.
+fn spot(seen: &Seen, choice: Choice) -> Option<&Spot> {
+    probe::spots(seen).get(probe::shown_spot(seen, choice)).copied()
 }
 
 /// The name of a view, its models and its code.
