@@ -74,6 +74,12 @@ impl Line {
         self.defines() == self.symbol()
     }
 
+    /// True for a line of the equation itself: a term, or a part that the equation defines; false for a quantity beside it.
+    #[must_use]
+    pub fn is_equation(&self) -> bool {
+        self.is_term() || self.quantity.is_none()
+    }
+
     /// The value as red, green and blue.
     #[must_use]
     pub fn rgb(&self) -> Option<Vec3> {

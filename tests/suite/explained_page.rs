@@ -110,12 +110,17 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
         let put: Vec<_> = put.iter().map(|p| read(p.split("</div>").next().unwrap_or_default())).collect();
         let mut found = 0;
         for lit in spot.brightest().into_iter().take(8).filter(|lit| !lit.is_dark()) {
-            for line in lit.lines(&seen.model).iter().filter(|line| line.quantity.is_none()) {
+            for line in lit.lines(&seen.model).iter().filter(|line| line.is_equation()) {
                 let Some(right) = line.right() else { continue };
                 assert!(run.out.contains(right), "{name}: {right}");
                 let known = |p: &String| numbers(p) == numbers(right);
                 assert!(put.iter().any(known), "{name}: {right} is not in {put:?}");
                 found += 1;
+            }
+            // Light from everywhere is answered by one term, which has its line also where it has no equation.
+            if lit.geometry.is_none() {
+                let ambient = explain::triple(lit.response.ambient);
+                assert!(html.contains(&format!("title=\"{ambient}\"")), "{name}: I_a = {ambient}");
             }
             // All digits of the command are under the pointer.
             let all = explain::triple(lit.contribution);

@@ -231,7 +231,7 @@ fn light(out: &mut String, seen: &Seen, lit: &Lit) {
         let said = "Light from everywhere: the model answers it as a whole, with its ambient term.";
         *out += &paragraph("summary", said);
     }
-    for line in lit.lines(&seen.model).iter().filter(|line| line.quantity.is_none()) {
+    for line in lit.lines(&seen.model).iter().filter(|line| line.is_equation()) {
         *out += &worked(line);
     }
     let sum = numbers(&format!("{} × {}", lit.sum(TermSelection::All), triple(lit.arriving)));

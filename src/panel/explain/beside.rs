@@ -56,7 +56,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         let all = pairs(&lines[0], &lines[1]);
         let shown = |pair: &&Pair| {
             let line = pair.a.as_ref().or(pair.b.as_ref());
-            factors || line.is_some_and(|line| line.quantity.is_none() || line.is_term())
+            factors || line.is_some_and(Line::is_equation)
         };
         for pair in all.iter().filter(shown) {
             halves(ui, pair.differs(), |ui, i| {
