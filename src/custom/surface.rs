@@ -61,7 +61,9 @@ impl OnCpu {
                 Ambient::Albedo => None,
             };
             // Names that nobody wants need no second program.
-            let lets = Program::lets(module, "response", table, named).ok().filter(|_| !symbols.is_empty());
+            let wanted = module.functions.iter().filter(|(_, f)| f.name.as_deref() == Some("response"));
+            let wanted = wanted.flat_map(|(_, f)| f.named_expressions.values()).any(|name| named(name));
+            let lets = wanted.then(|| Program::lets(module, "response", table, named).ok()).flatten();
             let lets = lets.map(|(program, lets)| {
                 let symbol = |name: &str| symbols.iter().find(|symbol| is_name_of(name, symbol));
                 let of = |(name, words): (String, usize)| (symbol(&name).cloned().unwrap_or(name), words);

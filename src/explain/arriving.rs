@@ -3,8 +3,8 @@
 use super::{
     Lit,
     lines::calculation,
-    numbers::of_value,
     put::{Symbols, put_in},
+    workings::sides,
 };
 use crate::{
     light::Factor,
@@ -54,8 +54,7 @@ impl Factor {
         }
         // What is defined last is needed by what stands before.
         for text in definitions(self.equation).into_iter().rev() {
-            let (head, body) =
-                text.split_once('=').map_or(("", text), |(head, body)| (head.trim(), body.trim()));
+            let (head, body) = sides(text).unwrap_or(("", text));
             let Ok(value) = Expression::read(body).and_then(|e| e.value(&mut known)) else {
                 return Vec::new();
             };
@@ -74,13 +73,9 @@ impl Factor {
 
 /// An expression with numbers, of as many digits as it takes.
 fn with_numbers(body: &str, known: &Known, value: &Value, digits: usize) -> String {
-    let with = |digits: usize| {
-        let mut symbols = Symbols::default();
-        for (name, value) in &known.0 {
-            symbols.put(name, of_value(value, digits));
-        }
-        put_in(body, &symbols).unwrap_or_else(|| body.to_owned())
-    };
+    let values = || known.0.iter().map(|(name, value)| (name.as_str(), *value));
+    let with =
+        |digits: usize| put_in(body, &Symbols::of(values(), digits)).unwrap_or_else(|| body.to_owned());
     calculation(digits, value, with)
 }
 

@@ -57,11 +57,11 @@ impl Geometry {
         self.cosines.iter().find(|(known, _)| *known == name).map_or(f32::NAN, |(_, cosine)| *cosine)
     }
 
-    /// The scalar products of all directions, by name: of `N`, `L`, `V`, `H`, `R`, `T` and `B`.
+    /// The scalar products of all directions, by name, in one order each: of `N`, `L`, `V`, `H`, `R`, `T` and `B`.
     pub(super) fn products(&self) -> impl Iterator<Item = (String, f64)> {
         let Self { l, v, frame: Frame { n, t, b }, h, r, cosines } = *self;
         let all = [("N", n), ("L", l), ("V", v), ("H", h), ("R", r), ("T", t), ("B", b)];
-        let pairs = (0..all.len()).flat_map(move |i| (0..all.len()).map(move |j| (all[i], all[j])));
+        let pairs = (0..all.len()).flat_map(move |i| (i..all.len()).map(move |j| (all[i], all[j])));
         let products = pairs.map(|((a, x), (b, y))| (format!("{a}·{b}"), f64::from(x.dot(y))));
         // Those that models use have the bits of the models. Models that raise R·V to high powers take care of its digits.
         let [l, v, n] = [l, v, n].map(|d| d.as_dvec3().normalize_or_zero());

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     Geometry, Lit, Model, Setting, number,
-    numbers::{DIGITS, of_value},
+    numbers::{DIGITS, colour, of_value, rounded_triple},
     put::{Put, Symbols, put},
     triple,
     workings::{Definition, Workings, sides},
@@ -50,12 +50,7 @@ impl Line {
     /// The symbol of its term: `I_d`.
     #[must_use]
     pub fn symbol(&self) -> &'static str {
-        match self.term {
-            Term::Total => "I",
-            Term::Ambient => "I_a",
-            Term::Diffuse => "I_d",
-            Term::Specular => "I_s",
-        }
+        self.term.symbol()
     }
 
     /// What it defines: `I_d`, or `H(N·L)`.
@@ -162,22 +157,41 @@ impl Lit {
         model.lines(self.geometry.as_ref(), &self.response, digits)
     }
 
+    /// The terms that reach the observer: those that are shown and not 0.
+    fn shown(&self, terms: TermSelection) -> impl Iterator<Item = (Term, Vec3)> {
+        let shown = move |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
+        of_terms(&self.response).into_iter().filter(move |(term, value)| *value != Vec3::ZERO && shown(*term))
+    }
+
     /// The terms that reach the observer, those that are shown and not 0, as a factor: `(I_d + I_s)`.
     #[must_use]
     pub fn sum(&self, terms: TermSelection) -> String {
-        let response = self.response;
-        let all = [
-            (Term::Ambient, response.ambient, "I_a"),
-            (Term::Diffuse, response.diffuse, "I_d"),
-            (Term::Specular, response.specular, "I_s"),
-        ];
-        let shown = |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
-        let some: Vec<_> = all.iter().filter(|(term, v, _)| *v != Vec3::ZERO && shown(*term)).collect();
-        match some.as_slice() {
-            [] => "0".to_owned(),
-            [(.., one)] => (*one).to_owned(),
-            several => format!("({})", several.iter().map(|(.., s)| *s).collect::<Vec<_>>().join(" + ")),
-        }
+        factor(self.shown(terms).map(|(term, _)| term.symbol().to_owned()))
+    }
+
+    /// The same with their values, and the arriving light: as many digits as it takes to get the light to the observer.
+    pub(super) fn product(&self, terms: TermSelection) -> String {
+        let with = |digits: usize| {
+            let sum = factor(self.shown(terms).map(|(_, value)| rounded_triple(value, digits)));
+            format!("{sum} × {}", rounded_triple(self.arriving, digits))
+        };
+        calculation(DIGITS, &colour(self.contribution), with)
+    }
+}
+
+/// The ambient, diffuse and specular term, each with its value.
+pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
+    let Terms { ambient, diffuse, specular } = *response;
+    [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
+}
+
+/// A sum as a factor: in brackets if there are several.
+fn factor(terms: impl Iterator<Item = String>) -> String {
+    let terms: Vec<_> = terms.collect();
+    match terms.as_slice() {
+        [] => "0".to_owned(),
+        [one] => one.clone(),
+        several => format!("({})", several.join(" + ")),
     }
 }
 
@@ -188,11 +202,7 @@ impl Model {
     pub fn lines(&self, geometry: Option<&Geometry>, response: &Terms, digits: usize) -> Vec<Line> {
         let workings = Workings::new(self, geometry, response);
         let mut lines = Lines { model: self, geometry, workings, digits, lines: Vec::new() };
-        for (term, value) in [
-            (Term::Ambient, response.ambient),
-            (Term::Diffuse, response.diffuse),
-            (Term::Specular, response.specular),
-        ] {
+        for (term, value) in of_terms(response) {
             lines.term(term, value);
         }
         // A model may have one formula for all of its light.
@@ -220,7 +230,7 @@ struct Lines<'a> {
 
 impl Lines<'_> {
     fn term(&mut self, term: Term, light: Vec3) {
-        let value = Value::colour(light.to_array().map(f64::from));
+        let value = colour(light);
         // An equation is for light from a direction, except for its ambient term.
         let said = term == Term::Ambient || self.geometry.is_some();
         let before = self.lines.len();
@@ -228,7 +238,7 @@ impl Lines<'_> {
         let albedo = term == Term::Ambient && self.model.declaration.ambient == Ambient::Albedo;
         let blank = Line {
             term,
-            text: if albedo { "I_a".to_owned() } else { String::new() },
+            text: if albedo { term.symbol().to_owned() } else { String::new() },
             numbers: None,
             symbols: Vec::new(),
             value: Some(value),
@@ -244,7 +254,7 @@ impl Lines<'_> {
             let gate = self.geometry.and_then(|geometry| gate(geometry, blank.symbol()));
             if let Some(gate) = gate.filter(|_| off && light == Vec3::ZERO) {
                 self.workings.worked.truncate(start);
-                self.push(term, gate, Some(value), None);
+                self.push(term, &gate, Some(value), None);
                 continue;
             }
             match outcome {
@@ -284,7 +294,7 @@ impl Lines<'_> {
         let start = self.workings.worked.len();
         let defines = sides(text).is_some_and(|(head, _)| head == "I");
         let worked = self.workings.evaluate(text).ok();
-        let value = if defines { Some(Value::colour(total.to_array().map(f64::from))) } else { worked };
+        let value = if defines { Some(colour(total)) } else { worked };
         let before = self.lines.len();
         self.push(Term::Total, text, value, None);
         if self.lines[before].numbers.is_none() {
@@ -323,13 +333,7 @@ impl Lines<'_> {
     /// A text with numbers, of as many digits as it takes to get the value from them.
     fn numbers(&self, text: &str, value: Option<&Value>) -> Option<Put> {
         sides(text)?;
-        let with = |digits: usize| {
-            let mut symbols = Symbols::default();
-            for (name, value) in self.workings.values().filter(|(_, value)| value.degrees < 2) {
-                symbols.put(name, of_value(&value, digits));
-            }
-            put(text, &symbols)
-        };
+        let with = |digits: usize| put(text, &Symbols::of(self.workings.values(), digits));
         let first = with(self.digits)?;
         let Some(value) = value else { return Some(first) };
         let fits = |put: &Put| reading(&put.text).is_ok_and(|read| reads_as(&read, value, self.digits));
@@ -343,16 +347,9 @@ impl Lines<'_> {
 }
 
 /// The reason why a term is 0 though its equation is not.
-fn gate(geometry: &Geometry, symbol: &str) -> Option<&'static str> {
-    let behind = geometry.cosine("N·L") <= 0.0;
-    (behind || geometry.cosine("N·V") <= 0.0).then_some(match (symbol, behind) {
-        ("I_d", true) => "I_d = 0 if N·L ≤ 0",
-        ("I_d", false) => "I_d = 0 if N·V ≤ 0",
-        ("I_s", true) => "I_s = 0 if N·L ≤ 0",
-        ("I_s", false) => "I_s = 0 if N·V ≤ 0",
-        (_, true) => "I_a = 0 if N·L ≤ 0",
-        (_, false) => "I_a = 0 if N·V ≤ 0",
-    })
+fn gate(geometry: &Geometry, symbol: &str) -> Option<String> {
+    let below = ["N·L", "N·V"].into_iter().find(|product| geometry.cosine(product) <= 0.0)?;
+    Some(format!("{symbol} = 0 if {below} ≤ 0"))
 }
 
 /// A parameter in an explanation: `k_d = 0.8, diffuse coefficient`.

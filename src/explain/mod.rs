@@ -57,7 +57,7 @@ pub use factor_curve::{Along, FactorCurve};
 pub use geometry::Geometry;
 pub use influence::{Influence, Knob};
 pub use lines::{Line, agrees, reading};
-pub use numbers::{number, of_value, rounded, rounded_triple, triple};
+pub use numbers::{number, of_value, rounded, rounded_number_or_triple, rounded_triple, triple};
 pub use pairs::{Pair, pairs};
 pub use pinned::{Anchor, Sight};
 pub use put::{Put, Symbols, put, put_in};

@@ -76,8 +76,14 @@ pub fn of_value(value: &Value, digits: usize) -> String {
 }
 
 /// A number if red, green and blue are the same, and otherwise the three.
-pub(super) fn number_or_triple(v: Vec3) -> String {
-    if v.x == v.y && v.y == v.z { number(v.x) } else { triple(v) }
+#[must_use]
+pub fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
+    if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
+}
+
+/// A colour as equations have it.
+pub(super) fn colour(v: Vec3) -> Value {
+    Value::colour(v.to_array().map(f64::from))
 }
 
 #[cfg(test)]
@@ -121,7 +127,7 @@ mod tests {
     #[test]
     fn what_is_no_number_says_so() {
         assert_eq!(triple(Vec3::new(f32::NAN, f32::INFINITY, -f32::INFINITY)), "(NaN, ∞, −∞)");
-        assert_eq!(number_or_triple(Vec3::splat(f32::NAN)), "(NaN, NaN, NaN)");
-        assert_eq!(number_or_triple(Vec3::splat(2.0)), "2");
+        assert_eq!(rounded_number_or_triple(Vec3::splat(f32::NAN), DIGITS), "(NaN, NaN, NaN)");
+        assert_eq!(rounded_number_or_triple(Vec3::splat(2.0), DIGITS), "2");
     }
 }

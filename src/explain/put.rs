@@ -1,6 +1,10 @@
 //! Equations with numbers in the place of their symbols.
 
-use crate::text::mathematics::{Atom, parse, same_symbol, write};
+use super::numbers::of_value;
+use crate::text::{
+    expression::{Value, is_function},
+    mathematics::{Atom, parse, same_symbol, write},
+};
 
 /// The symbols of an equation whose values are known.
 #[derive(Clone, Debug, Default)]
@@ -9,6 +13,16 @@ pub struct Symbols {
 }
 
 impl Symbols {
+    /// Symbols with their values, to so many significant digits. What has no unit that can be written, such as the square of an
+    /// angle, stays a symbol.
+    pub(super) fn of<'a>(values: impl Iterator<Item = (&'a str, Value)>, digits: usize) -> Self {
+        let mut symbols = Self::default();
+        for (name, value) in values.filter(|(_, value)| value.degrees < 2) {
+            symbols.put(name, of_value(&value, digits));
+        }
+        symbols
+    }
+
     /// Makes a symbol known, with its value as it is to be written: `k_d`, or a scalar product such as `N·L`. The first
     /// value of a symbol is kept.
     pub fn put(&mut self, symbol: &str, value: String) {
@@ -114,8 +128,8 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
             i += 1;
             continue;
         }
-        let begins_line =
-            atoms[..i].iter().rfind(|atom| **atom != Atom::Space).is_none_or(|atom| atom.base() == ",");
+        let before = atoms[..i].iter().rfind(|atom| **atom != Atom::Space);
+        let begins_line = before.is_none_or(|atom| atom.base() == ",");
         let value =
             symbols.first(&atoms[i..]).filter(|(_, count)| !begins_line || !is_defined(&atoms[i + count..]));
         let last = value.map_or(i, |(_, count)| i + count - 1);
@@ -126,9 +140,7 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
             if i > 0 && !applied && ends(&atoms[i - 1]) {
                 out.push(" × ", None);
             }
-            let before = atoms[..i].iter().rfind(|atom| **atom != Atom::Space);
-            let of_function =
-                before.is_some_and(|atom| atom.base().len() > 1 && begins(atom) && !is_number(atom));
+            let of_function = before.is_some_and(|atom| is_function(atom.base()));
             let raised = !atoms[last].sup().is_empty();
             // (−0.5)(1 − s): a sign would take what follows with it.
             let begun = atoms.get(last + 1).is_some_and(|next| next.base() == "(");
@@ -155,11 +167,11 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
 
 /// The base of an atom and its index.
 fn plain(atom: &Atom) -> String {
-    match atom.sub() {
-        "" => atom.base().to_owned(),
-        sub if sub.chars().count() == 1 => format!("{}_{sub}", atom.base()),
-        sub => format!("{}_{{{sub}}}", atom.base()),
+    let mut bare = atom.clone();
+    if let Atom::Symbol { sup, .. } | Atom::Upright { sup, .. } = &mut bare {
+        sup.clear();
     }
+    write(&[bare])
 }
 
 /// The power of an atom, and true if a symbol of it is known.
@@ -192,14 +204,10 @@ fn applies(atom: &Atom) -> bool {
 
 /// True if a factor may begin with this atom.
 fn begins(atom: &Atom) -> bool {
-    const FUNCTIONS: &[&str] = &[
-        "max", "min", "exp", "ln", "sin", "cos", "tan", "arccos", "arcsin", "arctan", "clamp", "mean", "abs",
-        "floor", "ceil", "fract", "(", "[", "√",
-    ];
     match atom {
         Atom::Symbol { .. } => true,
         Atom::Upright { base, .. } => {
-            FUNCTIONS.contains(&base.as_str()) || base.starts_with(|c: char| c.is_ascii_digit())
+            is_function(base) || base.starts_with(|c: char| c.is_ascii_digit() || "([".contains(c))
         }
         Atom::Space => false,
     }

@@ -8,14 +8,15 @@ use super::{
     Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
     lines::{self, calculation, reading},
     number,
-    numbers::{DIGITS, number_or_triple, of_value},
-    pairs, rounded, rounded_triple, triple,
+    numbers::{DIGITS, colour, of_value},
+    pairs, rounded, rounded_number_or_triple, rounded_triple, triple,
 };
 use crate::{
+    light::Factor,
     optics::{TermSelection, colour::Encoding},
-    reflection::{Family, Term},
+    reflection::Family,
     shading::Stage,
-    text::{expression::Value, plural},
+    text::plural,
 };
 
 impl Explanation {
@@ -228,35 +229,10 @@ impl Explanation {
         for line in lit.lines(&seen.model) {
             equation(out, &line);
         }
-        let left_out = |term: Term, value: Vec3| {
-            let shown = self.terms == TermSelection::All || term.alone() == Some(self.terms);
-            !shown && value != Vec3::ZERO
-        };
-        let response = lit.response;
-        let terms = [
-            (Term::Ambient, response.ambient, "I_a"),
-            (Term::Diffuse, response.diffuse, "I_d"),
-            (Term::Specular, response.specular, "I_s"),
-        ];
-        let shown: Vec<_> = terms
-            .iter()
-            .filter(|(term, value, _)| *value != Vec3::ZERO && !left_out(*term, *value))
-            .map(|(_, _, symbol)| *symbol)
-            .collect();
-        let terms: Vec<_> = terms.iter().filter(|(.., symbol)| shown.contains(symbol)).collect();
-        let of = |texts: Vec<String>| match texts.as_slice() {
-            [] => "0".to_owned(),
-            [one] => one.clone(),
-            several => format!("({})", several.join(" + ")),
-        };
-        let symbols = of(terms.iter().map(|(.., symbol)| (*symbol).to_owned()).collect());
-        let numbers = |digits: usize| {
-            let terms = of(terms.iter().map(|(_, value, _)| rounded_triple(*value, digits)).collect());
-            format!("{terms} × {}", rounded_triple(lit.arriving, digits))
-        };
-        out.line(2, format_args!("light to the observer: {symbols} × {}", triple(lit.arriving)));
-        if !terms.is_empty() {
-            out.mathematics(3, "= ", &calculation(DIGITS, &colour(lit.contribution), numbers), "");
+        let sum = lit.sum(self.terms);
+        out.line(2, format_args!("light to the observer: {sum} × {}", triple(lit.arriving)));
+        if sum != "0" {
+            out.mathematics(3, "= ", &lit.product(self.terms), "");
         }
         out.mathematics(3, "= ", &triple(lit.contribution), "");
         if !lit.is_finite() {
@@ -431,7 +407,7 @@ fn angles(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
 /// The light that arrives at a point.
 fn arriving(out: &mut Writer, lit: &Lit) {
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
-        let (symbol, value) = (factor.symbol, number_or_triple(factor.value));
+        let (symbol, value) = (factor.symbol, rounded_number_or_triple(factor.value, DIGITS));
         let about = format!(" for {}: {}", factor.givens(number), factor.meaning);
         let steps = factor.steps(DIGITS);
         if steps.is_empty() {
@@ -443,25 +419,25 @@ fn arriving(out: &mut Writer, lit: &Lit) {
             out.mathematics(3, "= ", &of_value(&step.value, DIGITS), "");
         }
     }
-    let factors = |digits: usize| {
-        let factors = lit.factors.iter().map(|factor| {
+    let numbers = |digits: usize, with_unit: bool| {
+        let factor = |factor: &Factor| {
             let value = rounded_number_or_triple(factor.value, digits);
-            if matches!(factor.unit, "" | "×") { value } else { format!("{value} {}", factor.unit) }
-        });
-        factors.collect::<Vec<_>>().join(" × ")
+            if !with_unit || matches!(factor.unit, "" | "×") {
+                value
+            } else {
+                format!("{value} {}", factor.unit)
+            }
+        };
+        lit.factors.iter().map(factor).collect::<Vec<_>>().join(" × ")
     };
-    let intensity = number_or_triple(lit.intensity);
+    let intensity = rounded_number_or_triple(lit.intensity, DIGITS);
     let equation = lit.arrival();
-    let plain = |digits: usize| {
-        let values = lit.factors.iter().map(|factor| rounded_number_or_triple(factor.value, digits));
-        values.collect::<Vec<_>>().join(" × ")
-    };
     // As many digits as the product of the numbers without their units takes.
     let value = colour(lit.intensity);
-    let fits = |digits: &usize| reading(&plain(*digits)).is_ok_and(|read| agrees(&read, &value, DIGITS));
-    let digits = (DIGITS..=9).find(fits).unwrap_or(DIGITS);
-    let all =
-        if lit.factors.len() > 1 { format!("{} = {intensity} lx", factors(digits)) } else { factors(digits) };
+    let fits =
+        |digits: &usize| reading(&numbers(*digits, false)).is_ok_and(|read| agrees(&read, &value, DIGITS));
+    let factors = numbers((DIGITS..=9).find(fits).unwrap_or(DIGITS), true);
+    let all = if lit.factors.len() > 1 { format!("{factors} = {intensity} lx") } else { factors };
     out.mathematics(2, "", &format!("{equation} = {all}"), "");
     if lit.colour != Vec3::ONE && lit.intensity != Vec3::ZERO {
         let numbers = |digits: usize| {
@@ -472,16 +448,6 @@ fn arriving(out: &mut Writer, lit: &Lit) {
         let all = format!("{numbers} = {} lx", triple(lit.arriving));
         out.mathematics(2, "", &all, ": times the colour of the light");
     }
-}
-
-/// A colour as equations have it.
-fn colour(v: Vec3) -> Value {
-    Value::colour(v.to_array().map(f64::from))
-}
-
-/// A number if red, green and blue are the same, and otherwise the three.
-fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
-    if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
 }
 
 /// The form of the text.

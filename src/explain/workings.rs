@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Geometry, Model, Setting};
+use super::{Geometry, Model, Setting, lines::of_terms, numbers::colour};
 use crate::{
     optics::Terms,
     parameter::Value as Parameter,
@@ -82,7 +82,7 @@ impl<'a> Workings<'a> {
         let mut known = Vec::new();
         for Setting { parameter, value, linear } in &model.settings {
             let value = match (value, linear) {
-                (_, Some(linear)) => Value::colour(linear.to_array().map(f64::from)),
+                (_, Some(linear)) => colour(*linear),
                 // Equations take angles as angles: σ = 20°.
                 (Parameter::Number(v), _) if parameter.unit == "°" => Value::angle(f64::from(*v)),
                 (Parameter::Number(v), _) => number(*v),
@@ -97,9 +97,7 @@ impl<'a> Workings<'a> {
             known.extend(geometry.products().map(|(name, cosine)| (name, Value::number(cosine))));
             known.extend(geometry.angles().map(|(name, angle)| (name.to_owned(), Value::angle(angle))));
         }
-        for (symbol, value) in [("I_a", terms.ambient), ("I_d", terms.diffuse), ("I_s", terms.specular)] {
-            known.push((symbol.to_owned(), Value::colour(value.to_array().map(f64::from))));
-        }
+        known.extend(of_terms(terms).map(|(term, value)| (term.symbol().to_owned(), colour(value))));
         let declaration = model.declaration;
         let parts = declaration.equation.iter().flat_map(|part| {
             let of = |text| Definition { term: part.term, text, quantity: None };
@@ -194,12 +192,10 @@ impl<'a> Workings<'a> {
             None => None,
         };
         let value = given.ok_or_else(|| format!("{name} is not defined"))?;
-        let value = if value.x == value.y && value.y == value.z {
-            number(value.x)
-        } else {
-            Value::colour(value.to_array().map(f64::from))
-        };
-        let quantity = self.model.declaration.quantities.iter().find(|q| same_symbol(q.symbol(), symbol));
+        let value = if value.x == value.y && value.y == value.z { number(value.x) } else { colour(value) };
+        // Of several under one symbol, that of the choices that are made.
+        let mut quantities = self.definitions.iter().filter_map(|definition| definition.quantity);
+        let quantity = quantities.find(|quantity| same_symbol(quantity.symbol(), symbol));
         let definition = quantity.map(|quantity| Definition {
             term: Term::Total,
             text: quantity.text,

@@ -70,6 +70,17 @@ pub enum Term {
 }
 
 impl Term {
+    /// Its symbol in equations: `I_d`.
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Total => "I",
+            Self::Ambient => "I_a",
+            Self::Diffuse => "I_d",
+            Self::Specular => "I_s",
+        }
+    }
+
     /// The choice that shows it alone; none for the sum.
     #[must_use]
     pub fn alone(self) -> Option<TermSelection> {

@@ -136,6 +136,12 @@ enum Function {
     Fract,
 }
 
+/// True for the name of a function that needs no definition.
+#[must_use]
+pub fn is_function(word: &str) -> bool {
+    Function::named(word).is_some()
+}
+
 impl Function {
     fn named(word: &str) -> Option<Self> {
         Some(match word {
@@ -479,7 +485,7 @@ impl<'a> Reader<'a> {
         let begins = |atom: &Atom| {
             matches!(atom, Atom::Symbol { .. }) || matches!(atom.base(), "(" | "[" | "√") || {
                 let base = atom.base();
-                base.starts_with(|c: char| c.is_ascii_digit()) || Function::named(base).is_some()
+                base.starts_with(|c: char| c.is_ascii_digit()) || is_function(base)
             }
         };
         while !spaced && self.peek().is_some_and(begins) {

@@ -298,7 +298,8 @@ pub fn parse_symbol(symbol: &str) -> Atom {
 /// The same symbol, however it is written.
 #[must_use]
 pub fn same_symbol(a: &str, b: &str) -> bool {
-    a == b || plain_symbol(a) == plain_symbol(b)
+    let plain = |c: &char| !matches!(c, '{' | '}');
+    a == b || a.chars().filter(plain).eq(b.chars().filter(plain))
 }
 
 #[cfg(test)]

@@ -3,18 +3,17 @@
 use bevy_egui::egui::{self, Color32, Rect, Stroke, Ui, pos2, vec2};
 
 use super::{
+    lights,
     probe::{self, Choice, Explained},
     rows,
 };
 use crate::{
     document::Selection,
-    explain::{Line, Lit, Pair, Seen, Spot, of_value, pairs},
+    explain::{Line, Lit, Pair, Seen, Spot, pairs},
     panel::{
-        maths,
         state::Session,
         theme::{self, Palette},
     },
-    reflection::Term,
     registry::Registry,
     scene::variant::LETTERS,
 };
@@ -50,8 +49,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         };
         let name = session.name_of(Selection::Light(first.light.index), registry);
         rows::heading(ui, &format!("Light of {name}"));
-        let lines =
-            [first.rounded_lines(&a.model, rows::DIGITS), second.rounded_lines(&b.model, rows::DIGITS)];
+        let lines = [probe::lines(ui.ctx(), first, &a.model), probe::lines(ui.ctx(), second, &b.model)];
         let factors = choice.level == probe::Level::Factors;
         let all = pairs(&lines[0], &lines[1]);
         let shown = |pair: &&Pair| {
@@ -62,7 +60,9 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
             halves(ui, pair.differs(), |ui, i| {
                 let (own, model) = if i == 0 { (&pair.a, a) } else { (&pair.b, b) };
                 match own {
-                    Some(line) => side(ui, line, model),
+                    Some(line) => {
+                        drop(lights::written(ui, line, &|symbol| lights::meaning(&model.model, symbol)))
+                    }
                     None => drop(rows::note(ui, &format!("no line for {} here", pair.defines()))),
                 }
             });
@@ -104,31 +104,6 @@ fn head(ui: &mut Ui, explained: &Explained, session: &Session) {
             ui.label(theme::small(ui, name));
         }
     });
-}
-
-/// A line of one side: as it is written, with numbers, and its value.
-fn side(ui: &mut Ui, line: &Line, seen: &Seen) {
-    let name = |symbol: &str| {
-        let parameter = seen.model.settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
-        parameter.map(|s| s.parameter.label.to_owned()).or_else(|| maths::meaning(symbol).map(str::to_owned))
-    };
-    let bare = !line.text.contains('=');
-    if !bare {
-        rows::equation(ui, line.term, &line.text, false, name);
-    }
-    if let Some(numbers) = line.right() {
-        rows::calculation(ui, numbers, &line.symbols, name);
-    }
-    let head = if bare { format!("{} =", line.defines()) } else { "=".to_owned() };
-    if let (Some(value), Some(rgb)) = (&line.value, line.rgb()) {
-        rows::inset(ui, |ui| {
-            if line.term != Term::Total && line.is_term() || value.is_colour {
-                rows::light(ui, &head, rgb, false);
-            } else {
-                ui.label(format!("{head} {}", of_value(value, rows::DIGITS)));
-            }
-        });
-    }
 }
 
 /// Two halves beside each other, with a mark between them where they differ.

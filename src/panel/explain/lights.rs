@@ -9,7 +9,7 @@ use super::{
     rows,
 };
 use crate::{
-    explain::{Explanation, Line, Lit, Place, Seen, Spot, angle, of_value},
+    explain::{Explanation, Line, Lit, Model, Place, Seen, Spot, angle, of_value},
     panel::{
         linked::{self, Domain, linked},
         maths,
@@ -163,17 +163,10 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if lit.geometry.is_none() {
         rows::note(ui, "Light from everywhere: the model answers it as a whole, with its ambient term.");
     }
-    let settings = &seen.model.settings;
-    let name = |symbol: &str| -> Option<String> {
-        let parameter = settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
-        parameter
-            .map(|s| format!("{}: {}", s.parameter.label, s.parameter.help))
-            .or_else(|| maths::meaning(symbol).map(str::to_owned))
-    };
-    let lines = lit.rounded_lines(&seen.model, rows::DIGITS);
+    let lines = probe::lines(ui.ctx(), lit, &seen.model);
     let name = |symbol: &str| {
         let quantity = lines.iter().find(|line| maths::same_symbol(line.defines(), symbol));
-        name(symbol).or_else(|| quantity?.quantity.map(|quantity| quantity.label.to_owned()))
+        meaning(&seen.model, symbol).or_else(|| quantity?.quantity.map(|quantity| quantity.label.to_owned()))
     };
     let mut clicked = None;
     let factors = probe::choice(ui.ctx()).level == Level::Factors;
@@ -207,8 +200,16 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
 }
 
+/// The meaning of a symbol: the parameter of the model, or what it means everywhere.
+pub(super) fn meaning(model: &Model, symbol: &str) -> Option<String> {
+    let parameter = model.settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
+    parameter
+        .map(|s| format!("{}: {}", s.parameter.label, s.parameter.help))
+        .or_else(|| maths::meaning(symbol).map(str::to_owned))
+}
+
 /// A line of the equation as it is written, with numbers, and its value. Returns the symbol of a number that was clicked.
-fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> Option<String> {
+pub(super) fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> Option<String> {
     let bare = !line.text.contains('=');
     let head = if bare { format!("{} =", line.defines()) } else { line.text.clone() };
     if !bare {
@@ -219,7 +220,8 @@ fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> O
         rows::inset(ui, |ui| match (line.is_term() || value.is_colour, bare) {
             (true, true) => drop(rows::light(ui, &head, rgb, false)),
             (true, false) => drop(rows::light(ui, "=", rgb, false)),
-            (false, _) => drop(ui.label(format!("= {}", of_value(value, rows::DIGITS)))),
+            (false, true) => drop(ui.label(format!("{head} {}", of_value(value, rows::DIGITS)))),
+            (false, false) => drop(ui.label(format!("= {}", of_value(value, rows::DIGITS)))),
         });
     }
     clicked

@@ -2,16 +2,19 @@
 //! while it is in sight.
 
 use std::{
-    collections::HashSet,
+    collections::{HashMap, HashSet},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
 
-use super::held::{Held, Holding};
+use super::{
+    held::{Held, Holding},
+    rows,
+};
 use crate::{
     document::Revision,
-    explain::{Explainer, Explanation, Influence, Knob, Lit, Seen, Sight, Spot},
+    explain::{Explainer, Explanation, Influence, Knob, Line, Lit, Model, Seen, Sight, Spot},
     library::status::Reloaded,
     optics::TermSelection,
     panel::{
@@ -132,6 +135,8 @@ struct Probe {
     sought: Option<String>,
     /// The pixel before its numbers were changed here: its code, and the pin that it belongs to.
     before: Option<(Pin, [u8; 3])>,
+    /// The lines of the lights of one explanation.
+    lines: (u64, HashMap<usize, Arc<Vec<Line>>>),
     /// The numbers that are listed, in the order that they had when the pixel was chosen.
     ranking: Option<(Pin, Vec<Knob>)>,
     /// The numbers that move the pixel, for one explanation.
@@ -198,6 +203,19 @@ pub(super) fn once(ctx: &Context) -> bool {
 pub(super) fn choose(ctx: &Context, choice: Choice) {
     lock(&shared(ctx)).choice = choice;
     ctx.request_repaint();
+}
+
+/// The lines of the equation for a light of the explanation in sight, calculated once for each explanation.
+pub(super) fn lines(ctx: &Context, lit: &Lit, model: &Model) -> Arc<Vec<Line>> {
+    let shared = shared(ctx);
+    let mut probe = lock(&shared);
+    let probe = &mut *probe;
+    if probe.lines.0 != probe.calculations {
+        probe.lines = (probe.calculations, HashMap::new());
+    }
+    // The explanation keeps its place as long as it is in sight.
+    let lines = || Arc::new(lit.rounded_lines(model, rows::DIGITS));
+    probe.lines.1.entry(std::ptr::from_ref(lit).addr()).or_insert_with(lines).clone()
 }
 
 /// True if a quantity is unfolded.

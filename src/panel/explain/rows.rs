@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::pairs;
 use crate::{
-    explain::{Model, number, rounded, rounded_triple, triple},
+    explain::{Model, number, rounded, rounded_number_or_triple, rounded_triple, triple},
     panel::{
         linked::{self, linked},
         maths::{self, Sizes},
@@ -40,7 +40,7 @@ pub(super) fn short_triple(v: Vec3) -> String {
 
 /// A number, or three if they differ.
 pub(super) fn short_or_triple(v: Vec3) -> String {
-    if v.x == v.y && v.y == v.z { short(v.x) } else { short_triple(v) }
+    raised(&formula(v))
 }
 
 /// Powers of ten in raised digits.
@@ -77,7 +77,7 @@ fn raised(text: &str) -> String {
 
 /// A number, or three if they differ, as equations are written.
 pub(super) fn formula(v: Vec3) -> String {
-    if v.x == v.y && v.y == v.z { rounded(v.x, DIGITS) } else { rounded_triple(v, DIGITS) }
+    rounded_number_or_triple(v, DIGITS)
 }
 
 /// The same with braces around powers that begin with a minus sign.
