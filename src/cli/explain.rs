@@ -3,7 +3,6 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
-use glam::Vec3;
 
 use super::{
     Options, Outcome, print_json, print_text,
@@ -84,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if arguments.json {
         let mut json = first.explanation.to_json();
         if let Some(influences) = &influences {
-            let moves = influences.iter().filter(|influence| influence.derivative() != Vec3::ZERO);
+            let moves = influences.iter().filter(|influence| influence.moves());
             json["derivatives"] = moves.map(Influence::to_json).collect();
         }
         if let Some(other) = &other {

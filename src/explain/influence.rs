@@ -62,6 +62,12 @@ impl Influence {
         if high > low { (self.light[1] - self.light[0]) / (high - low) as f32 } else { Vec3::ZERO }
     }
 
+    /// True if the light changes with the number.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.derivative() != Vec3::ZERO
+    }
+
     /// The change of the luminance of the light for a hundredth of the range.
     #[must_use]
     pub fn effect(&self) -> f32 {

@@ -338,6 +338,20 @@ impl Lit {
         self.geometry.is_some_and(|geometry| geometry.cosine("N·L") <= 0.0)
     }
 
+    /// What is to be said before its equation, if anything.
+    #[must_use]
+    pub fn remark(&self) -> Option<&'static str> {
+        if self.is_dark() {
+            Some("None of its light reaches the point.")
+        } else if self.is_behind() {
+            Some("N·L ≤ 0: the surface faces away from the light.")
+        } else if self.geometry.is_none() {
+            Some("Light from everywhere: the model answers it as a whole, with its ambient term.")
+        } else {
+            None
+        }
+    }
+
     /// True if all its numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {

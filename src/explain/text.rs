@@ -39,10 +39,10 @@ impl Explanation {
         let form = if markdown { Form::Markdown } else { Form::Text };
         let mut out = Writer { text: String::new(), form };
         out.heading("What would move this pixel most, by differences");
-        if influences.iter().all(|influence| influence.derivative() == Vec3::ZERO) {
+        if !influences.iter().any(Influence::moves) {
             out.line(1, "No number of the material or of a light changes this pixel.");
         }
-        for influence in influences.iter().filter(|influence| influence.derivative() != Vec3::ZERO) {
+        for influence in influences.iter().filter(|influence| influence.moves()) {
             let Influence { symbol, label, unit, value, tried, .. } = influence;
             let space = if matches!(*unit, "" | "°") { "" } else { " " };
             let [low, high] = tried.map(|v| rounded(v, DIGITS));
@@ -216,15 +216,11 @@ impl Explanation {
             angles(out, seen, geometry);
         }
         arriving(out, lit);
+        if let Some(remark) = lit.remark() {
+            out.line(2, remark);
+        }
         if lit.is_dark() {
-            out.line(2, "None of its light reaches the point.");
             return;
-        }
-        if lit.is_behind() {
-            out.line(2, "N·L ≤ 0: the surface faces away from the light.");
-        }
-        if lit.geometry.is_none() {
-            out.line(2, "Light from everywhere: the model answers it as a whole, with its ambient term.");
         }
         for line in lit.lines(&seen.model) {
             equation(out, &line);

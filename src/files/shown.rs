@@ -11,32 +11,26 @@ use std::{
 /// escapes such as `\u{1b}`. File names may hold all of these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_unfit) {
-        return Cow::Borrowed(text);
-    }
-    let mut shown = String::with_capacity(text.len() + 16);
-    for c in text.chars() {
-        if is_unfit(c) {
-            shown.extend(c.escape_default());
-        } else {
-            shown.push(c);
-        }
-    }
-    Cow::Owned(shown)
+    escaped(text, |shown, c| write!(shown, "{}", c.escape_default()))
 }
 
 /// The same of a text in JSON, whose strings have escapes such as `\u001b` and stay the same.
 #[must_use]
 pub fn printable_json(text: &str) -> Cow<'_, str> {
+    escaped(text, |shown, c| {
+        c.encode_utf16(&mut [0; 2]).iter().try_for_each(|unit| write!(shown, "\\u{unit:04x}"))
+    })
+}
+
+fn escaped(text: &str, escape: impl Fn(&mut String, char) -> fmt::Result) -> Cow<'_, str> {
     if !text.contains(is_unfit) {
         return Cow::Borrowed(text);
     }
     let mut shown = String::with_capacity(text.len() + 16);
     for c in text.chars() {
         if is_unfit(c) {
-            for unit in c.encode_utf16(&mut [0; 2]) {
-                let _ = write!(shown, "\\u{unit:04x}");
-            }
+            // Writing to a String cannot fail.
+            let _ = escape(&mut shown, c);
         } else {
             shown.push(c);
         }

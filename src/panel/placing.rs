@@ -112,10 +112,8 @@ impl<'a> Stand<'a> {
             |counts: &[f32], fits: &dyn Fn(Vec3) -> bool| self.beside(original.position, steps, counts, fits);
         // Two things in one place look like one.
         let least = 0.2 * block.radius;
-        let corner = self.scene.scene_size.corner();
         let another = |p: Vec3| {
-            p.min_element() >= 0.0
-                && p.cmple(corner).all()
+            self.is_inside(p, Vec3::ZERO)
                 && self.is_in_air(p, 0.0)
                 && others.iter().all(|other| other.centre.distance(p) > least)
         };
@@ -182,12 +180,8 @@ impl<'a> Stand<'a> {
 
     /// True if a block is in the room, away from lights and cameras.
     fn has_room(&self, block: &Block) -> bool {
-        let corner = self.scene.scene_size.corner();
         let reach = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(axis)));
-        let margin = reach.max(Vec3::splat(0.01 * corner.min_element()));
-        let inside =
-            (block.centre - margin).min_element() >= 0.0 && (block.centre + margin).cmple(corner).all();
-        inside && self.is_in_air(block.centre, block.radius)
+        self.is_inside(block.centre, reach.max(self.margin())) && self.is_in_air(block.centre, block.radius)
     }
 
     /// The place of a new light, or of one more near a place.
@@ -339,12 +333,19 @@ impl<'a> Stand<'a> {
 
     /// True if a sphere is in the room and touches nothing.
     fn free(&self, p: Vec3, radius: f32) -> bool {
-        let corner = self.scene.scene_size.corner();
-        let margin = radius.max(0.01 * corner.min_element());
-        let inside = (p - margin).min_element() >= 0.0 && (p + margin).cmple(corner).all();
-        inside
+        self.is_inside(p, Vec3::splat(radius).max(self.margin()))
             && self.is_in_air(p, radius)
             && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
+    }
+
+    /// The least distance from the walls.
+    fn margin(&self) -> Vec3 {
+        Vec3::splat(0.01 * self.scene.scene_size.corner().min_element())
+    }
+
+    /// True if what reaches so far around a place is in the room.
+    fn is_inside(&self, p: Vec3, reach: Vec3) -> bool {
+        (p - reach).min_element() >= 0.0 && (p + reach).cmple(self.scene.scene_size.corner()).all()
     }
 
     /// True if a sphere is away from lights and cameras.

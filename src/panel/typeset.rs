@@ -51,6 +51,11 @@ pub enum Break {
     Anywhere,
 }
 
+/// The cell of what stands on the line: its corner and its size.
+fn cell(place: Vec2, size: f32, width: f32) -> (Vec2, Vec2) {
+    (place + vec2(-1.0, -0.86 * size), vec2(width + 2.0, 1.24 * size))
+}
+
 impl Set {
     fn put(&mut self, other: Set, at: Vec2) {
         self.ascent = self.ascent.max(other.ascent - at.y);
@@ -72,8 +77,8 @@ impl Set {
                 let raised = laid.pieces.last().filter(|_| power.is_some());
                 let base = raised.map_or(laid.width, |piece| piece.offset.x);
                 if let Some(symbol) = symbol {
-                    let corner = *place + vec2(-1.0, -0.86 * size);
-                    cells.push((symbol.as_str(), corner, vec2(base + 2.0, 1.24 * size)));
+                    let (corner, size) = cell(*place, *size, base);
+                    cells.push((symbol.as_str(), corner, size));
                 }
                 if let (Some(power), Some(piece)) = (power, raised) {
                     let corner = *place + vec2(piece.offset.x - 1.0, -1.1 * size);
@@ -88,12 +93,9 @@ impl Set {
     pub fn numbers(&self) -> impl Iterator<Item = (Vec2, Vec2)> {
         self.ink.iter().filter_map(|(place, size, ink)| {
             let Ink::Atom(laid, None, _) = ink else { return None };
-            let first = laid.pieces.first()?;
-            first
-                .galley
-                .text()
-                .starts_with(|c: char| c.is_ascii_digit())
-                .then(|| (*place + vec2(-1.0, -0.86 * size), vec2(first.galley.size().x + 2.0, 1.24 * size)))
+            let first = &laid.pieces.first()?.galley;
+            let is_number = first.text().starts_with(|c: char| c.is_ascii_digit());
+            is_number.then(|| cell(*place, *size, first.size().x))
         })
     }
 

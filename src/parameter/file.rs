@@ -365,7 +365,11 @@ impl Content {
 
     /// What tells the file from others, if it may be read, and its length.
     fn identity(&self) -> Option<(Key, u64)> {
-        let (identity, length) = files::identity(&self.place(self.path()?).ok()?)?;
+        self.identity_at(&self.place(self.path()?).ok()?)
+    }
+
+    fn identity_at(&self, place: &Path) -> Option<(Key, u64)> {
+        let (identity, length) = files::identity(place)?;
         Some(((identity, self.format.name), length))
     }
 
@@ -385,11 +389,6 @@ impl Content {
         })
     }
 
-    /// The bytes of the file, if it may be read.
-    fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
-        files::read(&self.place(path)?, self.format.max_bytes).map_err(|error| error.to_string())
-    }
-
     /// True if the file is the one that was read last.
     fn is_as_read(&self) -> bool {
         let known = self.state.read().unwrap_or_else(PoisonError::into_inner).stamp;
@@ -402,11 +401,15 @@ impl Content {
 
     fn read(&self) -> bool {
         let stamp = self.path().and_then(files::Stamp::settled);
-        let key = self.identity().map(|(key, _)| key);
+        let mut key = None;
         let read = match &self.source {
             Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
             Ok(path) => {
-                self.bytes(path).map_err(|error| format!("{}: {error}", path.shown())).and_then(|bytes| {
+                let bytes = self.place(path).and_then(|place| {
+                    key = self.identity_at(&place).map(|(key, _)| key);
+                    files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())
+                });
+                bytes.map_err(|error| format!("{}: {error}", path.shown())).and_then(|bytes| {
                     (self.format.read)(&bytes).map_err(|FileProblem { line, message }| {
                         let line = line.map_or(String::new(), |line| format!(":{line}"));
                         format!("{}{line}: {message}", path.shown())

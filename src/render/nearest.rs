@@ -1,8 +1,15 @@
 //! Which shapes get their meshes first where not all find room: those in the windows' pictures, the nearest before the
 //! others.
 
-use bevy::{camera::Projection, ecs::prelude::*, transform::components::Transform};
-use glam::{Quat, Vec3};
+use bevy::{
+    camera::{
+        CameraProjection as _, PerspectiveProjection, Projection,
+        primitives::{Frustum, Sphere},
+    },
+    ecs::prelude::*,
+    transform::components::Transform,
+};
+use glam::Vec3;
 
 use super::{camera::PictureCamera, entities::CurrentScene, meshes::Need, shown::Shown};
 use crate::{
@@ -17,27 +24,14 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
     at: Vec3,
-    to_camera: Quat,
-    /// Half the opening of the picture, across and up, as tangents.
-    opening: [f32; 2],
+    sees: Frustum,
 }
 
 impl Eye {
-    fn new(at: Vec3, turn: Quat, vertical: f32, aspect: f32) -> Self {
-        let up = (0.5 * vertical).tan();
-        Self { at, to_camera: turn.inverse(), opening: [aspect * up, up] }
-    }
-
     /// The need for a shape within a sphere.
     fn need(&self, centre: Vec3, radius: f32) -> Need {
-        let seen = self.to_camera * (centre - self.at);
-        let within = |side: f32, opening: f32| {
-            // From the plane through the eye and the edge of the picture.
-            (side.abs() + opening * seen.z) / (1.0 + opening * opening).sqrt() <= radius
-        };
-        let [across, up] = self.opening;
-        let inside = seen.z <= radius && within(seen.x, across) && within(seen.y, up);
-        Need { hidden: !inside, distance: seen.length() }
+        let sphere = Sphere { center: centre.into(), radius };
+        Need { hidden: !self.sees.intersects_sphere(&sphere, false), distance: centre.distance(self.at) }
     }
 }
 
@@ -48,17 +42,16 @@ pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
     let angle = ViewAngle { degrees: observer.field_of_view, keeps };
     let mut cameras = world.query::<(&PictureCamera, &Transform, &Projection)>();
     let eye = |(camera, place, lens): (&PictureCamera, &Transform, &Projection)| {
-        // Cameras get their places later in the frame.
-        let (at, turn) = if camera.follows_observer {
-            (observer.position, rotation(observer.direction))
+        let Projection::Perspective(lens) = lens else { return None };
+        // Cameras get their places and angles later in the frame.
+        let place = if camera.follows_observer {
+            Transform::from_translation(observer.position).with_rotation(rotation(observer.direction))
         } else {
-            (place.translation, place.rotation)
+            *place
         };
-        let aspect = match lens {
-            Projection::Perspective(lens) => lens.aspect_ratio,
-            _ => 1.0,
-        };
-        camera.fits_width.then(|| Eye::new(at, turn, angle.vertical(aspect), aspect))
+        let lens = PerspectiveProjection { fov: angle.vertical(lens.aspect_ratio), ..lens.clone() };
+        let sees = || lens.compute_frustum(&place.into());
+        camera.fits_width.then(|| Eye { at: place.translation, sees: sees() })
     };
     cameras.iter(world).filter_map(eye).collect()
 }
@@ -86,6 +79,8 @@ pub(super) fn need(
 #[cfg(test)]
 mod tests {
     use std::f32::consts::FRAC_PI_2;
+
+    use glam::Quat;
 
     use super::*;
     use crate::scene::{Observer, Scene};

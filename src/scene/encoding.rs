@@ -3,11 +3,6 @@
 use super::error::LoadError;
 use crate::text::place::Lines;
 
-/// The bytes of a text in UTF-8 without the byte order mark that some programs write before it.
-pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
-}
-
 /// The text of the bytes, or a guess at their encoding.
 pub(crate) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadError> {
     let not_text = |at: usize, what: String| {

@@ -31,6 +31,28 @@ pub fn clip_from_room(observer: &Observer, aspect: f32) -> Mat4 {
     Mat4::perspective_infinite_reverse_rh(observer.field_of_view.to_radians(), aspect, NEAR) * view
 }
 
+/// The width/height of a picture of this size.
+#[must_use]
+pub fn aspect(size: [u32; 2]) -> f64 {
+    f64::from(size[0].max(1)) / f64::from(size[1].max(1))
+}
+
+/// The tangents of half the angles of view of a picture with a vertical field of view in radians, across and up.
+#[must_use]
+pub fn half_tangents(size: [u32; 2], vertical: f32) -> [f64; 2] {
+    let up = f64::from(0.5 * vertical).tan();
+    [up * aspect(size), up]
+}
+
+/// The line of sight through the centre of a pixel of that picture: the tangents of the angles to the right and upwards
+/// from where the observer looks.
+#[must_use]
+pub fn line_of_sight(pixel: [u32; 2], size: [u32; 2], vertical: f32) -> [f32; 2] {
+    let [across, up] = half_tangents(size, vertical);
+    let part = |i: usize| 2.0 * (f64::from(pixel[i]) + 0.5) / f64::from(size[i].max(1)) - 1.0;
+    [(part(0) * across) as f32, (-part(1) * up) as f32]
+}
+
 /// Width/height for which scenes are composed.
 pub const WIDE: f32 = 16.0 / 9.0;
 

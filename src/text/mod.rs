@@ -15,3 +15,8 @@ pub use words::{
     detailed, did_you_mean, listed, nearest, number, one_of, plural, quoted, sentence, shortened,
     with_article,
 };
+
+/// The bytes of a text in UTF-8 without the byte order mark that some programs write before it.
+pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}

@@ -85,12 +85,6 @@ fn a_scaled_dialog_lists_many_files() {
     }
 }
 
-/// The painted texts.
-fn texts(bench: &mut Bench) -> Vec<String> {
-    let text = |shape| if let Shape::Text(text) = shape { Some(text.galley.job.text.clone()) } else { None };
-    bench.shapes().into_iter().filter_map(text).collect()
-}
-
 #[test]
 fn enter_and_escape_reach_the_dialog_from_the_search() {
     let (mut bench, folder) = open(ThemeChoice::Dark, 100);
@@ -138,12 +132,12 @@ fn a_shortcut_is_no_text_for_the_search() {
 fn an_empty_list_says_so() {
     const NONE: &str = "No file or folder matches.";
     let (mut bench, _folder) = open(ThemeChoice::Light, 100);
-    assert!(!texts(&mut bench).iter().any(|text| text == NONE));
+    assert!(!bench.texts().iter().any(|text| text == NONE));
     bench.frame(vec![Event::Text("zebra".to_owned())]);
     bench.settle();
-    assert!(texts(&mut bench).iter().any(|text| text == NONE));
+    assert!(bench.texts().iter().any(|text| text == NONE));
     (0.."zebra".len()).for_each(|_| bench.key(Key::Backspace, Modifiers::NONE));
-    assert!(!texts(&mut bench).iter().any(|text| text == NONE));
+    assert!(!bench.texts().iter().any(|text| text == NONE));
 }
 
 #[test]
@@ -151,7 +145,7 @@ fn the_type_of_the_file_is_named_once() {
     let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
     bench.key(Key::Escape, Modifiers::NONE);
     bench.key(Key::S, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL);
-    assert!(texts(&mut bench).iter().any(|text| text == "Scene (.json)"));
+    assert!(bench.texts().iter().any(|text| text == "Scene (.json)"));
 }
 
 #[test]
@@ -184,10 +178,10 @@ fn the_dialogs_list_the_scenes_of_every_format() {
     assert!(bench.says("balls.spheres") && !bench.says("notes.txt"));
     // Saving proposes the format of the file, and JSON for one that can only be read.
     let mut bench = opened(true, "table.csv", Key::S, save);
-    assert!(texts(&mut bench).iter().any(|text| text == "Scene as CSV (.csv)"));
-    assert!(texts(&mut bench).iter().any(|text| text == "table.csv"));
+    assert!(bench.texts().iter().any(|text| text == "Scene as CSV (.csv)"));
+    assert!(bench.texts().iter().any(|text| text == "table.csv"));
     let mut bench = opened(true, "balls.spheres", Key::S, save);
-    let texts = texts(&mut bench);
+    let texts = bench.texts();
     assert!(
         texts.iter().any(|text| text == "Scene (.json)") && texts.iter().any(|text| text == "balls.json"),
         "{texts:?}"
@@ -201,8 +195,8 @@ fn what_stands_behind_a_window_says_nothing_over_it() {
     bench.settle();
     let control = bench.find("Delete Sphere 1").expect("there").rect;
     bench.hover(control.center());
-    let said = |bench: &mut Bench| texts(bench).iter().any(|text| text.starts_with("Delete Sphere"));
-    assert!(said(&mut bench), "there is a tooltip: {:?}", texts(&mut bench));
+    let said = |bench: &mut Bench| bench.texts().iter().any(|text| text.starts_with("Delete Sphere"));
+    assert!(said(&mut bench), "there is a tooltip: {:?}", bench.texts());
     for (key, modifiers) in
         [(Key::N, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL), (Key::F1, Modifiers::NONE)]
     {
@@ -220,9 +214,9 @@ fn no_tooltip_stands_over_a_question() {
     bench.apply(Action::View(ViewChange::Scale(150)));
     bench.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
     let whole = caption_text(&bench.session, &bench.registry);
-    let said = |bench: &mut Bench| texts(bench).contains(&whole);
+    let said = |bench: &mut Bench| bench.texts().contains(&whole);
     bench.hover(bench.area.rect.left_bottom() + vec2(40.0, -16.0));
-    assert!(said(&mut bench), "there is a tooltip: {:?}", texts(&mut bench));
+    assert!(said(&mut bench), "there is a tooltip: {:?}", bench.texts());
     bench.apply(Action::Quit);
     assert!(bench.says("Save the changes?") && !said(&mut bench));
     bench.key(Key::Escape, Modifiers::NONE);
@@ -264,7 +258,7 @@ fn what_is_said_of_a_model_does_not_hide_the_list() {
         // The tree counts pixels.
         bench.hover(row.center() / bench.ctx.zoom_factor());
         let summary = bench.registry.model("phong").expect("built in").declaration.summary;
-        assert_eq!(texts(&mut bench).iter().any(|text| text == summary), expected, "{percent} %");
+        assert_eq!(bench.texts().iter().any(|text| text == summary), expected, "{percent} %");
     }
 }
 
@@ -431,7 +425,7 @@ fn the_icons_of_a_dialog_say_what_they_do() {
         let sign = sign.unwrap_or_else(|| panic!("no icon {icon}"));
         bench.frame(vec![Event::PointerMoved(sign.center())]);
         bench.settle();
-        assert!(texts(&mut bench).iter().any(|text| text == words), "{icon}: {:?}", texts(&mut bench));
+        assert!(bench.texts().iter().any(|text| text == words), "{icon}: {:?}", bench.texts());
     }
 }
 

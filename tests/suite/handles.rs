@@ -131,21 +131,14 @@ fn with_ctrl_a_drag_goes_in_steps() {
 #[test]
 fn the_numbers_are_beside_the_pointer_while_it_drags() {
     let mut bench = bench(scene());
-    let texts = |bench: &mut Bench| -> Vec<String> {
-        let text = |shape| match shape {
-            bevy_egui::egui::Shape::Text(text) => Some(text.galley.job.text.clone()),
-            _ => None,
-        };
-        bench.shapes().into_iter().filter_map(text).collect()
-    };
     let at = handle(&bench, "move Sphere 1 along x");
     let by = way(&bench, 0.6 * Vec3::X);
     pull(&mut bench, at, by, CTRL);
     let x = position(&bench).x;
-    assert!(texts(&mut bench).contains(&format!("x {x:.2} m")), "{x}");
+    assert!(bench.texts().contains(&format!("x {x:.2} m")), "{x}");
     press(&mut bench, at + by, false);
     bench.settle();
-    assert!(!texts(&mut bench).contains(&format!("x {x:.2} m")));
+    assert!(!bench.texts().contains(&format!("x {x:.2} m")));
 }
 
 #[test]
@@ -331,6 +324,15 @@ fn painted(bench: &mut Bench) -> Vec<Pos2> {
     all.into_iter().filter(|p| bench.area.rect.contains(*p)).collect()
 }
 
+/// Shows the handles of a part, which are there and farther from the middle than the object reaches.
+fn around(bench: &mut Bench, part: HandleMode, middle: Pos2, radius: f32) {
+    bench.apply(mode(part));
+    bench.settle();
+    let points = painted(bench);
+    assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
+    assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
+}
+
 #[test]
 fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     let mut bench = bench(scene());
@@ -348,11 +350,7 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     let right = bench.session.facts.camera * Vec3::X;
     let radius = lens.project(position(&bench) + radius * right).unwrap().distance(middle);
     for part in [HandleMode::Move, HandleMode::Turn, HandleMode::Size] {
-        bench.apply(mode(part));
-        bench.settle();
-        let points = painted(&mut bench);
-        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
-        assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
+        around(&mut bench, part, middle, radius);
     }
     bench.apply(mode(HandleMode::Move));
     bench.settle();
@@ -388,11 +386,7 @@ fn where_an_object_leaves_no_room_its_handles_are_at_the_edge_of_the_view() {
         bench.settle();
     }
     for part in [HandleMode::Move, HandleMode::Turn, HandleMode::Size] {
-        bench.apply(mode(part));
-        bench.settle();
-        let points = painted(&mut bench);
-        assert!(part == HandleMode::Size || points.len() > 4, "{part:?}");
-        assert!(points.iter().all(|p| p.distance(middle) > radius), "{part:?}: they cover the highlight");
+        around(&mut bench, part, middle, radius);
         let named = bench.tree.iter().filter(|s| s.label.starts_with("Handle: ")).map(|s| s.rect.center());
         for at in named {
             assert!(at.distance(middle) > radius, "{part:?}: {at:?} is over the object");

@@ -9,7 +9,7 @@ use std::{
 
 use lights_camera_models::{
     custom,
-    export::{ExportError, Progress, Request, html},
+    export::{Export, ExportError, Progress, Request, html},
     registry::Registry,
     scene::{
         Scene,
@@ -26,12 +26,14 @@ use crate::{
 const WIDTH: u32 = 384;
 const HEIGHT: u32 = 216;
 
+fn export(scene: &Scene, registry: &Registry) -> Result<Export, ExportError> {
+    let request = Request { scene, registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
+    (html::HTML.make)(&request, &Progress::NONE)
+}
+
 /// The page of a scene.
 fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
-    let registry = Registry::builtin();
-    let request =
-        Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
-    let export = (html::HTML.make)(&request, &Progress::NONE)?;
+    let export = export(scene, &Registry::builtin())?;
     assert!(export.files.len() == 1 && export.files[0].path.is_empty());
     Ok(export.files[0].bytes.clone())
 }
@@ -306,17 +308,8 @@ fn a_page_holds_every_view_with_a_switch() {
 
 #[test]
 fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
-    let registry = Registry::builtin();
     let scene = scene(&shipped("compare_tone_mappings.json"));
-    let request = Request {
-        scene: &scene,
-        registry: &registry,
-        stem: "page",
-        size: (WIDTH, HEIGHT),
-        object: 0,
-        point: None,
-    };
-    let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page of the others");
+    let export = export(&scene, &Registry::builtin()).expect("a page of the others");
     let left_out: Vec<_> = export.notes.iter().filter(|note| note.contains("is left out")).collect();
     assert!(left_out.len() == 1 && left_out[0].starts_with("view C (AgX) is left out: "), "{left_out:?}");
 }
@@ -337,16 +330,7 @@ fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
         let mut scene = scene(&shipped("openpbr_car_paint.json"));
         scene.reflection_model = id.to_owned();
         scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
-        let request = Request {
-            scene: &scene,
-            registry: &registry,
-            stem: "page",
-            size: (WIDTH, HEIGHT),
-            object: 0,
-            point: None,
-        };
-        let export = (html::HTML.make)(&request, &Progress::NONE).expect("a page");
-        export.notes
+        export(&scene, &registry).expect("a page").notes
     };
     let about = |notes: &[String]| notes.iter().filter(|n| n.contains("knobs are fixed")).count();
     assert_eq!(about(&notes_of("borrowed")), 1);

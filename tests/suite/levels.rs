@@ -1,7 +1,7 @@
 //! How far an explanation goes: the sentence, the equation, every factor; where numbers come from; what would change the pixel; and
 //! two views beside each other.
 
-use bevy_egui::egui::{Key, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Key, accesskit::Role, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::state::{Action, EXPLAIN_TAB, Session, ViewChange},
@@ -41,11 +41,7 @@ fn under(model: &str) -> Bench {
 
 /// All that is written.
 fn texts(bench: &mut Bench) -> String {
-    let text = |shape| match shape {
-        Shape::Text(text) => Some(text.galley.job.text.clone()),
-        _ => None,
-    };
-    bench.shapes().into_iter().filter_map(text).collect::<Vec<_>>().join("\n")
+    bench.texts().join("\n")
 }
 
 /// The first thing whose name begins so.

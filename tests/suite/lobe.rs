@@ -1,6 +1,6 @@
 //! The lobe of the model at the explained point, in the picture.
 
-use std::{sync::Arc, thread::sleep, time::Duration};
+use std::sync::Arc;
 
 use bevy_egui::egui::{Key, Modifiers, Shape, vec2};
 use glam::Vec3;
@@ -10,7 +10,7 @@ use lights_camera_models::{
     explain::Spot,
     optics::TermSelection,
     panel::{
-        explain::{Lobes, calculations, explained, lobe_calculations, lobes_are_due, lobes_shown},
+        explain::{Lobes, calculations, explained, lobe_calculations, lobes_shown},
         state::{Action, CompareCommand, EXPLAIN_TAB, LobeChoice, LobeScale, Pin, Session, ViewChange},
     },
     parameter::Value,
@@ -27,34 +27,12 @@ fn bench(scene: Scene) -> Bench {
     bench.settle();
     bench.apply(Action::View(ViewChange::Lobe(LobeChoice { scale: LobeScale::Linear, all: false })));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     bench
 }
 
-/// Lets the lobe be finished.
-fn wait(bench: &mut Bench) {
-    for _ in 0..500 {
-        bench.settle();
-        if !lobes_are_due(&bench.ctx) {
-            return;
-        }
-        sleep(Duration::from_millis(10));
-    }
-    panic!("the lobe is never finished");
-}
-
-/// The texts over the picture.
-fn written(bench: &mut Bench) -> Vec<String> {
-    let rect = bench.area.rect;
-    let text = |shape| match shape {
-        Shape::Text(text) if rect.contains(text.pos) => Some(text.galley.job.text.clone()),
-        _ => None,
-    };
-    bench.shapes().into_iter().filter_map(text).collect()
-}
-
 fn is_written(bench: &mut Bench, part: &str) -> bool {
-    written(bench).iter().any(|text| text.contains(part))
+    bench.words().iter().any(|text| text.contains(part))
 }
 
 /// Triangles of translucent surfaces over the picture.
@@ -74,7 +52,7 @@ fn scene(model: &str, shading: &str) -> Scene {
 
 fn choose(bench: &mut Bench, scale: LobeScale, all: bool) {
     bench.apply(Action::View(ViewChange::Lobe(LobeChoice { scale, all })));
-    wait(bench);
+    bench.wait_for_lobes();
 }
 
 fn lobes(bench: &Bench) -> Arc<Lobes> {
@@ -130,7 +108,7 @@ fn it_is_calculated_when_something_changed_and_only_then() {
     let before = lobes(&bench);
     let alpha = Edit::Object(0, ObjectField::Material("alpha", Value::Integer(300)));
     bench.apply(Action::Edit(alpha));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     assert_eq!(lobe_calculations(&bench.ctx), first + 1, "a knob turned");
     let highest = |lobes: &Lobes| lobes.lobes.as_ref().expect("a lobe")[0].lobe.ways.len();
     assert_ne!(highest(&before), highest(&lobes(&bench)));
@@ -160,10 +138,10 @@ fn it_hides_nothing_until_it_is_asked_for() {
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     assert!(bench.session.explains() && triangles(&mut bench) == 0 && !is_written(&mut bench, "Lobe"));
     bench.key(Key::E, Modifiers::SHIFT);
-    wait(&mut bench);
+    bench.wait_for_lobes();
     assert!(triangles(&mut bench) > 200 && is_written(&mut bench, "Lobe"));
 }
 
@@ -172,7 +150,7 @@ fn its_scale_stays_while_a_pixel_is_pinned() {
     let paint = |bench: &mut Bench, code: u8| {
         let colour = Edit::Object(0, ObjectField::Material("base_colour", Value::Colour([code; 3])));
         bench.apply(Action::Edit(colour));
-        wait(bench);
+        bench.wait_for_lobes();
     };
     let mut lambert = bench(scene("lambert", "phong"));
     for code in [255, 120, 40] {
@@ -186,19 +164,19 @@ fn its_scale_stays_while_a_pixel_is_pinned() {
     }
     // A taller lobe raises the scale, which another pixel forgets and a darker surface does not.
     let ends = |bench: &mut Bench| {
-        let line = written(bench).into_iter().find_map(|text| {
+        let line = bench.words().into_iter().find_map(|text| {
             Some(text.lines().find_map(|line| line.strip_prefix("Length of the vectors: "))?.to_owned())
         });
-        line.unwrap_or_else(|| panic!("no legend: {:?}", written(bench)))
+        line.unwrap_or_else(|| panic!("no legend: {:?}", bench.words()))
     };
     let mut phong = bench(scene("blinn_phong", "phong"));
     let tall = ends(&mut phong);
     assert!(tall.parse::<f32>().expect("a number") > 0.4, "{tall}");
     phong.apply(Action::Edit(Edit::Model("lambert".to_owned())));
-    wait(&mut phong);
+    phong.wait_for_lobes();
     assert_eq!(ends(&mut phong), tall);
     phong.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at: [0.01, 0.01] }))));
-    wait(&mut phong);
+    phong.wait_for_lobes();
     assert!(ends(&mut phong).starts_with("0.318"), "{}", ends(&mut phong));
 }
 
@@ -208,7 +186,7 @@ fn menu_button_and_key_choose_it() {
     assert!(is_written(&mut bench, "BRDF f in sr⁻¹") && is_written(&mut bench, "Length of the vectors: "));
     bench.key(Key::E, Modifiers::SHIFT);
     assert_eq!(bench.session.view.lobe.scale, LobeScale::Logarithmic);
-    wait(&mut bench);
+    bench.wait_for_lobes();
     assert!(is_written(&mut bench, "logarithmic"));
     bench.key(Key::E, Modifiers::SHIFT);
     assert!(bench.session.view.lobe.scale == LobeScale::Off && !is_written(&mut bench, "Lobe: "));
@@ -282,7 +260,7 @@ fn it_says_why_there_is_none() {
     bench.settle();
     assert!(is_written(&mut bench, "The ambient term has no lobe"));
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     assert!(is_written(&mut bench, "specular term of f"));
     // Where the background is explained, there is nothing to say.
     let corner = bench.area.rect.left_top() + vec2(24.0, 80.0);
@@ -299,7 +277,7 @@ fn of_several_views_each_has_that_of_a_pinned_point() {
     bench.apply(Action::Compare(CompareCommand::Add));
     bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(1)))));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     let both = triangles(&mut bench);
     assert!(alone > 500 && both > alone + 500, "{alone}, {both}");
     assert_eq!(lobes(&bench).lobes.as_ref().expect("a lobe").len(), 1);

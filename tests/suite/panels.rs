@@ -7,6 +7,8 @@
 use std::{
     collections::HashMap,
     path::{Path, PathBuf},
+    thread::sleep,
+    time::Duration,
 };
 
 use bevy::ecs::world::World;
@@ -19,6 +21,7 @@ use lights_camera_models::{
     optics::{Frame, TermSelection, Terms, colour::Encoding, fresnel, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
+        explain::lobes_are_due,
         state::{
             Action, Answer, Effect, MissingPart, ModelCommand, PictureArea, Question, Session, Severity,
             ThemeChoice, ViewChange,
@@ -356,6 +359,36 @@ impl Bench {
         let mut all = Vec::new();
         std::mem::take(&mut self.shapes).into_iter().for_each(|s| flat(s, &mut all));
         all
+    }
+
+    /// The texts painted by the last frame.
+    pub fn texts(&mut self) -> Vec<String> {
+        self.texts_within(Rect::EVERYTHING)
+    }
+
+    /// Those over the picture.
+    pub fn words(&mut self) -> Vec<String> {
+        self.texts_within(self.area.rect)
+    }
+
+    fn texts_within(&mut self, rect: Rect) -> Vec<String> {
+        let text = |shape| match shape {
+            egui::Shape::Text(text) if rect.contains(text.pos) => Some(text.galley.job.text.clone()),
+            _ => None,
+        };
+        self.shapes().into_iter().filter_map(text).collect()
+    }
+
+    /// Lets lobes be finished.
+    pub fn wait_for_lobes(&mut self) {
+        for _ in 0..500 {
+            self.settle();
+            if !lobes_are_due(&self.ctx) {
+                return;
+            }
+            sleep(Duration::from_millis(10));
+        }
+        panic!("the lobe is never finished");
     }
 
     /// Draws the window in software and writes it to a file, over this colour in the place of the picture.

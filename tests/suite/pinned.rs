@@ -1,6 +1,6 @@
 //! A pinned point: it stays on its object, whatever the camera and the object do.
 
-use std::{path::PathBuf, thread::sleep, time::Duration};
+use std::path::PathBuf;
 
 use bevy_egui::egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, vec2};
 use glam::{Quat, Vec3};
@@ -8,7 +8,7 @@ use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
     explain::{Explanation, Seen, Sight},
     panel::{
-        explain::{Explained, explained, lobes_are_due, lobes_shown, lobes_shown_in},
+        explain::{Explained, explained, lobes_shown, lobes_shown_in},
         state::{
             Action, CompareCommand, EXPLAIN_TAB, Effect, LobeChoice, LobeScale, Pin, Session, Steer,
             ViewChange,
@@ -75,15 +75,6 @@ fn home(bench: &mut Bench) {
     bench.settle();
 }
 
-fn words(bench: &mut Bench) -> Vec<String> {
-    let rect = bench.area.rect;
-    let text = |shape| match shape {
-        Shape::Text(text) if rect.contains(text.pos) => Some(text.galley.job.text.clone()),
-        _ => None,
-    };
-    bench.shapes().into_iter().filter_map(text).collect()
-}
-
 fn edit(bench: &mut Bench, field: ObjectField) {
     bench.apply(Action::Edit(Edit::Object(0, field)));
     bench.settle();
@@ -91,18 +82,7 @@ fn edit(bench: &mut Bench, field: ObjectField) {
 
 fn lobe(bench: &mut Bench) {
     bench.apply(Action::View(ViewChange::Lobe(LobeChoice { scale: LobeScale::Linear, all: false })));
-    wait(bench);
-}
-
-fn wait(bench: &mut Bench) {
-    for _ in 0..500 {
-        bench.settle();
-        if !lobes_are_due(&bench.ctx) {
-            return;
-        }
-        sleep(Duration::from_millis(10));
-    }
-    panic!("the lobe is never finished");
+    bench.wait_for_lobes();
 }
 
 const MILLIMETRE: f32 = 1e-3;
@@ -126,7 +106,7 @@ fn it_stays_on_its_object_while_the_camera_turns_around_it() {
         let moved = shown(&bench).pixel;
         assert!(moved[0] + 50 < pixel[0], "{shading}: {moved:?} after {pixel:?}");
         assert!(bench.says("pinned point"), "{shading}");
-        assert!(words(&mut bench).iter().any(|word| word == "V"), "its vectors are there");
+        assert!(bench.words().iter().any(|word| word == "V"), "its vectors are there");
         // A twin that pins a line of sight would explain another point now.
         let other = lights_camera_models::explain::pixel(
             &Scene {
@@ -309,8 +289,8 @@ fn both_views_show_the_vectors_and_the_lobe_of_the_same_point() {
     lobe(&mut bench);
     for degrees in [0.0, 25.0] {
         orbit(&mut bench, Vec3::Y, degrees);
-        wait(&mut bench);
-        let words = words(&mut bench);
+        bench.wait_for_lobes();
+        let words = bench.words();
         let count = |letter: &str| words.iter().filter(|word| *word == letter).count();
         assert_eq!((count("N"), count("L"), count("V")), (2, 2, 2), "{degrees}°: {words:?}");
         assert_eq!(count("H"), 1, "that of the model with a half vector");
@@ -330,11 +310,11 @@ fn both_views_show_the_vectors_and_the_lobe_of_the_same_point() {
         assert!(scales.len() == 2 && scales[0] == scales[1], "{scales:?}");
     }
     bench.apply(Action::View(ViewChange::Pin(None)));
-    wait(&mut bench);
+    bench.wait_for_lobes();
     let cell = bench.area.cells[1].rect;
     bench.frame(vec![Event::PointerMoved(cell.center())]);
     bench.settle();
-    assert_eq!(words(&mut bench).iter().filter(|word| *word == "N").count(), 1, "only where the pointer is");
+    assert_eq!(bench.words().iter().filter(|word| *word == "N").count(), 1, "only where the pointer is");
 }
 
 #[test]
@@ -386,7 +366,7 @@ fn letters_keep_off_the_lobe() {
         let mut bench = bench(scene(model, "phong"));
         lobe(&mut bench);
         orbit(&mut bench, Vec3::Y, turn);
-        wait(&mut bench);
+        bench.wait_for_lobes();
         assert!(lobes_shown(&bench.ctx).is_some_and(|lobes| lobes.lobes.is_ok()));
         let picture = bench.area.rect;
         let (mut plates, mut corners) = (Vec::new(), Vec::new());
@@ -436,7 +416,7 @@ fn pictures_of_a_pinned_point() -> Result<(), Box<dyn std::error::Error>> {
         }
         lobe(&mut bench);
         orbit(&mut bench, Vec3::Y, turn);
-        wait(&mut bench);
+        bench.wait_for_lobes();
         bench.picture(&folder.join(format!("pinned-{name}.png")), Color32::from_gray(60))?;
     }
     Ok(())

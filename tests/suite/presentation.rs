@@ -242,22 +242,18 @@ fn the_list_of_keys_fits_the_size_of_everything_that_is_chosen_while_it_is_close
 #[test]
 fn a_presentation_says_for_a_moment_what_happened() {
     let mut bench = bench((1280.0, 720.0), "phong");
-    let texts = |bench: &mut Bench| -> Vec<String> {
-        let text = |s| if let Shape::Text(t) = s { Some(t.galley.job.text.clone()) } else { None };
-        bench.shapes().into_iter().filter_map(text).collect()
-    };
     let words = "Saved to /home/mira/room.json.";
-    let said = |bench: &mut Bench| texts(bench).iter().any(|text| text == words);
+    let said = |bench: &mut Bench| bench.texts().iter().any(|text| text == words);
     bench.session.say(Severity::Info, words);
     bench.key(Key::F5, Modifiers::NONE);
     assert!(!said(&mut bench), "what was said before is none of its news");
-    assert!(texts(&mut bench).iter().any(|text| text == "Esc leaves the presentation"));
+    assert!(bench.texts().iter().any(|text| text == "Esc leaves the presentation"));
     for _ in 0..2 {
         // The same again is news again.
         bench.session.say(Severity::Info, words);
         bench.settle();
         assert!(said(&mut bench));
-        assert!(!texts(&mut bench).iter().any(|text| text.starts_with("Esc")), "one at a time");
+        assert!(!bench.texts().iter().any(|text| text.starts_with("Esc")), "one at a time");
         // A frame is a thirtieth of a second.
         (0..160).for_each(|_| drop(bench.frame(Vec::new())));
         assert!(!said(&mut bench), "for a moment");

@@ -1,6 +1,6 @@
 //! The panel that explains a pixel: which pixel, the numbers of the picture, and what is drawn over it.
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
     document::{Edit, ObjectField},
@@ -77,21 +77,11 @@ fn alt_click(bench: &mut Bench, at: Pos2) {
     bench.settle();
 }
 
-/// The texts over the picture.
-fn words(bench: &mut Bench) -> Vec<String> {
-    let rect = bench.area.rect;
-    let text = |shape| match shape {
-        Shape::Text(text) if rect.contains(text.pos) => Some(text.galley.job.text.clone()),
-        _ => None,
-    };
-    bench.shapes().into_iter().filter_map(text).collect()
-}
-
 /// Those that every model has.
 const LETTERS: [&str; 3] = ["N", "L", "V"];
 
 fn has_vectors(bench: &mut Bench) -> bool {
-    let words = words(bench);
+    let words = bench.words();
     let found = LETTERS.map(|letter| words.iter().any(|word| word == letter));
     assert!(found.iter().all(|f| *f == found[0]), "only some vectors: {words:?}");
     found[0]
@@ -192,7 +182,7 @@ fn a_presentation_keeps_the_vectors_of_a_pinned_pixel() {
     bench.key(Key::F5, Modifiers::NONE);
     bench.settle();
     // The equation of Lambert, which is in the picture, has no V.
-    let has_v = |bench: &mut Bench| words(bench).iter().any(|word| word == "V");
+    let has_v = |bench: &mut Bench| bench.words().iter().any(|word| word == "V");
     assert!(bench.session.view.presenting && !has_v(&mut bench), "nothing is pinned");
     bench.key(Key::F5, Modifiers::NONE);
     bench.settle();
@@ -346,7 +336,7 @@ fn of_several_views_the_one_under_the_pointer_is_explained() {
         let size = [cell.rect.width().round() as u32, cell.rect.height().round() as u32];
         assert!((0..2).all(|i| explanation.size[i].abs_diff(size[i]) <= 1), "{:?}", explanation.size);
         assert!(bench.says(&format!("view {letter}")));
-        let words = words(&mut bench);
+        let words = bench.words();
         assert_eq!(words.iter().filter(|word| *word == "N").count(), 1, "only in its view");
     }
     bench.key(Key::E, Modifiers::NONE);
@@ -400,7 +390,7 @@ fn only_vectors_of_the_equation_are_drawn() {
         let mut bench = bench(scene(model, "phong"));
         bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
         bench.settle();
-        let words = words(&mut bench);
+        let words = bench.words();
         let found: String = ["N", "L", "V", "H", "R"]
             .into_iter()
             .filter(|letter| words.iter().any(|w| w == letter))

@@ -14,6 +14,7 @@ use crate::{
     export::{ExportError, Request},
     optics::{TermSelection, colour::srgb_encode8},
     reference::{Settings, ignored_edits},
+    scene::observer::line_of_sight,
     text::{listed, plural},
 };
 
@@ -63,14 +64,12 @@ pub fn point(request: &Request, pixel: [u32; 2]) -> Result<(Json, Option<String>
     let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
     let explanation = explain::pixel(scene, registry, &settings, pixel)
         .map_err(|error| ExportError::refused(error.to_string()))?;
-    let up = (0.5 * scene.observer.field_of_view.to_radians()).tan();
-    let across = up * width as f32 / height as f32;
-    let part = |i: usize, side: u32| 2.0 * (pixel[i] as f32 + 0.5) / side as f32 - 1.0;
+    let at = line_of_sight(pixel, [width, height], scene.observer.field_of_view.to_radians());
     let document = Document::new(scene.clone());
     let name = |part: Selection| document.name_of(part, registry);
     let doubt = doubt(request, &explanation);
     let html = text(&explanation, &name, doubt.as_deref());
-    Ok((json!({ "at": [part(0, width) * across, -part(1, height) * up], "html": html }), doubt))
+    Ok((json!({ "at": at, "html": html }), doubt))
 }
 
 /// The reason why an explanation is not that of the picture, if there is one.
@@ -220,16 +219,11 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
 
 /// The equation for one light as it is written, with numbers, and its value; then the light to the observer.
 fn light(out: &mut String, seen: &Seen, lit: &Lit) {
+    if let Some(remark) = lit.remark() {
+        *out += &paragraph("summary", remark);
+    }
     if lit.is_dark() {
-        *out += &paragraph("summary", "None of its light reaches the point.");
         return;
-    }
-    if lit.is_behind() {
-        *out += &paragraph("summary", "N·L ≤ 0: the surface faces away from the light.");
-    }
-    if lit.geometry.is_none() {
-        let said = "Light from everywhere: the model answers it as a whole, with its ambient term.";
-        *out += &paragraph("summary", said);
     }
     for line in lit.lines(&seen.model).iter().filter(|line| line.is_equation()) {
         *out += &worked(line);

@@ -140,9 +140,10 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// All about one light: the answer of the model first, since it is what was asked for, then the light that arrives, and
 /// the directions on which both depend.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
-    if lit.is_dark() {
-        rows::note(ui, "None of its light reaches the point.");
-    } else {
+    if let Some(remark) = lit.remark() {
+        rows::note(ui, remark);
+    }
+    if !lit.is_dark() {
         terms(ui, explanation, seen, lit);
     }
     ui.add_space(4.0);
@@ -157,12 +158,6 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
 
 /// The terms of the equation as they are written, with numbers, and the light to the observer.
 fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
-    if lit.is_behind() {
-        rows::note(ui, "N·L ≤ 0: the surface faces away from the light.");
-    }
-    if lit.geometry.is_none() {
-        rows::note(ui, "Light from everywhere: the model answers it as a whole, with its ambient term.");
-    }
     let lines = probe::lines(ui.ctx(), lit, &seen.model);
     let name = |symbol: &str| {
         let quantity = lines.iter().find(|line| maths::same_symbol(line.defines(), symbol));

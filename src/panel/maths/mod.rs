@@ -129,7 +129,9 @@ pub(super) fn calculation(
                 linked::point(ui.ctx(), &ends);
                 ui.painter().hline(cell.x_range(), cell.bottom(), Stroke::new(1.0, palette.accent));
             }
-            if ends.iter().any(|symbol| linked::is_lit(ui.ctx(), symbol)) && ends.len() == 1 {
+            if let [symbol] = ends[..]
+                && linked::is_lit(ui.ctx(), symbol)
+            {
                 ui.painter().add(linked::ground(cell, &palette));
             }
             if here.clicked() {

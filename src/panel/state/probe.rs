@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Session;
-use crate::scene::observer::ViewAngle;
+use crate::scene::observer::{ViewAngle, aspect, half_tangents, line_of_sight};
 
 /// Id of the panel that explains a pixel.
 pub const EXPLAIN_TAB: &str = "explain";
@@ -21,9 +21,7 @@ pub struct Pin {
 
 /// The tangents of half the angles of view of a picture, across and up.
 fn half_angles(size: [u32; 2], angle: ViewAngle) -> [f64; 2] {
-    let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
-    let up = f64::from(0.5 * angle.vertical(aspect as f32)).tan();
-    [up * aspect, up]
+    half_tangents(size, angle.vertical(aspect(size) as f32))
 }
 
 impl Pin {
@@ -36,9 +34,7 @@ impl Pin {
     /// The centre of a pixel in a picture of that size, for an observer with that field of view.
     #[must_use]
     pub fn of_pixel(view: usize, pixel: [u32; 2], size: [u32; 2], angle: ViewAngle) -> Self {
-        let [across, up] = half_angles(size, angle);
-        let part = |i: usize| 2.0 * (f64::from(pixel[i]) + 0.5) / f64::from(size[i].max(1)) - 1.0;
-        Self { view, at: [(part(0) * across) as f32, (-part(1) * up) as f32] }
+        Self { view, at: line_of_sight(pixel, size, angle.vertical(aspect(size) as f32)) }
     }
 
     /// The pixel in a picture of that size; the nearest one where it would be outside.

@@ -3,10 +3,9 @@
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     registry::Registry,
-    scene::{
-        Scene, encoding::after_mark, error::LoadError, read, save::to_json, schema, syntax::check_syntax,
-    },
+    scene::{Scene, error::LoadError, read, save::to_json, schema, syntax::check_syntax},
     text::{
+        after_mark,
         json::{self, STRICT},
         place::Lines,
     },

@@ -3,11 +3,8 @@
 use std::{cell::OnceCell, path::Path as FilePath};
 
 use crate::{
-    scene::{
-        encoding::{after_mark, decode},
-        error::LoadError,
-    },
-    text::place::Place,
+    scene::{encoding::decode, error::LoadError},
+    text::{after_mark, place::Place},
 };
 
 /// The content of a file to be read.

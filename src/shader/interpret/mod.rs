@@ -98,7 +98,7 @@ impl Program {
     /// # Errors
     /// If there is no such function, or it uses something that only a GPU has.
     pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
-        Self::build(module, function, None, |_| false).map(|(program, _)| program)
+        Self::lets(module, function, None, |_| false).map(|(program, _)| program)
     }
 
     /// The same for a function that may read a table in a buffer: a read-only array of that name, of which
@@ -107,24 +107,16 @@ impl Program {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self, Unsupported> {
-        Self::build(module, function, Some(table), |_| false).map(|(program, _)| program)
+        Self::lets(module, function, Some(table), |_| false).map(|(program, _)| program)
     }
 
     /// A program whose results are the values of `let`s of the function, those whose names are wanted, one after the other:
-    /// each with its name and its number of words. Of a `let` that a run does not reach, the words are NaN.
+    /// each with its name and its number of words. Of a `let` that a run does not reach, the words are NaN. If there are
+    /// none, the results are those of the function.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn lets(
-        module: &Module,
-        function: &str,
-        table: Option<&str>,
-        wanted: impl Fn(&str) -> bool,
-    ) -> Result<(Self, Lets), Unsupported> {
-        Self::build(module, function, table, wanted)
-    }
-
-    fn build(
         module: &Module,
         name: &str,
         table: Option<&str>,

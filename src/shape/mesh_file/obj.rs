@@ -9,7 +9,10 @@ use std::borrow::Cow;
 use glam::{Vec2, Vec3};
 
 use super::model::{Builder, Corner, MAX_VERTICES};
-use crate::{parameter::FileProblem, text::quoted};
+use crate::{
+    parameter::FileProblem,
+    text::{after_mark, quoted},
+};
 
 /// The most corners of all faces, those without an area included.
 const MOST_NAMED: usize = 2 * MAX_VERTICES;
@@ -192,9 +195,8 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
 
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     // Comments are in any encoding.
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(after_mark(bytes));
     let at =
         |line: usize| move |what: Cow<'_, str>| FileProblem { line: Some(line), message: what.into_owned() };
     let mut lists = Lists::default();

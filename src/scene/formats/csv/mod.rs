@@ -17,8 +17,8 @@ use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     light::MAX_LIGHTS,
     registry::Registry,
-    scene::{MAX_OBJECTS, Scene, encoding::after_mark, error::LoadError, read, save::to_json},
-    text::place::Lines,
+    scene::{MAX_OBJECTS, Scene, error::LoadError, read, save::to_json},
+    text::{after_mark, place::Lines},
 };
 
 mod columns;
