@@ -20,7 +20,7 @@ struct Light {
     first_word: u32,
 }
 
-// All lights of the scene and the display settings, small enough for any uniform buffer: 12 320 of at least 16 384 bytes.
+// All lights of the scene and the display settings, small enough for any uniform buffer: 12 336 of at least 16 384 bytes.
 struct Illumination {
     count: u32,
     terms: u32,
@@ -32,6 +32,11 @@ struct Illumination {
     channel_light: u32,
     channel_low: f32,
     channel_high: f32,
+    // The samples of light with extent that are taken: the number of the first, and how many.
+    first_sample: u32,
+    sample_count: u32,
+    // Not in use.
+    spare: vec2<u32>,
     lights: array<Light, MAX_LIGHTS>,
 }
 

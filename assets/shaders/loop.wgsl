@@ -20,5 +20,5 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
         }
         colour += select_terms(terms, selection) * arriving.intensity * light.colour;
     }
-    return colour;
+    return colour + extended(position, v, frame);
 }

@@ -21,6 +21,8 @@ const WHITE: f32 = 1.0005;
 // The parameters of the object being drawn.
 var<private> parameters: Parameters;
 var<private> object_row: u32;
+// The seed of the samples of light with extent: that of the pixel; 0 for all vertices, so that interpolation is smooth.
+var<private> sample_seed: u32;
 
 struct VertexIn {
     @builtin(instance_index) instance_index: u32,
@@ -99,6 +101,8 @@ fn vertex(in: VertexIn) -> Stages {
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
     object_row = in.row;
     parameters = parameter_table[object_row].parameters;
+    let pixel = vec2<u32>(in.clip_position.xy);
+    sample_seed = pixel.x | (pixel.y << 16u);
     let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
     let shaded = shade_pixel(passed);
     if illumination.channel != 0u {

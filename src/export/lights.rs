@@ -104,7 +104,7 @@ impl<'a> Lights<'a> {
         ];
         for (t, entry) in self.types.iter().enumerate() {
             let mut at = 0;
-            for p in entry.parameters {
+            for p in &entry.fields() {
                 let source = FieldSource::Parameter(t, at);
                 fields.push(field(&self.parameter_field(t, p.name), p.wgsl_type(), source));
                 at += size(p.wgsl_type());
@@ -165,7 +165,7 @@ impl LightRow {
 pub fn call(lights: &Lights, light_type: usize) -> String {
     let entry = lights.types[light_type];
     let field = |p: &Parameter| format!("light.{}", lights.parameter_field(light_type, p.name));
-    let values: Vec<_> = entry.parameters.iter().map(field).collect();
+    let values: Vec<_> = entry.fields().iter().map(field).collect();
     let id = entry.declaration.id;
     match values.as_slice() {
         [] => format!("incident_{id}(light, p)"),

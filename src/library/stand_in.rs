@@ -1,20 +1,21 @@
 //! Stand-ins: what is drawn with instead of WGSL that another crate compiled in and that is no good.
 
-use crate::{custom, light::LightEntry, reflection::ModelEntry, shading::ShadingEntry};
+use crate::{
+    custom,
+    light::{LightEntry, Twin},
+    reflection::ModelEntry,
+    shading::ShadingEntry,
+};
 
 /// The paths of the parts that a shader is composed of, each with the text that can stand in for it: grey Lambert, an
 /// interpolated normal, and darkness.
 #[must_use]
 pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> Vec<(&'static str, String)> {
     let dark = |light: &LightEntry| {
-        let own = match light.parameters {
-            [] => String::new(),
-            _ => format!("m: {}, ", light.parameter_struct()),
+        let function = |twin: &Twin| {
+            format!("fn {}{} {{\n    return {};\n}}\n", twin.of(light), twin.signature(light), twin.dark)
         };
-        format!(
-            "fn incident_{}(light: Light, {own}p: vec3<f32>) -> Incident {{\n    return Incident(vec3(0.0), vec3(0.0), 0u);\n}}\n",
-            light.declaration.id
-        )
+        Twin::all(light.declaration.extent).iter().map(function).collect()
     };
     let lights = lights.iter().map(|light| (light.declaration.wgsl.path, dark(light)));
     let model = (model.declaration.wgsl.path, custom::stand_in(model.declaration.ambient).to_owned());

@@ -21,6 +21,7 @@ impl LightType for Ambient {
         slider_max: 10.0,
         cone_parameter: None,
         equation: "I(p) = I",
+        extent: false,
         wgsl: wgsl!("light/ambient.wgsl"),
     };
 

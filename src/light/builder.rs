@@ -28,6 +28,7 @@ impl Declaration {
             slider_max: 10.0,
             cone_parameter: None,
             equation: "",
+            extent: false,
             wgsl,
         }
     }
@@ -66,6 +67,18 @@ impl Declaration {
     #[must_use]
     pub const fn lux(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "lx", default_intensity: default, slider_max, ..self }
+    }
+
+    /// The same with extent, and its luminance in cd/m²: the default, and the end of the slider.
+    #[must_use]
+    pub const fn luminance(self, default: f32, slider_max: f32) -> Self {
+        Self { unit: "cd/m²", default_intensity: default, slider_max, extent: true, ..self }
+    }
+
+    /// The same with extent, in the unit that it has.
+    #[must_use]
+    pub const fn with_extent(self) -> Self {
+        Self { extent: true, ..self }
     }
 
     /// The same with an intensity that is a factor of what it is by itself: the default, and the end of the slider.

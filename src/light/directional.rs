@@ -22,6 +22,7 @@ impl LightType for Directional {
         slider_max: 10.0,
         cone_parameter: None,
         equation: "I(p) = I",
+        extent: false,
         wgsl: wgsl!("light/directional.wgsl"),
     };
 

@@ -6,29 +6,47 @@
 use std::fmt;
 
 use bevy::{ecs::component::Component, reflect::Reflectable};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
-    optics::{colour::Encoding, radiometry::Arriving},
+    optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Values, words},
     shader::Source,
 };
 
 mod ambient;
 mod builder;
+mod cylinder;
 mod directional;
+mod disc;
+mod environment;
+pub mod extent;
 mod factor;
 pub mod ies;
 mod photometric;
 mod point;
+mod rectangle;
+mod sky;
+mod sphere;
 mod spot;
+mod studio;
+mod sun;
+mod twin;
 
 pub use ambient::Ambient;
+pub use cylinder::Cylinder;
 pub use directional::Directional;
+pub use disc::Disc;
+pub use environment::Environment;
+use extent::{BLOCK, Directions, Points, Sample, Seen};
 pub use factor::Factor;
 pub use photometric::Photometric;
 pub use point::Point;
+pub use rectangle::Rectangle;
+pub use sphere::Sphere;
 pub use spot::Spot;
+pub use sun::Sun;
+pub use twin::Twin;
 
 /// Receives light types one after the other.
 pub trait Take {
@@ -43,6 +61,12 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<Photometric>();
     to.take::<Directional>();
     to.take::<Ambient>();
+    to.take::<Rectangle>();
+    to.take::<Disc>();
+    to.take::<Sphere>();
+    to.take::<Cylinder>();
+    to.take::<Sun>();
+    to.take::<Environment>();
 }
 
 /// The most lights that a scene may have; the capacity of the light buffer.
@@ -75,9 +99,13 @@ pub struct Declaration {
     pub cone_parameter: Option<&'static str>,
     /// The equation of the light that arrives at a point, as readable mathematics.
     pub equation: &'static str,
+    /// True if it fills a part of the directions from which a point is lit: then it has [`LightType::sample`] and
+    /// [`LightType::seen`] instead of [`LightType::incident`].
+    pub extent: bool,
     /// The twin in WGSL: `fn incident_<id>(light: Light, m: <Id>Parameters, p: vec3<f32>) -> Incident`, where the
     /// struct has the parameters by name (see [`parameter_struct`](LightEntry::parameter_struct)); a type without
-    /// parameters has no `m`.
+    /// parameters has no `m`. A type with extent has `sample_<id>(light, m, p, u: vec2<f32>) -> Sample` and
+    /// `seen_<id>(light, m, p, l: vec3<f32>) -> Seen` instead.
     pub wgsl: Source,
 }
 
@@ -120,8 +148,32 @@ pub trait LightType: ParameterSet + Component + Reflectable {
     /// Name, properties, shader.
     const DECLARATION: Declaration;
 
-    /// The light that arrives at `p` (room coordinates).
-    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
+    /// Numbers that its twin in WGSL needs and that are calculated once: further fields of its parameters there, with the
+    /// values of [`derived`](Self::derived).
+    const DERIVED: &'static [Parameter] = &[];
+
+    /// The values of [`DERIVED`](Self::DERIVED).
+    fn derived(&self) -> Vec<f32> {
+        Vec::new()
+    }
+
+    /// The light that arrives at `p` (room coordinates); none from a type with extent, of which [`sample`](Self::sample) and
+    /// [`seen`](Self::seen) are the answer.
+    fn incident(&self, _light: &LightRecord, _p: Vec3) -> Incident {
+        Incident::From { l: Vec3::Y, intensity: Vec3::ZERO }
+    }
+
+    /// A direction from `p` to a light with extent for a point of the unit square. Any density is right that is
+    /// [`seen`](Self::seen) again for the direction, and that is nowhere zero where the light shines; the nearer it is to the
+    /// radiance, the less noise.
+    fn sample(&self, _light: &LightRecord, _p: Vec3, _u: Vec2) -> Sample {
+        Sample::default()
+    }
+
+    /// What a light with extent is in a direction from `p`. Inside a light, on it and behind it: nothing, or finite numbers.
+    fn seen(&self, _light: &LightRecord, _p: Vec3, _l: Vec3) -> Seen {
+        Seen::NOTHING
+    }
 
     /// The factors of the intensity at `p`, as the [equation](Declaration::equation) has them, for explanations: their
     /// product is the intensity of [`incident`](Self::incident). By default, the intensity of the light, and the rest.
@@ -141,6 +193,12 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::incident`].
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
 
+    /// See [`LightType::sample`].
+    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample;
+
+    /// See [`LightType::seen`].
+    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
+
     /// See [`LightType::factors`].
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
@@ -148,6 +206,14 @@ pub trait Emitter: Send + Sync {
 impl<L: LightType> Emitter for L {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         LightType::incident(self, light, p)
+    }
+
+    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+        LightType::sample(self, light, p, u)
+    }
+
+    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
+        LightType::seen(self, light, p, l)
     }
 
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
@@ -166,6 +232,13 @@ pub trait Emitters: Send + Sync {
     /// The light that arrives at `p` from the [`AT_ONCE`] lights from `first` on: the number of those that shine there from
     /// a direction, which are written to `to`, and the sum of the others, which shine equally from all directions.
     fn arrive(&self, first: usize, p: Vec3, to: &mut [Arriving; AT_ONCE]) -> (usize, Vec3);
+
+    /// Of lights with extent: adds what arrives at `p` from each of some directions of lobes, weighted.
+    fn meet(&self, p: Vec3, directions: &mut Directions);
+
+    /// Of a light with extent: directions to it from `p` for some points of the unit square; the radiance has the colour of the
+    /// light.
+    fn send(&self, light: usize, p: Vec3, points: &Points) -> [Sample; BLOCK];
 }
 
 impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
@@ -189,6 +262,29 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
         }
         (count, uniform)
     }
+
+    fn meet(&self, p: Vec3, directions: &mut Directions) {
+        for (emitter, light) in self {
+            for i in 0..BLOCK {
+                if directions.pdf[i] <= 0.0 {
+                    continue;
+                }
+                let seen = LightType::seen(emitter, light, p, directions.l[i]);
+                if seen.radiance != Vec3::ZERO {
+                    let weight = power_heuristic(directions.pdf[i], seen.pdf);
+                    directions.light[i] += seen.radiance * light.colour * weight;
+                }
+            }
+        }
+    }
+
+    fn send(&self, light: usize, p: Vec3, points: &Points) -> [Sample; BLOCK] {
+        let Some((emitter, light)) = self.get(light) else { return [Sample::default(); BLOCK] };
+        points.map(|u| {
+            let sample = LightType::sample(emitter, light, p, u);
+            Sample { radiance: sample.radiance * light.colour, ..sample }
+        })
+    }
 }
 
 /// A registered light type.
@@ -207,6 +303,8 @@ pub struct LightEntry {
     /// Its component.
     pub component: TypeComponent,
     solid_angle: fn(&Values) -> Option<f64>,
+    derived: &'static [Parameter],
+    derive: fn(&Values, Encoding) -> Vec<f32>,
 }
 
 impl LightEntry {
@@ -225,6 +323,8 @@ impl LightEntry {
             },
             component: TypeComponent::of::<L>(),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
+            derived: L::DERIVED,
+            derive: |values, encoding| L::from_values(values, encoding).derived(),
         }
     }
 
@@ -258,10 +358,25 @@ impl LightEntry {
         Some(values.number(self.cone_parameter()?))
     }
 
-    /// The parameters of a light as the shader reads them, in order and without padding.
+    /// True if lights of the type with these parameters are to be seen in the picture: those with extent, unless their
+    /// parameter `visible` says no.
+    #[must_use]
+    pub fn is_visible(&self, values: &Values) -> bool {
+        self.declaration.extent && self.parameter("visible").is_none_or(|visible| values.choice(visible) == 1)
+    }
+
+    /// The fields of its [struct in WGSL](Self::parameter_struct): its parameters, and what is derived from them.
+    #[must_use]
+    pub fn fields(&self) -> Vec<Parameter> {
+        self.parameters.iter().chain(self.derived).cloned().collect()
+    }
+
+    /// The fields of a light as the shader reads them, in order and without padding.
     #[must_use]
     pub fn words(&self, values: &Values, encoding: Encoding) -> Vec<u32> {
-        words(self.parameters, values, encoding)
+        let mut words = words(self.parameters, values, encoding);
+        words.extend((self.derive)(values, encoding).into_iter().map(f32::to_bits));
+        words
     }
 
     /// The files of a light, each with the place of its parameter among the [`words`](Self::words).

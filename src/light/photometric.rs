@@ -83,6 +83,7 @@ impl LightType for Photometric {
         slider_max: 10.0,
         cone_parameter: None,
         equation: "I(p) = I w / d^2",
+        extent: false,
         wgsl: wgsl!("light/photometric.wgsl"),
     };
 

@@ -26,6 +26,7 @@ impl LightType for Point {
         slider_max: 200.0,
         cone_parameter: None,
         equation: "I(p) = I / d^2",
+        extent: false,
         wgsl: wgsl!("light/point.wgsl"),
     };
 

@@ -61,6 +61,7 @@ impl LightType for Spot {
         slider_max: 200.0,
         cone_parameter: Some(CONE_ANGLE.name),
         equation: "I(p) = I cone(θ, θ_c, s) / d^2",
+        extent: false,
         wgsl: wgsl!("light/spot.wgsl"),
     };
 

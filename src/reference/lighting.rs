@@ -1,12 +1,13 @@
 //! The light loop: the sum over all lights, common to all models.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use glam::Vec3;
 
+use super::extended::{Extended, Integral, LightSamples};
 use crate::{
     light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
-    optics::{Frame, TermSelection, Terms, radiometry::Arriving},
+    optics::{Frame, TermSelection, Terms, radiometry::Arriving, sequence::pixel_seed},
     reflection::Surface,
     registry::Registry,
     scene::{Light, Scene, record},
@@ -21,6 +22,8 @@ const BRIGHTEST: f32 = 1e30;
 pub(super) struct Lights {
     /// Neighbours of one type together, in the order of the scene.
     groups: Vec<Box<dyn Emitters>>,
+    /// Those with extent.
+    extended: Extended,
     observer: Vec3,
     terms: TermSelection,
     /// True if values that are no numbers, or too bright, stay as they are.
@@ -34,16 +37,27 @@ impl Lights {
         let encoding = scene.display.encoding;
         let known: Vec<_> =
             scene.shining().filter_map(|light| Some((registry.light(&light.light_type)?, light))).collect();
-        let groups = known
-            .chunk_by(|(a, _), (b, _)| a.index == b.index)
-            .map(|lights| {
-                let group = lights[0].0.group;
-                let lights: Vec<_> =
-                    lights.iter().map(|(_, l)| (&l.parameters, record(l, registry, encoding))).collect();
-                group(&lights, encoding)
-            })
-            .collect();
-        Self { groups, observer: scene.observer.position, terms, raw: false, odd: AtomicBool::new(false) }
+        let (mut groups, mut extended, mut first) = (Vec::new(), Extended::default(), 0);
+        for lights in known.chunk_by(|(a, _), (b, _)| a.index == b.index) {
+            let entry = lights[0].0;
+            let lights: Vec<_> =
+                lights.iter().map(|(_, l)| (&l.parameters, record(l, registry, encoding))).collect();
+            let group = (entry.group)(&lights, encoding);
+            if entry.declaration.extent {
+                extended.add(group, first);
+            } else {
+                groups.push(group);
+            }
+            first += lights.len() as u32;
+        }
+        let observer = scene.observer.position;
+        Self { groups, extended, observer, terms, raw: false, odd: AtomicBool::new(false) }
+    }
+
+    /// The same, with these samples of lights with extent.
+    pub(super) fn sampled(mut self, samples: LightSamples) -> Self {
+        self.extended.samples = samples;
+        self
     }
 
     /// The same, with values that are no numbers, or too bright, as they are.
@@ -58,7 +72,7 @@ impl Lights {
 
     /// The lights as they shine on one surface.
     pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface) -> LightsOn<'a> {
-        LightsOn { lights: self, surface }
+        LightsOn { lights: self, surface, seed: AtomicU32::new(0) }
     }
 }
 
@@ -66,9 +80,23 @@ impl Lights {
 pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
+    /// The seed of the pixel, or that of all vertices and polygons: with one seed neighbours get the same points, so that what
+    /// is interpolated between them is smooth, and every corner of a polygon the same colour.
+    seed: AtomicU32,
 }
 
 impl LightsOn<'_> {
+    /// The seed of the pixel that was begun, or of vertices.
+    pub(super) fn seed(&self) -> u32 {
+        self.seed.load(Ordering::Relaxed)
+    }
+
+    /// The same with another seed.
+    fn seeded(self, seed: u32) -> Self {
+        self.seed.store(seed, Ordering::Relaxed);
+        self
+    }
+
     /// The direction to the viewer, and the direction that the model gets for it.
     fn view(&self, position: Vec3, normal: Vec3) -> [Vec3; 2] {
         // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then mirrored in
@@ -94,11 +122,19 @@ impl LightsOn<'_> {
         if uniform != Vec3::ZERO && matches!(terms, TermSelection::All | TermSelection::Ambient) {
             sum += self.surface.ambient_response(v, frame) * uniform;
         }
+        if !self.lights.extended.is_empty() {
+            let seed = self.seed.load(Ordering::Relaxed);
+            sum += self.lights.extended.sum(self.surface, position, v, frame, terms, seed);
+        }
         sum
     }
 }
 
 impl Lighting for LightsOn<'_> {
+    fn begin_pixel(&self, x: u32, y: u32) {
+        self.seed.store(pixel_seed(x, y), Ordering::Relaxed);
+    }
+
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
         let [_, v] = self.view(position, normal);
         let sum = self.sum(position, v, &Frame::new(normal, tangent));
@@ -120,6 +156,8 @@ pub(crate) struct Point {
     pub(crate) tangent: Vec3,
     /// The result of the loop.
     pub(crate) colour: Vec3,
+    /// The seed of its samples of lights with extent.
+    pub(crate) seed: u32,
 }
 
 /// The light loop at one point, light by light.
@@ -145,6 +183,8 @@ pub(crate) struct LitBy {
     pub(crate) response: Terms,
     /// Its part of the sum, with the selected terms.
     pub(crate) contribution: Vec3,
+    /// Of a light with extent: the integral of the answer over the light.
+    pub(crate) integral: Option<Integral>,
 }
 
 /// The light loop at a point, light by light: each contribution is what the loop gives for that light alone.
@@ -156,24 +196,39 @@ pub(super) fn light_by_light(
     point: &Point,
 ) -> Loop {
     let all = Lights::new(scene, registry, terms);
-    let lights = all.on(surface);
+    let lights = all.on(surface).seeded(point.seed);
     let [eye, v] = lights.view(point.position, point.normal);
     let frame = Frame::new(point.normal, point.tangent);
     let encoding = scene.display.encoding;
     let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
-    let lit_by = |(index, light): (usize, &Light)| {
+    // The number of a light among those that shine and are known is that of its sequence.
+    let known = shining.filter(|(_, light)| registry.light(&light.light_type).is_some()).enumerate();
+    let lit_by = |(number, (index, light)): (usize, (usize, &Light))| {
         let entry = registry.light(&light.light_type)?;
         let record = record(light, registry, encoding);
         let emitter = (entry.instantiate)(&light.parameters, encoding);
         let incident = emitter.incident(&record, point.position);
+        let group = (entry.group)(&[(&light.parameters, record)], encoding);
+        let (mut groups, mut extended) = (Vec::new(), Extended::default());
+        if entry.declaration.extent {
+            extended.add(group, number as u32);
+        } else {
+            groups.push(group);
+        }
+        let integral = entry
+            .declaration
+            .extent
+            .then(|| extended.integral(surface, point.position, v, &frame, point.seed));
         let alone = Lights {
-            groups: vec![(entry.group)(&[(&light.parameters, record)], encoding)],
+            groups,
+            extended,
             observer: all.observer,
             terms,
             raw: false,
             odd: AtomicBool::new(false),
         };
         let response = match incident {
+            _ if integral.is_some() => integral.map(|i| i.terms).unwrap_or_default(),
             Incident::From { l, .. } => surface.response(l, v, &frame),
             Incident::Uniform { .. } => {
                 Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
@@ -185,14 +240,15 @@ pub(super) fn light_by_light(
             incident,
             factors: emitter.factors(&record, point.position),
             response,
-            contribution: alone.on(surface).sum(point.position, v, &frame),
+            contribution: alone.on(surface).seeded(point.seed).sum(point.position, v, &frame),
+            integral,
         })
     };
     Loop {
         eye,
         v,
         frame,
-        lights: shining.filter_map(lit_by).collect(),
+        lights: known.filter_map(lit_by).collect(),
         sum: lights.sum(point.position, v, &frame),
     }
 }

@@ -42,6 +42,7 @@ use crate::{
 mod channel;
 mod display;
 mod edits;
+mod extended;
 mod lighting;
 pub(crate) mod meshes;
 mod nearest;
@@ -57,6 +58,7 @@ use channel::Sight;
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
 pub use edits::ignored_edits;
+pub use extended::LightSamples;
 use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
@@ -134,7 +136,23 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 /// The same; sets `odd` if light that is not finite was replaced, as the channel [`DebugChannel::NotANumber`] shows.
 #[must_use]
 pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, odd: &AtomicBool) -> Picture {
-    let pixels = draw(scene, registry, settings, None, (None, odd), Vec4::ZERO, |pixel| pixel);
+    let pixels =
+        draw(scene, registry, settings, None, (None, odd, LightSamples::default()), Vec4::ZERO, |pixel| {
+            pixel
+        });
+    Picture { width: settings.width, height: settings.height, pixels }
+}
+
+/// The same with some of the samples of lights with extent.
+#[must_use]
+pub fn render_samples(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    samples: LightSamples,
+    odd: &AtomicBool,
+) -> Picture {
+    let pixels = draw(scene, registry, settings, None, (None, odd, samples), Vec4::ZERO, |pixel| pixel);
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
@@ -155,8 +173,10 @@ pub fn render_rgb8_noting(
 ) -> Vec<u8> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    draw(scene, registry, settings, None, (None, odd), background, |pixel| display.apply(pixel))
-        .into_flattened()
+    draw(scene, registry, settings, None, (None, odd, LightSamples::default()), background, |pixel| {
+        display.apply(pixel)
+    })
+    .into_flattened()
 }
 
 /// The same, unless it is not finished by then.
@@ -169,7 +189,7 @@ pub fn render_rgb8_until(
 ) -> Option<Vec<u8>> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    let until = (Some(end), &AtomicBool::default());
+    let until = (Some(end), &AtomicBool::default(), LightSamples::default());
     let pixels = draw(scene, registry, settings, None, until, background, |pixel| display.apply(pixel));
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
@@ -186,7 +206,7 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
     let ground = if wires { DebugChannel::NotANumber } else { setting.channel };
     let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
     let finish = |pixel| display.apply(pixel);
-    let ever = (None, &AtomicBool::default());
+    let ever = (None, &AtomicBool::default(), LightSamples::default());
     let mut rgb8 = draw(scene, registry, settings, Some(&sight), ever, background, finish).into_flattened();
     if wires {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
@@ -203,14 +223,14 @@ fn draw<T: Copy + Send + Sync>(
     registry: &Registry,
     settings: &Settings,
     sight: Option<&Sight>,
-    (end, odd): (Option<Instant>, &AtomicBool),
+    (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
     if settings.samples > 1 {
-        draw_sampled::<4, T>(scene, registry, settings, sight, (end, odd), background, finish)
+        draw_sampled::<4, T>(scene, registry, settings, sight, (end, odd, samples), background, finish)
     } else {
-        draw_sampled::<1, T>(scene, registry, settings, sight, (end, odd), background, finish)
+        draw_sampled::<1, T>(scene, registry, settings, sight, (end, odd, samples), background, finish)
     }
 }
 
@@ -219,7 +239,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     registry: &Registry,
     settings: &Settings,
     sight: Option<&Sight>,
-    (end, odd): (Option<Instant>, &AtomicBool),
+    (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
@@ -230,7 +250,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         return out;
     }
     let screen = Screen::new(width, height, S);
-    let lights = Lights::new(scene, registry, settings.terms);
+    let lights = Lights::new(scene, registry, settings.terms).sampled(samples);
     let lights = if sight.is_some() { lights.raw() } else { lights };
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);

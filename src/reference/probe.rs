@@ -311,9 +311,19 @@ struct Asked<'a> {
 }
 
 impl Lighting for Asked<'_> {
+    fn begin_pixel(&self, x: u32, y: u32) {
+        self.lighting.begin_pixel(x, y);
+    }
+
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
         let colour = self.lighting.colour(position, normal, tangent);
-        self.points.borrow_mut().push(Point { position, normal, tangent, colour });
+        self.points.borrow_mut().push(Point {
+            position,
+            normal,
+            tangent,
+            colour,
+            seed: self.lighting.seed(),
+        });
         colour
     }
 }

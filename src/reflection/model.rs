@@ -7,6 +7,7 @@ use crate::{
     optics::{
         Frame, Terms,
         albedo::{LobeAlbedo, NamedCurve},
+        lobes::Lobes,
     },
     parameter::{ParameterSet, Value},
 };
@@ -62,6 +63,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// [`Lines`](crate::optics::albedo::Lines) have them ready.
     fn curves(&self) -> Vec<Vec4> {
         Vec::new()
+    }
+
+    /// The directions from which it reflects most, for sampling light with extent. Any lobes give the same picture in the end; good
+    /// ones sooner.
+    fn lobes(&self) -> Lobes {
+        Lobes::default()
     }
 
     /// Values derived from the parameters to help interpret them: the reflectance at normal incidence, the same

@@ -8,6 +8,7 @@ use super::{declaration::Ambient, factor::Factor, model::ReflectionModel, readou
 use crate::optics::{
     Frame, TermSelection, Terms,
     albedo::{self, AlbedoCurve, LobeAlbedo},
+    lobes::Lobes,
     radiometry::Arriving,
 };
 
@@ -24,6 +25,10 @@ pub trait Surface: Send + Sync {
     /// See [`ReflectionModel::curves`].
     fn curves(&self) -> Vec<Vec4> {
         Vec::new()
+    }
+    /// See [`ReflectionModel::lobes`].
+    fn lobes(&self) -> Lobes {
+        Lobes::default()
     }
     /// See [`ReflectionModel::readouts`].
     fn readouts(&self) -> Vec<Readout>;
@@ -94,6 +99,10 @@ impl<M: ReflectionModel> Surface for M {
         ReflectionModel::curves(self)
     }
 
+    fn lobes(&self) -> Lobes {
+        ReflectionModel::lobes(self)
+    }
+
     fn readouts(&self) -> Vec<Readout> {
         ReflectionModel::readouts(self)
     }
@@ -135,6 +144,10 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn curves(&self) -> Vec<Vec4> {
         ReflectionModel::curves(&self.model)
+    }
+
+    fn lobes(&self) -> Lobes {
+        ReflectionModel::lobes(&self.model)
     }
 
     fn readouts(&self) -> Vec<Readout> {

@@ -9,15 +9,18 @@
 use std::fmt::Write as _;
 
 use crate::{
-    light::LightEntry,
-    optics::albedo::{NODES, NamedCurve, Spacing},
+    light::{LightEntry, Twin},
+    optics::{
+        albedo::{NODES, NamedCurve, Spacing},
+        lobes::MAX_LOBES,
+    },
     parameter::{Parameter, Values},
     reflection::{Ambient, Family, ModelEntry},
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING,
-            SHADING_ALONE, Sources, WRAPPER, parameter_struct,
+            ALBEDO, CHANNELS, Composed, Composer, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP, OPTICS,
+            SAMPLING, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -155,14 +158,20 @@ fn push_shading(c: &mut Composer, shading: &ShadingEntry) {
 
 /// A light type, after the struct of its parameters.
 fn push_light(c: &mut Composer, light: &LightEntry) {
-    if !light.parameters.is_empty() {
-        let text = parameter_struct(&light.parameter_struct(), light.parameters);
+    let fields = light.fields();
+    if !fields.is_empty() {
+        let text = parameter_struct(&light.parameter_struct(), &fields);
         c.push("(parameters of a light type)", &text);
     }
     c.source(&light.declaration.wgsl);
 }
 
-/// The function that hands a light to its type, by the number of the type in the registry, with its own parameters, of
+/// True if any light type has extent, so that the loop samples.
+fn any_extent(lights: &[LightEntry]) -> bool {
+    lights.iter().any(|light| light.declaration.extent)
+}
+
+/// The functions that hand a light to its type, by the number of the type in the registry, with its own parameters, of
 /// which [`words`](LightEntry::words) are the source. Lights of other types give no light.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
@@ -176,28 +185,49 @@ fn light_word(light: Light, i: u32) -> u32 {
 fn light_number(light: Light, i: u32) -> f32 {
     return illumination_number(light.first_word + i);
 }
-fn incident(light: Light, p: vec3<f32>) -> Incident {
-    switch light.light_type {
 ",
     );
-    for light in lights {
-        let word = |i: usize, kind: &str| match kind {
-            "u32" => format!("light_word(light, {i}u)"),
-            _ => format!("light_number(light, {i}u)"),
-        };
-        let parameters = match light.parameters {
-            [] => String::new(),
-            all => format!("{}({}), ", light.parameter_struct(), values(all, word)),
-        };
-        let (index, id) = (light.index, light.declaration.id);
-        let _ = writeln!(text, "        case {index}u: {{ return incident_{id}(light, {parameters}p); }}");
+    let mut dispatch = |twin: &Twin, function: &str, extent: bool| {
+        let [taken, given] = twin.more;
+        let result = twin.result;
+        let _ = writeln!(text, "fn {function}(light: Light, p: vec3<f32>{taken}) -> {result} {{");
+        text.push_str("    switch light.light_type {\n");
+        for light in lights.iter().filter(|light| light.declaration.extent == extent) {
+            let word = |i: usize, kind: &str| match kind {
+                "u32" => format!("light_word(light, {i}u)"),
+                _ => format!("light_number(light, {i}u)"),
+            };
+            let parameters = match light.fields().as_slice() {
+                [] => String::new(),
+                all => format!("{}({}), ", light.parameter_struct(), values(all, word)),
+            };
+            let (index, name) = (light.index, twin.of(light));
+            let _ =
+                writeln!(text, "        case {index}u: {{ return {name}(light, {parameters}p{given}); }}");
+        }
+        let _ = writeln!(text, "        default: {{ return {}; }}\n    }}\n}}", twin.dark);
+    };
+    for twin in Twin::all(false) {
+        dispatch(twin, twin.name, false);
     }
-    text.push_str("        default: { return Incident(vec3(0.0), vec3(0.0), 0u); }\n    }\n}\n");
+    if any_extent(lights) {
+        for twin in Twin::all(true) {
+            dispatch(twin, &format!("{}_light", twin.name), true);
+        }
+        let extended = lights.iter().filter(|light| light.declaration.extent);
+        let types: Vec<_> = extended.map(|light| format!("light_type == {}u", light.index)).collect();
+        let _ = writeln!(
+            text,
+            "fn has_extent(light_type: u32) -> bool {{\n    return {};\n}}",
+            types.join(" || ")
+        );
+    }
     text
 }
 
 /// The files that every source for drawing needs beside the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 7] = [ALBEDO, LIGHTS, SHADING, LOOP, CHANNELS, WRAPPER, EVALUATE];
+pub(crate) const SHARED: [Source; 9] =
+    [ALBEDO, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, WRAPPER, EVALUATE];
 
 /// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -208,14 +238,26 @@ pub const FILE_TABLE: &str = "file_table";
 pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS]).for_each(|s| c.source(s));
+    if light.declaration.extent {
+        // The directions of lobes are not chosen here.
+        c.source(&SAMPLING);
+        c.push("(lobes)", "fn lobe_row(i: u32) -> vec4<f32> {\n    return vec4(0.0);\n}\n");
+    }
     push_light(&mut c, light);
     let tables = light.tables(&Values::default());
     let numbers = tables.iter().map(|(_, table)| table.numbers.len()).sum::<usize>().max(1);
-    let id = light.declaration.id;
-    let (taken, given) = match light.parameters {
-        [] => (String::new(), ""),
-        _ => (format!("m: {}, ", light.parameter_struct()), "m, "),
+    let extent = light.declaration.extent;
+    let call = |twin: &Twin| {
+        let name = if extent { format!("{}_light", twin.name) } else { twin.name.to_owned() };
+        let own = if light.fields().is_empty() { "" } else { "m, " };
+        let given = twin.more[1];
+        format!(
+            "fn {name}{} {{\n    return {}(light, {own}p{given});\n}}\n",
+            twin.signature(light),
+            twin.of(light)
+        )
     };
+    let calls: String = Twin::all(extent).iter().map(call).collect();
     c.push(
         LIGHT_ALONE,
         &format!(
@@ -224,10 +266,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
 fn illumination_number(i: u32) -> f32 {{
     return {FILE_TABLE}[0].numbers[i];
 }}
-fn incident(light: Light, {taken}p: vec3<f32>) -> Incident {{
-    return incident_{id}(light, {given}p);
-}}
-"
+{calls}"
         ),
     );
     c.composed
@@ -274,6 +313,18 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
     c.composed
 }
 
+/// The lobes of the object that is drawn.
+const LOBE_ROW: &str = "fn lobe_row(i: u32) -> vec4<f32> {
+    return parameter_table[object_row].lobes[i];
+}
+";
+
+/// The part of lights with extent where there are none.
+const NOT_EXTENDED: &str = "fn extended(position: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec3<f32> {
+    return vec3(0.0);
+}
+";
+
 /// The complete source for drawing with a model and a shading model under the given light types, those of the scene: a
 /// mistake in another one takes no picture away.
 #[must_use]
@@ -285,11 +336,26 @@ pub fn compose(
 ) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
-    let words = format!("    shading: array<vec4<u32>, {}>,\n", shading::PARAMETER_WORDS / 4);
+    let extent = any_extent(lights);
+    if extent {
+        c.source(&SAMPLING);
+    }
+    let words = format!(
+        "    shading: array<vec4<u32>, {}>,\n    lobes: array<vec4<f32>, {MAX_LOBES}>,\n",
+        shading::PARAMETER_WORDS / 4
+    );
     push_model(&mut c, model, &words);
+    if extent {
+        c.push("(lobes)", LOBE_ROW);
+    }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
     c.source(&LOOP);
+    if extent {
+        c.source(&EXTENDED);
+    } else {
+        c.push("(no light with extent)", NOT_EXTENDED);
+    }
     push_shading(&mut c, shading);
     c.source(&CHANNELS);
     c.source(&WRAPPER);
@@ -349,7 +415,9 @@ pub fn files(
             (Part::LightRecord, &LIGHTS),
             (Part::Stages, &SHADING),
             (Part::Model, &model.declaration.wgsl),
+            (Part::Vocabulary, &SAMPLING),
             (Part::Loop, &LOOP),
+            (Part::Loop, &EXTENDED),
             (Part::ShadingModel, &shading.declaration.wgsl),
             (Part::Channels, &CHANNELS),
             (Part::Wrapper, &WRAPPER),
@@ -432,10 +500,10 @@ mod tests {
         assert_eq!(all[0].part, Part::Model);
         assert_eq!(of(Part::Model), [("reflection/phong.wgsl", false)], "read from disk, but the same");
         assert_eq!(of(Part::ShadingModel), [("shading/gouraud.wgsl", true)]);
-        assert_eq!(of(Part::Loop), [("loop.wgsl", true)]);
+        assert_eq!(of(Part::Loop), [("loop.wgsl", true), ("extended.wgsl", false)]);
         assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
         assert_eq!(of(Part::LightType).len(), registry.lights().len());
-        assert_eq!(of(Part::Vocabulary).len(), OPTICS.len());
+        assert_eq!(of(Part::Vocabulary).len(), OPTICS.len() + 1, "and sampling.wgsl");
         for part in [Part::LightRecord, Part::Stages, Part::Channels, Part::Wrapper] {
             assert_eq!(of(part).len(), 1, "{part:?}");
         }
@@ -494,11 +562,15 @@ mod tests {
         let registry = Registry::builtin();
         let all = light_dispatch(registry.lights());
         for (i, light) in registry.lights().iter().enumerate() {
-            let case = format!("case {i}u: {{ return incident_{}(", light.declaration.id);
-            assert!(all.contains(&case));
+            let twins = Twin::all(light.declaration.extent);
             // Alone as among all.
             let alone = light_dispatch(&[*light]);
-            assert!(alone.contains(&case) && alone.matches("case ").count() == 1, "{alone}");
+            for twin in twins {
+                let case = format!("case {i}u: {{ return {}(", twin.of(light));
+                assert!(all.contains(&case) && alone.contains(&case), "{alone}");
+            }
+            assert_eq!(alone.matches("case ").count(), twins.len(), "{alone}");
+            assert_eq!(alone.contains("has_extent"), light.declaration.extent);
         }
     }
 

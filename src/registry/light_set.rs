@@ -42,6 +42,12 @@ impl Registry {
     pub fn lights_in(&self, set: LightSet) -> Vec<LightEntry> {
         self.lights.iter().filter(|light| set.has(light)).copied().collect()
     }
+
+    /// True if a light type of a set has extent.
+    #[must_use]
+    pub fn has_extent(&self, set: LightSet) -> bool {
+        self.lights.iter().any(|light| set.has(light) && light.declaration.extent)
+    }
 }
 
 #[cfg(test)]

@@ -20,12 +20,16 @@ use crate::{
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
     parameter::Table,
+    reference::LightSamples,
     registry::Registry,
     scene::{Display, Light, record},
 };
 
-/// Bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends of its scale.
-pub const HEADER_BYTES: usize = 32;
+/// Bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends of its scale; the first
+/// sample of light with extent, their number.
+pub const HEADER_BYTES: usize = 48;
+/// Where the samples stand among them.
+pub(super) const SAMPLES_AT: usize = 32;
 /// Bytes of one light.
 pub const LIGHT_BYTES: usize = 48;
 /// Words for the parameters of all lights that a buffer has room for at first: four for each.
@@ -41,7 +45,7 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
     ("first_word", 44),
 ];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 9] = [
+pub const ILLUMINATION_LAYOUT: [(&str, usize); 12] = [
     ("count", 0),
     ("terms", 4),
     ("exposure", 8),
@@ -50,6 +54,9 @@ pub const ILLUMINATION_LAYOUT: [(&str, usize); 9] = [
     ("channel_light", 20),
     ("channel_low", 24),
     ("channel_high", 28),
+    ("first_sample", SAMPLES_AT),
+    ("sample_count", SAMPLES_AT + 4),
+    ("spare", SAMPLES_AT + 8),
     ("lights", HEADER_BYTES),
 ];
 
@@ -213,6 +220,7 @@ pub fn illumination_bytes(
         put(24, low.to_le_bytes());
         put(28, high.to_le_bytes());
     }
+    put(SAMPLES_AT + 4, LightSamples::DEFAULT.to_le_bytes());
     for (i, (Lit { record, .. }, first)) in lights.iter().zip(&places.lights).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {

@@ -135,7 +135,14 @@ pub fn swap(
         .par_iter()
         .map(|Pending { shown, now, .. }| {
             let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
-            Some(row(model, shading, &shown.material, now.encoding, now.everywhere))
+            Some(row(
+                model,
+                shading,
+                &shown.material,
+                now.encoding,
+                now.everywhere,
+                registry.has_extent(now.lights),
+            ))
         })
         .collect();
     let eyes = nearest::eyes(world);

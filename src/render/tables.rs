@@ -19,17 +19,21 @@ use crate::{
     shading::ShadingEntry,
 };
 
-/// The parameters of an object as bytes of its row: those of its model, then those of its shading model.
+/// The parameters of an object as bytes of its row: those of its model, those of its shading model, and the lobes of its model,
+/// which are zero unless there is light with `extent`.
 pub(super) fn row(
     model: &ModelEntry,
     shading: &ShadingEntry,
     values: &Values,
     encoding: Encoding,
     everywhere: bool,
+    extent: bool,
 ) -> Vec<u8> {
     let mut row = model.row(values, encoding, everywhere);
     row.resize(row.len().next_multiple_of(16), 0);
     row.extend(shading.row(values, encoding));
+    let lobes = if extent { model.instantiate(values, encoding).lobes().rows() } else { Default::default() };
+    row.extend(lobes.iter().flat_map(|lobe| lobe.to_array()).flat_map(f32::to_le_bytes));
     row
 }
 

@@ -323,6 +323,7 @@ fn unit(unit: &str) -> &str {
     match unit {
         "cd" => "candela (cd)",
         "lx" => "lux (lx)",
+        "cd/m²" => "candela per square metre (cd/m²)",
         "×" => "a factor: 1 is the lamp as it is",
         other => other,
     }

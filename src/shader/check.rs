@@ -148,6 +148,7 @@ pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>
 mod tests {
     use super::*;
     use crate::{
+        light::Twin,
         parameter::{layout, stride},
         registry::{
             Registry,
@@ -194,12 +195,13 @@ mod tests {
         let (model, shading) = (&registry.models()[0], &registry.shading_models()[0]);
         let composed = compose(&Sources::default(), model, shading, registry.lights());
         for light in registry.lights() {
-            let id = light.declaration.id;
-            let call = format!("{{ return incident_{id}(");
-            let line = composed.text.lines().find(|line| line.contains(&call)).expect("it is dispatched");
-            for word in 0..=light.word_count() {
-                let read = line.contains(&format!("(light, {word}u)"));
-                assert_eq!(read, word < light.word_count(), "{id}: word {word} in {line}");
+            for twin in Twin::all(light.declaration.extent) {
+                let call = format!("{{ return {}(", twin.of(light));
+                let line = composed.text.lines().find(|line| line.contains(&call)).expect("it is dispatched");
+                for word in 0..=light.word_count() {
+                    let read = line.contains(&format!("(light, {word}u)"));
+                    assert_eq!(read, word < light.word_count(), "{call} word {word} in {line}");
+                }
             }
         }
     }

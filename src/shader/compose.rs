@@ -27,6 +27,10 @@ pub const OPTICS: &[Source] = &[
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
+/// Directions chosen at random, for light with extent.
+pub const SAMPLING: Source = wgsl!("sampling.wgsl");
+/// The light loop where there is light with extent.
+pub const EXTENDED: Source = wgsl!("extended.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
 /// The inputs and outputs of a shading model.

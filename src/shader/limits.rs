@@ -70,7 +70,7 @@ pub const LIMITS: Limits = Limits {
     bytes: 1 << 20,
     tokens: 100_000,
     statements: 8_192,
-    declarations: 1_024,
+    declarations: 2_048,
     nesting: 100,
     depth: 256,
     blocks: 64,
@@ -82,7 +82,7 @@ pub const LIMITS: Limits = Limits {
     variable_bytes: 16 << 10,
     expressions: 32_768,
     values: 1_024,
-    steps: 65_536,
+    steps: 196_608,
     loops: 16,
 };
 

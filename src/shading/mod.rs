@@ -94,6 +94,9 @@ pub trait Lighting {
     /// The colour at `position` (room coordinates, metres) with unit normal `normal` and a `tangent` of
     /// any length and angle to it, or zero; see [`Frame::new`](crate::optics::Frame::new).
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3;
+
+    /// Says that the colours that follow are those of a pixel: light with extent is sampled in another way for each.
+    fn begin_pixel(&self, _x: u32, _y: u32) {}
 }
 
 /// One corner of a polygon, in room coordinates.

@@ -107,8 +107,9 @@ pub fn compose(
     for entry in &lights.types {
         let what = entry.declaration;
         let mut all = items(&text(sources, &what.wgsl)?);
-        if !entry.parameters.is_empty() {
-            all.extend(items(&parameter_struct(&entry.parameter_struct(), entry.parameters)));
+        let fields = entry.fields();
+        if !fields.is_empty() {
+            all.extend(items(&parameter_struct(&entry.parameter_struct(), &fields)));
         }
         let heading = format!("{} light: {}", what.name.trim_end_matches(" light"), what.equation);
         sections.push(Section { heading, items: all });
@@ -237,6 +238,7 @@ const SIMPLER: &[(&str, &str)] = &[
 ];
 /// What is known of the scene, for any light loop.
 const KNOWN: &[(&str, &str)] = &[
+    (" + extended(position, v, frame)", ""),
     ("min(illumination.count, MAX_LIGHTS)", "LIGHT_COUNT"),
     ("illumination.count", "LIGHT_COUNT"),
     ("illumination.terms", "TERM_ALL"),

@@ -120,6 +120,7 @@ impl<const S: usize, const E: usize> Tile<S, E> {
                 }
                 if visible {
                     let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
+                    lighting.begin_pixel(left as u32 + x as u32, y as u32);
                     let colour = shading.pixel(lighting, &varying, triangle.face_normal);
                     for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
                         *sample = colour;

@@ -23,7 +23,7 @@ use crate::{
 type Check = Result<(), String>;
 
 /// The units of light types.
-const UNITS: [&str; 3] = ["cd", "lx", "×"];
+const UNITS: [&str; 4] = ["cd", "lx", "cd/m²", "×"];
 /// A light and an object of a scene file, in messages.
 const LIGHT: &str = "a light";
 const OBJECT: &str = "an object";
@@ -254,7 +254,8 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     labels(entry.parameters)?;
     ensure(UNITS.contains(&d.unit), || {
         format!(
-            "its unit is \"{}\", but must be cd or lx, for lights with a position and without, or × for a factor",
+            "its unit is \"{}\", but must be cd or lx, for lights with a position and without, cd/m² for lights with \
+             extent, or × for a factor",
             d.unit
         )
     })?;

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use naga::{Module, ScalarKind, TypeInner, VectorSize};
 
 use crate::{
-    light::LightEntry,
+    light::{LightEntry, Twin},
     reflection::{Ambient, ModelEntry},
     registry::{
         Registry,
@@ -86,14 +86,10 @@ fn of_model(model: &ModelEntry) -> Vec<Function> {
     all
 }
 
-/// The function of a light type.
-fn of_light(light: &LightEntry) -> Function {
-    let own = match light.parameters {
-        [] => String::new(),
-        _ => format!("m: {}, ", light.parameter_struct()),
-    };
-    let signature = format!("(light: Light, {own}p: vec3<f32>) -> Incident");
-    function(&format!("incident_{}", light.declaration.id), &signature)
+/// The functions of a light type.
+fn of_light(light: &LightEntry) -> Vec<Function> {
+    let twins = Twin::all(light.declaration.extent).iter();
+    twins.map(|twin| function(&twin.of(light), &twin.signature(light))).collect()
 }
 
 /// The functions of a shading model.
@@ -130,11 +126,14 @@ pub(crate) fn model(sources: &Sources, model: &ModelEntry) -> Result<Module, Box
 /// Its first problem.
 pub(crate) fn light(sources: &Sources, light: &LightEntry) -> Result<Module, Box<ShaderProblem>> {
     let source = &light.declaration.wgsl;
-    let function = of_light(light);
-    function.required(source, sources)?;
+    let all = of_light(light);
+    all.iter().try_for_each(|function| function.required(source, sources))?;
     validate(&compose_light(sources, light)).map_err(|found| {
+        // The caller of the light type is not the culprit: it names the function in its line.
         let called = found.file.starts_with('(');
-        called.then(|| function.otherwise(source, sources)).flatten().unwrap_or(found)
+        let named = || all.iter().find(|function| found.source.contains(&function.name));
+        let caller = called.then(|| named().or(all.first())).flatten();
+        caller.and_then(|function| function.otherwise(source, sources)).unwrap_or(found)
     })
 }
 

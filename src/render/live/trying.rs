@@ -198,7 +198,7 @@ fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: 
 
 /// The row of the object with which a shader is tried: its parameters are the defaults.
 fn sample(model: &ModelEntry, shading: &ShadingEntry) -> Vec<u8> {
-    row(model, shading, &Values::default(), Encoding::Srgb, false)
+    row(model, shading, &Values::default(), Encoding::Srgb, false, true)
 }
 
 /// The renderer failed all the same: goes back to what was drawn with before. Where nothing was exchanged, the
@@ -250,7 +250,7 @@ mod tests {
                 (model.row(&values, encoding, false), shading.row(&values, encoding));
             let place = of_model.len().next_multiple_of(16);
             assert_eq!(row[..of_model.len()], of_model);
-            assert_eq!(row[place..], of_shading, "{}", shading.declaration.id);
+            assert_eq!(row[place..place + of_shading.len()], of_shading, "{}", shading.declaration.id);
         }
     }
 }

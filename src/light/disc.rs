@@ -1,0 +1,76 @@
+use glam::{Vec2, Vec3};
+
+use super::{
+    Declaration, LightRecord, LightType,
+    extent::{self, SMALLEST, Sample, Seen, TWO_SIDED, UNTURNED, VISIBLE},
+};
+use crate::{
+    optics::sampling::{area_pdf, disc},
+    parameter::Parameter,
+    parameters,
+    shader::wgsl,
+};
+
+pub(super) const RADIUS: Parameter =
+    Parameter::number("radius", SMALLEST..=100.0, 0.5).symbol("r").unit("m").help("Half its diameter.");
+
+parameters! {
+    /// **Disc**: a round lamp; the same luminance L, cd/m², from every point of it in every direction to its front. Its luminous
+    /// flux is `Φ = π² r² L` lumen, twice that if both sides shine.
+    pub struct Disc {
+        /// Its radius, metres.
+        radius: number = RADIUS,
+        /// 1 if it shines to both sides.
+        two_sided: choice = TWO_SIDED,
+        /// 1 if it is to be seen in the picture.
+        visible: choice = VISIBLE,
+    }
+}
+
+impl Disc {
+    fn area(&self) -> f32 {
+        std::f32::consts::PI * self.radius * self.radius
+    }
+}
+
+impl LightType for Disc {
+    const DECLARATION: Declaration = Declaration::new("disc", "Disc", wgsl!("light/disc.wgsl"))
+        .summary("A round lamp: a disc that is equally bright everywhere and in every direction.")
+        .glyph("◐")
+        .at_position()
+        .with_direction()
+        .luminance(10.0, 100.0)
+        .equation("I(p) = L");
+
+    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+        let [x, y] = extent::sides(light.direction, UNTURNED);
+        let on = disc(u) * self.radius;
+        let at = light.position + x * on.x + y * on.y - p;
+        let l = at.normalize_or_zero();
+        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
+            return Sample::default();
+        }
+        let pdf = area_pdf(at, light.direction, self.area());
+        Sample { l, radiance: Vec3::splat(light.intensity), pdf }
+    }
+
+    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
+        let facing = -l.dot(light.direction);
+        if !extent::shines(facing, self.two_sided == 1) {
+            return Seen::NOTHING;
+        }
+        let middle = light.position - p;
+        let distance = middle.dot(light.direction) / -facing;
+        let beside = l * distance - middle;
+        if !(distance > 0.0) || beside.length_squared() > self.radius * self.radius {
+            return Seen::NOTHING;
+        }
+        let pdf = area_pdf(l * distance, light.direction, self.area());
+        Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
+    }
+
+    fn solid_angle(&self) -> Option<f64> {
+        let radius = f64::from(self.radius);
+        Some(extent::flux(std::f64::consts::PI * radius * radius, self.two_sided == 1))
+    }
+}

@@ -1,0 +1,185 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Declaration, LightRecord, LightType,
+    extent::{Sample, Seen, VISIBLE, number},
+    sky::{self, Sky},
+    studio,
+};
+use crate::{
+    optics::sampling,
+    parameter::{Parameter, ParameterKind, UsedWhen},
+    parameters,
+    shader::wgsl,
+};
+
+const SOURCE: Parameter = Parameter::choice(
+    "source",
+    &[("uniform", "uniform"), ("studio", "studio"), ("sky", "sky")],
+    1,
+)
+.help("Uniform: the same luminance from everywhere. Studio: three softboxes in a dark room. Sky: the CIE general sky.");
+
+const STUDIO: u32 = 1;
+const SKY: u32 = 2;
+
+const ROTATION: Parameter = Parameter {
+    name: "rotation",
+    symbol: "ψ",
+    label: "rotation",
+    unit: "°",
+    help: "Turns it about the vertical, anticlockwise as seen from above.",
+    kind: ParameterKind::Number { min: -360.0, max: 360.0, default: 0.0 },
+    used_when: Some(UsedWhen { parameter: "source", choices: &["studio", "sky"] }),
+};
+
+/// A parameter of skies alone.
+const fn of_sky(parameter: Parameter) -> Parameter {
+    Parameter { used_when: Some(UsedWhen { parameter: "source", choices: &["sky"] }), ..parameter }
+}
+
+const SKY_TYPE: Parameter = of_sky(
+    Parameter::choice("sky_type", &sky::TYPES, 11)
+        .label("type of sky")
+        .help("One of the fifteen types of CIE S 011 / ISO 15469, from overcast to clear and turbid."),
+);
+
+const SUN_ELEVATION: Parameter = of_sky(
+    Parameter::number("sun_elevation", 0.0..=90.0, 35.0)
+        .symbol("γ_s")
+        .label("sun's elevation")
+        .unit("°")
+        .help("The height of the sun above the horizon. The sun itself is another light; the sky is brighter around it."),
+);
+
+const SUN_AZIMUTH: Parameter = of_sky(
+    Parameter::number("sun_azimuth", -360.0..=360.0, 140.0)
+        .symbol("α_s")
+        .label("sun's azimuth")
+        .unit("°")
+        .help("The direction of the sun from −z, clockwise as seen from above."),
+);
+
+const ZENITH_LUMINANCE: Parameter = of_sky(
+    Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.3)
+        .symbol("L_z")
+        .label("zenith luminance")
+        .unit("cd/m²")
+        .help("The luminance of the sky straight above; the luminance of the rest follows from the type."),
+);
+
+const GROUND_REFLECTANCE: Parameter = of_sky(
+    Parameter::number("ground_reflectance", 0.0..=1.0, 0.2)
+        .symbol("ρ_g")
+        .label("ground reflectance")
+        .help("The part of the skylight that the ground scatters back, evenly."),
+);
+
+parameters! {
+    /// **Environment**: light from all around, infinitely far away; its intensity is a factor of the luminance of its source
+    /// (uniform: 1 cd/m²).
+    pub struct Environment {
+        /// Index of the source.
+        source: choice = SOURCE,
+        /// The turn about the vertical, degrees.
+        rotation: number = ROTATION,
+        /// Index of the type of the sky.
+        sky_type: choice = SKY_TYPE,
+        /// The height of the sun above the horizon, degrees.
+        sun_elevation: number = SUN_ELEVATION,
+        /// The direction of the sun, degrees.
+        sun_azimuth: number = SUN_AZIMUTH,
+        /// The luminance of the zenith, cd/m².
+        zenith_luminance: number = ZENITH_LUMINANCE,
+        /// The reflectance of the ground.
+        ground_reflectance: number = GROUND_REFLECTANCE,
+        /// 1 if it is to be seen in the picture.
+        visible: choice = VISIBLE,
+    } derived {
+        /// Sine and cosine of the turn.
+        turn: Vec2 = |this: &Self| Vec2::from(this.rotation.to_radians().sin_cos()),
+        /// The sky, if it is the source.
+        sky: Sky = |this: &Self| match this.source {
+            SKY => Sky::new(
+                this.sky_type as usize,
+                [this.sun_elevation, this.sun_azimuth],
+                this.zenith_luminance,
+                this.ground_reflectance,
+            ),
+            _ => Sky::default(),
+        },
+    }
+}
+
+impl Environment {
+    /// A direction of the room in the environment before its turn.
+    fn turned_back(&self, d: Vec3) -> Vec3 {
+        let [sine, cosine] = self.turn.to_array();
+        Vec3::new(d.x * cosine - d.z * sine, d.y, d.x * sine + d.z * cosine)
+    }
+
+    /// A direction of the environment in the room.
+    fn turned(&self, d: Vec3) -> Vec3 {
+        let [sine, cosine] = self.turn.to_array();
+        Vec3::new(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine)
+    }
+
+    /// The luminance of a direction, and the density at which it is sampled.
+    fn at(&self, d: Vec3) -> (f32, f32) {
+        match self.source {
+            STUDIO => studio::seen(d),
+            SKY => self.sky.seen(d),
+            _ => (1.0, 1.0 / (4.0 * PI)),
+        }
+    }
+}
+
+impl LightType for Environment {
+    const DECLARATION: Declaration =
+        Declaration::new("environment", "Environment", wgsl!("light/environment.wgsl"))
+            .summary("Light from all around: the same everywhere, a studio, or a sky.")
+            .glyph("◎")
+            .factor(1.0, 10.0)
+            .with_extent()
+            .equation("I(p) = I L(l)");
+
+    const DERIVED: &'static [Parameter] = &[
+        number("turn_sine"),
+        number("turn_cosine"),
+        number("sky_a"),
+        number("sky_b"),
+        number("sky_c"),
+        number("sky_d"),
+        number("sky_e"),
+        number("sun_x"),
+        number("sun_y"),
+        number("sun_z"),
+        number("sky_scale"),
+        number("ground"),
+    ];
+
+    fn derived(&self) -> Vec<f32> {
+        let mut all = self.turn.to_array().to_vec();
+        all.extend(self.sky.coefficients);
+        all.extend(self.sky.sun.to_array());
+        all.extend([self.sky.scale, self.sky.ground]);
+        all
+    }
+
+    fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
+        let d = match self.source {
+            STUDIO => studio::sample(u),
+            SKY => self.sky.sample(u),
+            _ => sampling::sphere(u),
+        };
+        let (luminance, pdf) = self.at(d);
+        Sample { l: self.turned(d), radiance: Vec3::splat(light.intensity * luminance), pdf }
+    }
+
+    fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
+        let (luminance, pdf) = self.at(self.turned_back(l));
+        Seen { radiance: Vec3::splat(light.intensity * luminance), pdf, distance: f32::INFINITY }
+    }
+}

@@ -1,0 +1,99 @@
+use glam::{Vec2, Vec3};
+
+use super::{
+    Declaration, LightRecord, LightType,
+    extent::{self, ROLL, SMALLEST, Sample, Seen, TWO_SIDED, VISIBLE},
+};
+use crate::{optics::sampling::SphericalRectangle, parameter::Parameter, parameters, shader::wgsl};
+
+const WIDTH: Parameter = Parameter::number("width", SMALLEST..=100.0, 2.0)
+    .symbol("w")
+    .unit("m")
+    .help("The length of its horizontal sides, as long as it is not turned.");
+
+const HEIGHT: Parameter = Parameter::number("height", SMALLEST..=100.0, 1.0)
+    .symbol("h")
+    .unit("m")
+    .help("The length of its other sides, which point up as nearly as its direction allows.");
+
+parameters! {
+    /// **Rectangle**: a window, a softbox; the same luminance L, cd/m², from every point of it in every direction to its front.
+    /// Its luminous flux is `Φ = π w h L` lumen, twice that if both sides shine.
+    pub struct Rectangle {
+        /// Its width, metres.
+        width: number = WIDTH,
+        /// Its height, metres.
+        height: number = HEIGHT,
+        /// The turn about its direction, degrees.
+        roll: number = ROLL,
+        /// 1 if it shines to both sides.
+        two_sided: choice = TWO_SIDED,
+        /// 1 if it is to be seen in the picture.
+        visible: choice = VISIBLE,
+    } derived {
+        /// Sine and cosine of the turn.
+        turn: Vec2 = |this: &Self| Vec2::from(this.roll.to_radians().sin_cos()),
+    }
+}
+
+impl Rectangle {
+    fn half(&self) -> Vec2 {
+        0.5 * Vec2::new(self.width, self.height)
+    }
+
+    /// The rectangle as seen from a point.
+    fn from(&self, light: &LightRecord, p: Vec3) -> SphericalRectangle {
+        SphericalRectangle::new(light.position - p, extent::sides(light.direction, self.turn), self.half())
+    }
+}
+
+impl LightType for Rectangle {
+    const DECLARATION: Declaration = Declaration::new(
+        "rectangle",
+        "Rectangle",
+        wgsl!("light/rectangle.wgsl"),
+    )
+    .summary("A window or a softbox: a rectangle that is equally bright everywhere and in every direction.")
+    .glyph("▭")
+    .at_position()
+    .with_direction()
+    .luminance(10.0, 100.0)
+    .equation("I(p) = L");
+
+    const DERIVED: &'static [Parameter] = &[extent::number("roll_sine"), extent::number("roll_cosine")];
+
+    fn derived(&self) -> Vec<f32> {
+        self.turn.to_array().to_vec()
+    }
+
+    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+        let seen = self.from(light, p);
+        let at = seen.sample(u);
+        let l = at.normalize_or_zero();
+        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
+            return Sample::default();
+        }
+        Sample { l, radiance: Vec3::splat(light.intensity), pdf: seen.pdf(at) }
+    }
+
+    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
+        let facing = -l.dot(light.direction);
+        if !extent::shines(facing, self.two_sided == 1) {
+            return Seen::NOTHING;
+        }
+        let middle = light.position - p;
+        let distance = middle.dot(light.direction) / -facing;
+        let beside = l * distance - middle;
+        let [x, y] = extent::sides(light.direction, self.turn);
+        let half = self.half();
+        if !(distance > 0.0) || beside.dot(x).abs() > half.x || beside.dot(y).abs() > half.y {
+            return Seen::NOTHING;
+        }
+        let pdf = self.from(light, p).pdf(l * distance);
+        Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
+    }
+
+    fn solid_angle(&self) -> Option<f64> {
+        Some(extent::flux(f64::from(self.width) * f64::from(self.height), self.two_sided == 1))
+    }
+}

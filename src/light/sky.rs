@@ -1,0 +1,136 @@
+//! The CIE general sky: CIE S 011 / ISO 15469 (2004), *Spatial Distribution of Daylight, CIE Standard General Sky*, with the sun
+//! itself left out, over a ground that scatters evenly.
+
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use crate::optics::sampling;
+
+/// The names of the types in scenes, and in the window.
+pub(super) const TYPES: [(&str, &str); 15] = [
+    ("1", "1 overcast, steep"),
+    ("2", "2 overcast, steep, brighter near the sun"),
+    ("3", "3 overcast"),
+    ("4", "4 overcast, brighter near the sun"),
+    ("5", "5 uniform"),
+    ("6", "6 partly cloudy, little brighter near the sun"),
+    ("7", "7 partly cloudy, brighter near the sun"),
+    ("8", "8 partly cloudy, distinct corona"),
+    ("9", "9 partly cloudy, sun hidden"),
+    ("10", "10 partly cloudy, sun bright"),
+    ("11", "11 white-blue, distinct corona"),
+    ("12", "12 clear"),
+    ("13", "13 clear, polluted air"),
+    ("14", "14 cloudless, turbid"),
+    ("15", "15 white-blue, turbid, wide corona"),
+];
+
+/// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of the types.
+const COEFFICIENTS: [[f32; 5]; 15] = [
+    [4.0, -0.7, 0.0, -1.0, 0.0],
+    [4.0, -0.7, 2.0, -1.5, 0.15],
+    [1.1, -0.8, 0.0, -1.0, 0.0],
+    [1.1, -0.8, 2.0, -1.5, 0.15],
+    [0.0, -1.0, 0.0, -1.0, 0.0],
+    [0.0, -1.0, 2.0, -1.5, 0.15],
+    [0.0, -1.0, 5.0, -2.5, 0.3],
+    [0.0, -1.0, 10.0, -3.0, 0.45],
+    [-1.0, -0.55, 2.0, -1.5, 0.15],
+    [-1.0, -0.55, 5.0, -2.5, 0.3],
+    [-1.0, -0.55, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 16.0, -3.0, 0.3],
+    [-1.0, -0.15, 16.0, -3.0, 0.3],
+    [-1.0, -0.15, 24.0, -2.8, 0.15],
+];
+
+/// The shares of the samples: towards the ground, around the sun, over the sky.
+const GROUND_SHARE: f32 = 0.2;
+const SUN_SHARE: f32 = 0.3;
+const SKY_SHARE: f32 = 0.5;
+
+/// The power of the cosine to the sun by which the samples around it are spread.
+const AROUND: f32 = 8.0;
+
+/// A sky.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sky {
+    /// `a` to `e` of its type.
+    pub coefficients: [f32; 5],
+    /// Unit vector to the sun.
+    pub sun: Vec3,
+    /// The luminance of the zenith over gradation and indicatrix there.
+    pub scale: f32,
+    /// The luminance of the ground, where the same everywhere.
+    pub ground: f32,
+}
+
+impl Sky {
+    /// A sky of the type with that index, with the sun's height above the horizon and its direction from −z clockwise as seen
+    /// from above, degrees; the luminance of the zenith, cd/m²; and the reflectance of the ground.
+    #[must_use]
+    pub fn new(index: usize, [elevation, azimuth]: [f32; 2], zenith: f32, reflectance: f32) -> Self {
+        let (sine, cosine) = elevation.to_radians().sin_cos();
+        let (east, north) = azimuth.to_radians().sin_cos();
+        let sun = Vec3::new(east * cosine, sine, -north * cosine);
+        let coefficients = COEFFICIENTS[index.min(COEFFICIENTS.len() - 1)];
+        let mut sky = Self { coefficients, sun, scale: 1.0, ground: 0.0 };
+        sky.scale = zenith / sky.above(Vec3::Y);
+        sky.ground = reflectance * sky.illuminance() / PI;
+        sky
+    }
+
+    /// The illuminance of the ground, lx: by the midpoint rule over squared sines and turns.
+    fn illuminance(&self) -> f32 {
+        const ROWS: u32 = 48;
+        const TURNS: u32 = 64;
+        let mut sum = 0.0;
+        for i in 0..ROWS {
+            let squared = (i as f32 + 0.5) / ROWS as f32;
+            let (sine, cosine) = (squared.sqrt(), (1.0 - squared).sqrt());
+            for j in 0..TURNS {
+                let (x, z) = (2.0 * PI * (j as f32 + 0.5) / TURNS as f32).sin_cos();
+                sum += self.above(Vec3::new(sine * x, cosine, sine * z));
+            }
+        }
+        sum * PI / (ROWS * TURNS) as f32
+    }
+
+    /// The luminance of a direction above the horizon: gradation `1 + a exp(b / cos Z)` times indicatrix
+    /// `1 + c (exp(d χ) − exp(d π/2)) + e cos² χ`, Z from the zenith, χ from the sun, scaled.
+    fn above(&self, direction: Vec3) -> f32 {
+        let [a, b, c, d, e] = self.coefficients;
+        let gradation = 1.0 + a * (b / direction.y.max(0.01)).exp();
+        let cosine = direction.dot(self.sun).clamp(-1.0, 1.0);
+        let chi = sampling::arc_cosine(cosine);
+        let indicatrix = 1.0 + c * ((d * chi).exp() - (0.5 * d * PI).exp()) + e * cosine * cosine;
+        self.scale * gradation * indicatrix
+    }
+
+    /// The luminance of a direction, and the density at which it is sampled.
+    #[must_use]
+    pub fn seen(&self, direction: Vec3) -> (f32, f32) {
+        let around = direction.dot(self.sun).max(0.0).powf(AROUND) * (AROUND + 1.0);
+        let (luminance, share) =
+            if direction.y > 0.0 { (self.above(direction), SKY_SHARE) } else { (self.ground, GROUND_SHARE) };
+        (luminance, (share + SUN_SHARE * around) / (2.0 * PI))
+    }
+
+    /// A direction for a point of the unit square.
+    #[must_use]
+    pub fn sample(&self, u: Vec2) -> Vec3 {
+        if u.x < GROUND_SHARE {
+            let d = sampling::cone(Vec2::new(u.x / GROUND_SHARE, u.y), 1.0);
+            return Vec3::new(d.x, -d.z, d.y);
+        }
+        let x = u.x - GROUND_SHARE;
+        if x < SUN_SHARE {
+            let cosine = (x / SUN_SHARE).powf(1.0 / (AROUND + 1.0));
+            let d = sampling::cone(Vec2::new(1.0 - cosine, u.y), 1.0);
+            return sampling::about(self.sun, d);
+        }
+        let d = sampling::cone(Vec2::new((x - SUN_SHARE) / SKY_SHARE, u.y), 1.0);
+        Vec3::new(d.x, d.z, d.y)
+    }
+}

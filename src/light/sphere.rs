@@ -1,0 +1,69 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Declaration, LightRecord, LightType,
+    disc::RADIUS,
+    extent::{self, Sample, Seen, VISIBLE},
+};
+use crate::{optics::sampling, parameters, shader::wgsl};
+
+parameters! {
+    /// **Sphere**: a globe lamp; the same luminance L, cd/m², from every point of it. Its luminous flux is `Φ = 4π² r² L` lumen. A
+    /// point within it gets no light.
+    pub struct Sphere {
+        /// Its radius, metres.
+        radius: number = RADIUS,
+        /// 1 if it is to be seen in the picture.
+        visible: choice = VISIBLE,
+    }
+}
+
+impl Sphere {
+    /// The sphere as seen from a point outside: the direction and the distance of its middle, the squared sine of its angular
+    /// radius, and 1 minus the cosine of it.
+    fn from(&self, light: &LightRecord, p: Vec3) -> Option<(Vec3, f32, f32, f32)> {
+        let middle = light.position - p;
+        let distance = middle.length();
+        if !(distance > self.radius) {
+            return None;
+        }
+        let sine = self.radius / distance;
+        let squared = sine * sine;
+        let rise = squared / (1.0 + ((1.0 - sine) * (1.0 + sine)).sqrt());
+        (rise > 0.0).then(|| (middle / distance, distance, squared, rise))
+    }
+}
+
+impl LightType for Sphere {
+    const DECLARATION: Declaration = Declaration::new("sphere", "Sphere", wgsl!("light/sphere.wgsl"))
+        .summary("A globe lamp: a sphere that is equally bright everywhere.")
+        .glyph("◯")
+        .at_position()
+        .luminance(10.0, 100.0)
+        .equation("I(p) = L");
+
+    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+        let Some((axis, _, _, rise)) = self.from(light, p) else { return Sample::default() };
+        let l = sampling::about(axis, sampling::cone(u, rise));
+        Sample { l, radiance: Vec3::splat(light.intensity), pdf: 1.0 / (2.0 * PI * rise) }
+    }
+
+    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
+        let Some((axis, distance, squared, rise)) = self.from(light, p) else { return Seen::NOTHING };
+        let cosine = axis.dot(l);
+        // The squared sine of the angle to the middle: from the cosine, small ones would lose their digits.
+        let off = axis.cross(l).length_squared();
+        if cosine <= 0.0 || off > squared {
+            return Seen::NOTHING;
+        }
+        let distance = distance * (cosine - (squared - off).sqrt());
+        Seen { radiance: Vec3::splat(light.intensity), pdf: 1.0 / (2.0 * PI * rise), distance }
+    }
+
+    fn solid_angle(&self) -> Option<f64> {
+        let radius = f64::from(self.radius);
+        Some(extent::flux(4.0 * std::f64::consts::PI * radius * radius, false))
+    }
+}

@@ -1,0 +1,79 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Declaration, LightRecord, LightType,
+    extent::{Sample, Seen, VISIBLE, number},
+};
+use crate::{
+    optics::sampling,
+    parameter::{Parameter, ParameterKind},
+    parameters,
+    shader::wgsl,
+};
+
+const DIAMETER: Parameter = Parameter {
+    name: "diameter",
+    symbol: "δ",
+    label: "diameter",
+    unit: "°",
+    help: "The angle that it fills; the sun as seen from the earth fills 0.53°.",
+    kind: ParameterKind::Number { min: 0.01, max: 90.0, default: 0.53 },
+    used_when: None,
+};
+
+parameters! {
+    /// **Sun**: a disc infinitely far away; E lux on a surface that faces it, so its luminance is `L = E / (π sin²(δ/2))`.
+    pub struct Sun {
+        /// The angle that it fills, degrees.
+        diameter: number = DIAMETER,
+        /// 1 if it is to be seen in the picture.
+        visible: choice = VISIBLE,
+    } derived {
+        /// The squared sine of its angular radius.
+        sine_squared: f32 = |sun: &Self| sun.radius().sin().powi(2),
+        /// 1 minus the cosine of its angular radius.
+        rise: f32 = |sun: &Self| 2.0 * (0.5 * sun.radius()).sin().powi(2),
+    }
+}
+
+impl Sun {
+    fn radius(&self) -> f32 {
+        0.5 * self.diameter.to_radians()
+    }
+
+    fn luminance(&self, light: &LightRecord) -> Vec3 {
+        Vec3::splat(light.intensity / (PI * self.sine_squared))
+    }
+}
+
+impl LightType for Sun {
+    const DECLARATION: Declaration = Declaration::new("sun", "Sun", wgsl!("light/sun.wgsl"))
+        .summary("A disc infinitely far away, as the sun is: a directional light with extent.")
+        .glyph("☀")
+        .with_direction()
+        .lux(1.0, 10.0)
+        .with_extent()
+        .equation("I(p) = I / (π sin(δ/2)^2)");
+
+    const DERIVED: &'static [Parameter] = &[number("sine_squared"), number("rise")];
+
+    fn derived(&self) -> Vec<f32> {
+        vec![self.sine_squared, self.rise]
+    }
+
+    fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
+        let l = sampling::about(-light.direction, sampling::cone(u, self.rise));
+        Sample { l, radiance: self.luminance(light), pdf: 1.0 / (2.0 * PI * self.rise) }
+    }
+
+    fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
+        // By the sine: from the cosine, small angles would lose their digits.
+        if light.direction.dot(l) >= 0.0 || light.direction.cross(l).length_squared() > self.sine_squared {
+            return Seen::NOTHING;
+        }
+        let pdf = 1.0 / (2.0 * PI * self.rise);
+        Seen { radiance: self.luminance(light), pdf, distance: f32::INFINITY }
+    }
+}

@@ -1,0 +1,364 @@
+//! The lobes of a model: the directions from which it reflects most, for sampling.
+//!
+//! They change how soon a picture under light with extent is free of noise, never what it becomes.
+
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::sampling;
+
+/// The most lobes of a model.
+pub const MAX_LOBES: usize = 3;
+
+/// The smallest width of a GGX lobe, and the largest exponent, that are sampled.
+const NARROWEST: f32 = 1e-3;
+const STEEPEST: f32 = 1e6;
+
+/// A distribution of directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// By the cosine to the normal.
+    Cosine,
+    /// Mirrored in facets whose normals are those that the viewer sees of a GGX surface of these widths along tangent and
+    /// bitangent: E. Heitz (2018), *Sampling the GGX Distribution of Visible Normals*; J. Dupuy, A. Benyoub (2023), *Sampling
+    /// Visible GGX Normals with Spherical Caps*.
+    Ggx {
+        /// Along the tangent.
+        alpha_x: f32,
+        /// Along the bitangent.
+        alpha_y: f32,
+    },
+    /// By a power of the cosine to the mirror direction of the viewer.
+    Power {
+        /// The power.
+        exponent: f32,
+    },
+}
+
+/// The lobes of a model and their shares of the samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lobes([(Lobe, f32); MAX_LOBES]);
+
+impl Default for Lobes {
+    /// Cosine and one wide GGX: right for every model, if not fast for those that shine.
+    fn default() -> Self {
+        Self::new(&[(Lobe::Cosine, 0.5), (Lobe::ggx(0.4), 0.5)])
+    }
+}
+
+impl Lobe {
+    /// A GGX lobe that is as wide in all directions.
+    #[must_use]
+    pub fn ggx(alpha: f32) -> Self {
+        Self::Ggx { alpha_x: alpha, alpha_y: alpha }
+    }
+
+    /// A GGX lobe about as wide as that of half vectors by the power of a cosine: `α² = 2/(n + 2)` (B. Walter et al. 2007).
+    #[must_use]
+    pub fn of_half_vectors(exponent: f32) -> Self {
+        Self::ggx((2.0 / (exponent.max(0.0) + 2.0)).sqrt())
+    }
+
+    /// As shaders have it: its kind, its numbers.
+    fn row(self) -> [f32; 3] {
+        match self {
+            Self::Cosine => [0.0, 0.0, 0.0],
+            Self::Ggx { alpha_x, alpha_y } => [1.0, alpha_x, alpha_y],
+            Self::Power { exponent } => [2.0, exponent, 0.0],
+        }
+    }
+
+    /// The same within the limits of arithmetic.
+    fn clamped(self) -> Self {
+        let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
+        match self {
+            Self::Cosine => self,
+            Self::Ggx { alpha_x, alpha_y } => Self::Ggx { alpha_x: width(alpha_x), alpha_y: width(alpha_y) },
+            Self::Power { exponent } => {
+                Self::Power { exponent: if exponent >= 0.0 { exponent.min(STEEPEST) } else { 0.0 } }
+            }
+        }
+    }
+
+    /// A direction in the local frame (normal z, tangent x).
+    fn sample(self, u: Vec2, v: Vec3) -> Vec3 {
+        match self {
+            Self::Cosine => sampling::cosine(u),
+            Self::Ggx { alpha_x, alpha_y } => {
+                let wide = Vec3::new(v.x * alpha_x, v.y * alpha_y, v.z).normalize();
+                let phi = 2.0 * PI * u.x;
+                let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
+                let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+                let cap = Vec3::new(sine * phi.cos(), sine * phi.sin(), z) + wide;
+                let h = Vec3::new(cap.x * alpha_x, cap.y * alpha_y, cap.z.max(0.0)).normalize_or_zero();
+                2.0 * v.dot(h) * h - v
+            }
+            Self::Power { exponent } => {
+                let cosine = u.x.powf(1.0 / (exponent + 1.0));
+                let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+                let phi = 2.0 * PI * u.y;
+                let local = Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine);
+                sampling::about(Vec3::new(-v.x, -v.y, v.z), local)
+            }
+        }
+    }
+
+    /// The density per solid angle of a direction in the local frame.
+    fn pdf(self, l: Vec3, v: Vec3) -> f32 {
+        match self {
+            Self::Cosine => l.z.max(0.0) / PI,
+            Self::Ggx { alpha_x, alpha_y } => {
+                let sum = l + v;
+                let squared = sum.length_squared();
+                if sum.z <= 0.0 || squared <= 0.0 {
+                    return 0.0;
+                }
+                // D(h) G₁(v) / (4 N·V), with G₁/(N·V) = 2/(N·V + √(…)).
+                let stretched = (sum.x / alpha_x).powi(2) + (sum.y / alpha_y).powi(2) + sum.z * sum.z;
+                let d = squared * squared / (PI * alpha_x * alpha_y * stretched * stretched);
+                let seen = ((alpha_x * v.x).powi(2) + (alpha_y * v.y).powi(2) + v.z * v.z).sqrt();
+                d / (2.0 * (v.z + seen))
+            }
+            Self::Power { exponent } => {
+                let cosine = (v.z * l.z - v.x * l.x - v.y * l.y).min(1.0);
+                if cosine <= 0.0 {
+                    return 0.0;
+                }
+                (exponent + 1.0) / (2.0 * PI) * cosine.powf(exponent)
+            }
+        }
+    }
+}
+
+impl Lobes {
+    /// Some lobes, at most [`MAX_LOBES`], with weights of any sum: the brighter, the more. Weights that are negative or no
+    /// numbers count as zero; without any, the default.
+    #[must_use]
+    pub fn new(lobes: &[(Lobe, f32)]) -> Self {
+        let mut out = [(Lobe::Cosine, 0.0); MAX_LOBES];
+        let mut sum = 0.0;
+        for (to, (lobe, weight)) in out.iter_mut().zip(lobes) {
+            let weight = if *weight > 0.0 { weight.min(1e6) } else { 0.0 };
+            *to = (lobe.clamped(), weight);
+            sum += weight;
+        }
+        if sum <= 0.0 {
+            return Self::default();
+        }
+        out.iter_mut().for_each(|(_, share)| *share /= sum);
+        Self(out)
+    }
+
+    /// The cosine alone, for checks.
+    #[must_use]
+    pub fn cosine() -> Self {
+        Self::new(&[(Lobe::Cosine, 1.0)])
+    }
+
+    /// One diffuse and one specular lobe with the reflectances of both. Neither gets less than a tenth of the samples, so that
+    /// no direction is missed where the other is dark.
+    #[must_use]
+    pub fn diffuse_and(specular: Lobe, diffuse: f32, reflectance: f32) -> Self {
+        let share = if diffuse + reflectance > 0.0 { reflectance / (diffuse + reflectance) } else { 0.5 };
+        let share = share.clamp(0.1, 0.9);
+        Self::new(&[(Lobe::Cosine, 1.0 - share), (specular, share)])
+    }
+
+    /// The lobes with their shares, of which the sum is 1.
+    #[must_use]
+    pub fn all(&self) -> &[(Lobe, f32); MAX_LOBES] {
+        &self.0
+    }
+
+    /// As shaders have them: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its share.
+    #[must_use]
+    pub fn rows(&self) -> [Vec4; MAX_LOBES] {
+        self.0.map(|(lobe, share)| {
+            let [kind, a, b] = lobe.row();
+            Vec4::new(kind, a, b, share)
+        })
+    }
+
+    /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may lie below the surface.
+    #[must_use]
+    pub fn sample(&self, u: Vec2, v: Vec3) -> Vec3 {
+        let v = above(v);
+        let mut x = u.x;
+        for (i, (lobe, share)) in self.0.iter().enumerate() {
+            if x < *share || i + 1 == MAX_LOBES {
+                // The rest of the number is as evenly spread as the whole.
+                let rest = if *share > 0.0 { (x / share).min(BELOW_ONE) } else { 0.5 };
+                return lobe.sample(Vec2::new(rest, u.y), v);
+            }
+            x -= share;
+        }
+        Vec3::Z
+    }
+
+    /// The density per solid angle at which [`sample`](Self::sample) gives a direction.
+    #[must_use]
+    pub fn pdf(&self, l: Vec3, v: Vec3) -> f32 {
+        let v = above(v);
+        self.0.iter().filter(|(_, share)| *share > 0.0).map(|(lobe, share)| share * lobe.pdf(l, v)).sum()
+    }
+}
+
+/// The largest number below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// A viewer above the surface: at the horizon, rounding may have put it below.
+fn above(v: Vec3) -> Vec3 {
+    if v.z >= 1e-4 { v } else { Vec3::new(v.x, v.y, 1e-4).normalize() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{geometry::direction, sequence::Sequence};
+
+    fn all() -> [Lobes; 8] {
+        [
+            Lobes::cosine(),
+            Lobes::default(),
+            Lobes::new(&[(Lobe::ggx(0.1), 1.0)]),
+            Lobes::new(&[(Lobe::Ggx { alpha_x: 0.5, alpha_y: 0.15 }, 1.0)]),
+            Lobes::new(&[(Lobe::ggx(1.0), 1.0)]),
+            Lobes::new(&[(Lobe::Power { exponent: 20.0 }, 1.0)]),
+            Lobes::new(&[(Lobe::Power { exponent: 0.0 }, 1.0)]),
+            Lobes::new(&[(Lobe::Cosine, 1.0), (Lobe::ggx(0.3), 2.0), (Lobe::Power { exponent: 50.0 }, 1.0)]),
+        ]
+    }
+
+    const VIEWS: [(f64, f64); 4] = [(0.0, 0.0), (40.0, 70.0), (75.0, 200.0), (89.0, 10.0)];
+
+    /// Chi-squared of samples against a density, over boxes of equal solid angle, and the number of boxes that count. The
+    /// density of a box is the mean over its inner points.
+    fn chi_squared(sample: impl Fn(Vec2) -> Vec3, pdf: impl Fn(Vec3) -> f32) -> (f64, f64) {
+        const ROWS: usize = 32;
+        const COLUMNS: usize = 64;
+        const FINE: usize = 12;
+        let count = 1 << 17;
+        let mut found = vec![0.0f64; ROWS * COLUMNS];
+        for i in 0..count {
+            // Plain random numbers, as those of a sequence are spread too evenly for the test.
+            let random = |k: u32| (crate::optics::sequence::hash(2 * i + k) >> 8) as f32 / (1 << 24) as f32;
+            let l = sample(Vec2::new(random(0), random(1)));
+            let row = ((0.5 + 0.5 * l.z) * ROWS as f32).clamp(0.0, ROWS as f32 - 1.0) as usize;
+            let turn = (l.y.atan2(l.x) / (2.0 * PI)).rem_euclid(1.0);
+            let column = ((turn * COLUMNS as f32) as usize).min(COLUMNS - 1);
+            found[row * COLUMNS + column] += 1.0;
+        }
+        let (mut sum, mut boxes, mut rest) = (0.0, 0.0, [0.0; 2]);
+        for (i, found) in found.iter().enumerate() {
+            let mut mean = 0.0;
+            for j in 0..FINE * FINE {
+                let at = |k: usize, n: usize, whole: usize| {
+                    (k as f64 + (n as f64 + 0.5) / FINE as f64) / whole as f64
+                };
+                let z = 2.0 * at(i / COLUMNS, j / FINE, ROWS) - 1.0;
+                let phi = 2.0 * std::f64::consts::PI * at(i % COLUMNS, j % FINE, COLUMNS);
+                let sine = (1.0 - z * z).sqrt();
+                let l = Vec3::new((sine * phi.cos()) as f32, (sine * phi.sin()) as f32, z as f32);
+                mean += f64::from(pdf(l));
+            }
+            let solid_angle = 4.0 * std::f64::consts::PI / (ROWS * COLUMNS) as f64;
+            let expected = mean / (FINE * FINE) as f64 * solid_angle * f64::from(count);
+            // Boxes of few samples count together.
+            if expected < 20.0 {
+                rest[0] += found;
+                rest[1] += expected;
+            } else {
+                sum += (found - expected).powi(2) / expected;
+                boxes += 1.0;
+            }
+        }
+        if rest[1] > 20.0 {
+            sum += (rest[0] - rest[1]).powi(2) / rest[1];
+            boxes += 1.0;
+        }
+        (sum, boxes)
+    }
+
+    /// True if chi-squared is what chance gives, or the little more of narrow lobes whose boxes the mean of points misses.
+    fn passes((sum, boxes): (f64, f64)) -> bool {
+        sum < boxes + 6.0 * (2.0 * boxes).sqrt() + 10.0
+    }
+
+    #[test]
+    fn samples_of_all_lobes_have_their_density() {
+        for (i, lobes) in all().into_iter().enumerate() {
+            for (theta, phi) in VIEWS {
+                let v = direction(theta, phi);
+                let found = chi_squared(|u| lobes.sample(u, v), |l| lobes.pdf(l, v));
+                assert!(passes(found), "{i} from {theta}°: {found:?}");
+                // Wrong twins: half the width, another share, a missing cosine.
+                let wrong = match lobes.0[0].0 {
+                    Lobe::Cosine => Lobes::new(&[(Lobe::Power { exponent: 0.0 }, 1.0)]),
+                    Lobe::Ggx { alpha_x, alpha_y } => {
+                        Lobes::new(&[(Lobe::Ggx { alpha_x: 0.8 * alpha_x, alpha_y: 0.8 * alpha_y }, 1.0)])
+                    }
+                    Lobe::Power { exponent } => {
+                        Lobes::new(&[(Lobe::Power { exponent: exponent + 2.0 }, 1.0)])
+                    }
+                };
+                let found = chi_squared(|u| lobes.sample(u, v), |l| wrong.pdf(l, v));
+                assert!(!passes(found), "wrong twin of {i} from {theta}°: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn weighted_by_their_density_samples_integrate_anything() {
+        // ∫ cos θ dω over the hemisphere is π, by whatever lobe that reaches all of it.
+        for lobes in [Lobes::cosine(), Lobes::default(), all()[7]] {
+            for (theta, phi) in VIEWS {
+                let v = direction(theta, phi);
+                let sequence = Sequence::new(5, 0);
+                let count = 1 << 14;
+                let sum: f64 = (0..count)
+                    .map(|i| {
+                        let l = lobes.sample(sequence.point(i), v);
+                        f64::from(l.z.max(0.0)) / f64::from(lobes.pdf(l, v))
+                    })
+                    .sum();
+                assert!(
+                    (sum / f64::from(count) / std::f64::consts::PI - 1.0).abs() < 1e-2,
+                    "{lobes:?} {theta}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn hostile_numbers_give_finite_directions_and_densities() {
+        let odd = [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30];
+        for a in odd {
+            for b in odd {
+                let lobes = Lobes::new(&[
+                    (Lobe::Ggx { alpha_x: a, alpha_y: b }, 1.0),
+                    (Lobe::Power { exponent: a }, b),
+                    (Lobe::Cosine, a),
+                ]);
+                let sum: f32 = lobes.all().iter().map(|(_, share)| share).sum();
+                assert!((sum - 1.0).abs() < 1e-5);
+                for v in [Vec3::Z, Vec3::X, Vec3::NEG_Z, Vec3::new(0.6, 0.0, 0.8)] {
+                    for u in [Vec2::ZERO, Vec2::splat(0.5), Vec2::splat(BELOW_ONE)] {
+                        let l = lobes.sample(u, v);
+                        assert!(l.is_finite() && lobes.pdf(l, v).is_finite(), "{a} {b} {v} {u}");
+                    }
+                }
+            }
+        }
+        assert_eq!(Lobes::new(&[]), Lobes::default());
+        assert_eq!(Lobes::new(&[(Lobe::Cosine, 0.0)]), Lobes::default());
+    }
+
+    #[test]
+    fn no_direction_is_missed_where_one_part_is_dark() {
+        for (diffuse, specular) in [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)] {
+            let lobes = Lobes::diffuse_and(Lobe::ggx(0.1), diffuse, specular);
+            assert!(lobes.all()[..2].iter().all(|(_, share)| *share > 0.09));
+        }
+    }
+}

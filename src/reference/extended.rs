@@ -1,0 +1,425 @@
+//! Light with extent at a point: the integral of a model's answer over the directions that lights fill, by samples of the
+//! lights and of the model's lobes, each weighted by the power heuristic (E. Veach, L. Guibas 1995).
+
+use glam::Vec3;
+
+use crate::{
+    light::{
+        Emitters,
+        extent::{BLOCK, Directions, Sample},
+    },
+    optics::{
+        Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sampling::power_heuristic,
+        sequence::Sequence,
+    },
+    reflection::Surface,
+};
+
+/// The samples that are taken of each light with extent, and of the model's lobes: a part of a sequence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightSamples {
+    /// The number of the first.
+    pub first: u32,
+    /// How many there are, at least one.
+    pub count: u32,
+}
+
+impl LightSamples {
+    /// The samples of a picture unless something else is said.
+    pub const DEFAULT: u32 = 256;
+
+    /// The first so many.
+    #[must_use]
+    pub const fn of(count: u32) -> Self {
+        Self { first: 0, count }
+    }
+}
+
+impl Default for LightSamples {
+    fn default() -> Self {
+        Self::of(Self::DEFAULT)
+    }
+}
+
+/// The lights with extent of a scene.
+#[derive(Default)]
+pub(super) struct Extended {
+    /// Neighbours of one type, and the number of the first among the lights that shine.
+    groups: Vec<(Box<dyn Emitters>, u32)>,
+    pub(super) samples: LightSamples,
+}
+
+/// The integral of a model's answer over a light, with red, green and blue of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Integral {
+    /// The answer by term, times the radiance.
+    pub(crate) terms: Terms,
+    /// The standard error of the sum of the terms.
+    pub(crate) error: Vec3,
+    /// The number of samples of the light, and as many of the lobes.
+    pub(crate) samples: u32,
+}
+
+/// A direction and what arrives from there, over its density.
+type Take<'a> = dyn FnMut(&[Arriving]) + 'a;
+
+impl Extended {
+    /// Adds lights of one type.
+    pub(super) fn add(&mut self, group: Box<dyn Emitters>, first: u32) {
+        self.groups.push((group, first));
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.groups.is_empty()
+    }
+
+    /// The sum over the lights.
+    pub(super) fn sum(
+        &self,
+        surface: &dyn Surface,
+        p: Vec3,
+        v: Vec3,
+        frame: &Frame,
+        terms: TermSelection,
+        seed: u32,
+    ) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        let at = At::new(surface.lobes(), p, v, frame, seed);
+        let LightSamples { first, count } = self.samples;
+        let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
+        for start in (0..count).step_by(BLOCK) {
+            self.block(&at, first.wrapping_add(start), (count - start).min(BLOCK as u32) as usize, &mut take);
+        }
+        sum / count.max(1) as f32
+    }
+
+    /// The integral over the lights by term, with its standard error from parts of the samples.
+    pub(super) fn integral(
+        &self,
+        surface: &dyn Surface,
+        p: Vec3,
+        v: Vec3,
+        frame: &Frame,
+        seed: u32,
+    ) -> Integral {
+        /// The parts: independently scrambled sequences of a sixteenth of the samples each.
+        const PARTS: u32 = 16;
+        let count = self.samples.count;
+        let answer = |at: &At, first: u32, count: u32| {
+            let mut terms = Terms::default();
+            let mut take = |arriving: &[Arriving]| {
+                for Arriving { l, light } in arriving {
+                    let answer = surface.response(*l, v, frame);
+                    terms.ambient += answer.ambient * *light;
+                    terms.diffuse += answer.diffuse * *light;
+                    terms.specular += answer.specular * *light;
+                }
+            };
+            for start in (0..count).step_by(BLOCK) {
+                self.block(at, first + start, (count - start).min(BLOCK as u32) as usize, &mut take);
+            }
+            let share = 1.0 / count.max(1) as f32;
+            Terms {
+                ambient: terms.ambient * share,
+                diffuse: terms.diffuse * share,
+                specular: terms.specular * share,
+            }
+        };
+        let whole = answer(&At::new(surface.lobes(), p, v, frame, seed), self.samples.first, count);
+        let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+        for part in 0..PARTS {
+            let at = At::new(surface.lobes(), p, v, frame, seed ^ (part + 1) << 26);
+            let x = answer(&at, 0, (count / PARTS).max(1)).select(TermSelection::All);
+            sum += x;
+            squares += x * x;
+        }
+        let n = PARTS as f32;
+        let variance = ((squares - sum * sum / n) / (n - 1.0)).max(Vec3::ZERO);
+        Integral { terms: whole, error: (variance / n).map(f32::sqrt), samples: count }
+    }
+
+    /// Hands out what arrives by some samples.
+    fn block(&self, at: &At, first: u32, count: usize, take: &mut Take) {
+        let mut arriving = [Arriving::default(); BLOCK];
+        let mut directions =
+            Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };
+        let points = |number: u32| {
+            let sequence = Sequence::new(at.seed, number);
+            std::array::from_fn(|i| sequence.point(first.wrapping_add(i as u32)))
+        };
+        for (i, u) in points(0).into_iter().enumerate().take(count) {
+            let l = at.lobes.sample(u, at.v);
+            // Models answer to light from above the surface alone.
+            if l.z > 0.0 {
+                directions.l[i] = at.frame.t * l.x + at.frame.b * l.y + at.frame.n * l.z;
+                directions.pdf[i] = at.lobes.pdf(l, at.v);
+            }
+        }
+        for (group, _) in &self.groups {
+            group.meet(at.p, &mut directions);
+        }
+        let mut n = 0;
+        for i in 0..count {
+            if directions.light[i] != Vec3::ZERO {
+                arriving[n] = Arriving { l: directions.l[i], light: directions.light[i] / directions.pdf[i] };
+                n += 1;
+            }
+        }
+        take(&arriving[..n]);
+        for (group, number) in &self.groups {
+            for light in 0..group.count() {
+                let sent = group.send(light, at.p, &points(number + light as u32 + 1));
+                let mut n = 0;
+                for Sample { l, radiance, pdf } in &sent[..count] {
+                    let local = at.frame.to_local(*l);
+                    if *pdf > 0.0 && local.z > 0.0 && *radiance != Vec3::ZERO {
+                        let weight = power_heuristic(*pdf, at.lobes.pdf(local, at.v));
+                        arriving[n] = Arriving { l: *l, light: *radiance * (weight / pdf) };
+                        n += 1;
+                    }
+                }
+                take(&arriving[..n]);
+            }
+        }
+    }
+}
+
+/// The point, the viewer and the lobes of the model there.
+struct At<'a> {
+    lobes: Lobes,
+    p: Vec3,
+    /// The direction to the viewer in the local frame.
+    v: Vec3,
+    frame: &'a Frame,
+    seed: u32,
+}
+
+impl<'a> At<'a> {
+    fn new(lobes: Lobes, p: Vec3, v: Vec3, frame: &'a Frame, seed: u32) -> Self {
+        Self { lobes, p, v: frame.to_local(v), frame, seed }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use glam::Vec2;
+
+    use super::*;
+    use crate::{
+        light::{
+            LightEntry, LightRecord, LightType,
+            extent::{Sample, Seen},
+        },
+        optics::{colour::Encoding, geometry::direction, lobes::Lobe},
+        parameter::{Value, Values},
+        parameters,
+        registry::Registry,
+    };
+
+    parameters! {
+        /// The golden values' environment of the luminance (1 + x)/π.
+        struct Slope {}
+    }
+
+    impl LightType for Slope {
+        const DECLARATION: crate::light::Declaration = crate::light::Declaration::new(
+            "slope",
+            "Slope",
+            crate::shader::Source { path: "light/slope.wgsl", text: "" },
+        )
+        .with_extent();
+
+        fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+            let l = crate::optics::sampling::sphere(u);
+            let Seen { radiance, pdf, .. } = self.seen(light, p, l);
+            Sample { l, radiance, pdf }
+        }
+
+        fn seen(&self, _light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
+            use std::f32::consts::PI;
+            Seen { radiance: Vec3::splat((1.0 + l.x) / PI), pdf: 0.25 / PI, distance: f32::INFINITY }
+        }
+    }
+
+    /// The fields of a line such as `rectangle centre=0,1,2 width=1`.
+    fn fields(text: &str) -> HashMap<&str, Vec<f32>> {
+        text.split(' ')
+            .filter_map(|word| word.split_once('='))
+            .map(|(name, numbers)| (name, numbers.split(',').filter_map(|n| n.parse().ok()).collect()))
+            .collect()
+    }
+
+    /// A light of the golden values, of luminance 1.
+    fn golden_light(text: &str) -> (LightEntry, Values, LightRecord) {
+        let registry = Registry::builtin();
+        let given = fields(text);
+        let vector = |name: &str| given.get(name).map_or(Vec3::ZERO, |v| Vec3::new(v[0], v[1], v[2]));
+        let number = |name: &str| given.get(name).map(|v| v[0]);
+        let kind = text.split(' ').next().unwrap_or_default();
+        let mut values = Values::default();
+        let mut record = LightRecord {
+            position: vector("centre"),
+            direction: (vector("normal") + vector("axis")).normalize_or_zero(),
+            colour: Vec3::ONE,
+            intensity: 1.0,
+            ..LightRecord::default()
+        };
+        for name in ["width", "height", "radius", "length"] {
+            if let Some(x) = number(name) {
+                values.set(name, Value::Number(x));
+            }
+        }
+        let id = match kind {
+            "tube" => "cylinder",
+            "environment" if text.contains("L=1/pi") => {
+                values.set("source", Value::Choice("uniform".into()));
+                record.intensity = std::f32::consts::FRAC_1_PI;
+                kind
+            }
+            "environment" => return (LightEntry::of::<Slope>(), values, record),
+            _ => kind,
+        };
+        if given.contains_key("up") {
+            // The turn that brings the height from where it points by itself to where the file has it.
+            let [x, y] = crate::light::extent::sides(record.direction, Vec2::Y);
+            let up = vector("up") - vector("up").dot(record.direction) * record.direction;
+            values.set("roll", Value::Number((-up.dot(x)).atan2(up.dot(y)).to_degrees()));
+        }
+        (*registry.light(id).expect("known"), values, record)
+    }
+
+    /// A model of the golden values.
+    fn surface(text: &str) -> std::sync::Arc<dyn Surface> {
+        let registry = Registry::builtin();
+        let given = fields(text);
+        let number = |name: &str| Value::Number(given[name][0]);
+        let white = || Value::Colour([255; 3]);
+        let choice = |name: &'static str| Value::Choice(name.into());
+        let (id, all) = match text.split(' ').next().unwrap_or_default() {
+            "lambert" => ("lambert", vec![("base_colour", white())]),
+            "oren_nayar" => (
+                "oren_nayar",
+                vec![
+                    ("base_colour", white()),
+                    ("sigma", number("sigma")),
+                    ("oren_nayar_form", choice("qualitative")),
+                ],
+            ),
+            "modified_phong" => (
+                "modified_phong",
+                vec![
+                    ("base_colour", Value::Colour([0; 3])),
+                    ("specular_colour", white()),
+                    ("k_s", Value::Number(1.0)),
+                    ("alpha", Value::Integer(given["n"][0] as i64)),
+                ],
+            ),
+            kind => {
+                let (fresnel, ior) = match (kind, given.get("f0")) {
+                    ("ggx", Some(f0)) if f0[0] == 1.0 => ("none", 1.5),
+                    ("ggx", _) => ("schlick", 1.5),
+                    _ => ("dielectric", given["ior"][0]),
+                };
+                let all = vec![
+                    ("distribution", choice(if kind == "ggx" { "ggx" } else { "beckmann" })),
+                    ("alpha_x", number("alpha")),
+                    ("alpha_y", number("alpha")),
+                    ("masking", choice("smith_height_correlated")),
+                    ("fresnel", choice(fresnel)),
+                    ("ior", Value::Triple([ior; 3])),
+                    ("diffuse", choice("none")),
+                    ("multiple_scattering", choice("none")),
+                ];
+                ("microfacet", all)
+            }
+        };
+        let model = registry.model(id).expect("known");
+        let mut values = Values::default();
+        for (name, value) in all {
+            assert!(model.parameter(name).is_some_and(|p| p.allows(&value)), "{id} {name} {value:?}");
+            values.set(name, value);
+        }
+        model.instantiate(&values, Encoding::Srgb)
+    }
+
+    /// The same surface with other lobes.
+    struct With(std::sync::Arc<dyn Surface>, Lobes);
+
+    impl Surface for With {
+        fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+            self.0.response(l, v, frame)
+        }
+        fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+            self.0.ambient_response(v, frame)
+        }
+        fn curve(&self) -> Option<crate::optics::albedo::AlbedoCurve> {
+            self.0.curve()
+        }
+        fn lobe(&self) -> Option<crate::optics::albedo::LobeAlbedo> {
+            self.0.lobe()
+        }
+        fn lobes(&self) -> Lobes {
+            self.1
+        }
+        fn readouts(&self) -> Vec<crate::reflection::Readout> {
+            Vec::new()
+        }
+    }
+
+    fn estimate(surface: &dyn Surface, light: &str, v: Vec3, count: u32) -> f32 {
+        let (entry, values, record) = golden_light(light);
+        let mut extended = Extended { samples: LightSamples::of(count), ..Extended::default() };
+        extended.add((entry.group)(&[(&values, record)], Encoding::Srgb), 0);
+        extended.sum(surface, Vec3::ZERO, v, &Frame::LOCAL, TermSelection::All, 7).x
+    }
+
+    /// Light, model, direction of the viewer, value.
+    fn golden() -> Vec<(String, String, Vec3, f64)> {
+        let text = include_str!("../../tests/data/extended_lights.csv");
+        let rows = text.lines().skip(1).map(|line| {
+            let (light, rest) = match line.strip_prefix('"') {
+                Some(quoted) => quoted.split_once("\",").expect("a quote"),
+                None => line.split_once(',').expect("a comma"),
+            };
+            let rest: Vec<_> = rest.split(',').collect();
+            let number = |i: usize| rest[i].parse::<f64>().expect("a number");
+            let v = direction(number(1), number(2));
+            (light.to_owned(), rest[0].to_owned(), v, number(3))
+        });
+        rows.collect()
+    }
+
+    fn is_near(value: f32, golden: f64) -> bool {
+        (f64::from(value) - golden).abs() < (1e-3 * golden.abs()).max(1e-5)
+    }
+
+    #[test]
+    fn integrals_are_those_of_quadrature_whatever_the_lobes() {
+        use rayon::prelude::*;
+        let rows = golden();
+        assert_eq!(rows.len(), 120);
+        let wrong: Vec<_> = rows
+            .par_iter()
+            .flat_map_iter(|(light, model, v, value)| {
+                let own = surface(model);
+                let with = |lobes| Box::new(With(own.clone(), lobes)) as Box<dyn Surface>;
+                let ways = [
+                    ("own", with(own.lobes())),
+                    ("default", with(Lobes::default())),
+                    ("cosine", with(Lobes::cosine())),
+                    (
+                        "power",
+                        with(Lobes::new(&[(Lobe::Power { exponent: 10.0 }, 1.0), (Lobe::Cosine, 1.0)])),
+                    ),
+                ];
+                ways.into_iter().filter_map(move |(name, surface)| {
+                    let found = estimate(&*surface, light, *v, 1 << 16);
+                    (!is_near(found, *value)).then(|| format!("{light}, {model}, {name}: {found} {value}"))
+                })
+            })
+            .collect();
+        assert_eq!(wrong, [""; 0], "{} of {}", wrong.len(), 4 * rows.len());
+    }
+}
