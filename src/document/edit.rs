@@ -345,9 +345,9 @@ impl Document {
                 let name = step(&label, &self.name_of(Selection::Light(i), registry));
                 self.step(name, Extent::Light(i), selection, Some(registry), |document| {
                     let room = document.scene_size;
-                    let renamed = matches!(field, LightField::Name(_));
+                    let before = document.scene.lights[i].name.clone();
                     field.put(&mut document.scene.lights[i], registry, room);
-                    if renamed {
+                    if document.scene.lights[i].name != before {
                         document.number_again(Selection::Light(i), registry);
                     }
                 });
@@ -361,9 +361,9 @@ impl Document {
                     name += &format!(": {}", object_type(id, registry));
                 }
                 self.step(name, Extent::Object(i), selection, Some(registry), |document| {
-                    let renamed = matches!(field, ObjectField::Name(_));
+                    let before = document.scene.objects[i].name.clone();
                     field.put(&mut document.scene.objects[i], registry);
-                    if renamed {
+                    if document.scene.objects[i].name != before {
                         document.number_again(Selection::Object(i), registry);
                     }
                 });

@@ -63,13 +63,19 @@ impl Cylinder {
 }
 
 impl LightType for Cylinder {
-    const DECLARATION: Declaration = Declaration::new("cylinder", "Cylinder", wgsl!("light/cylinder.wgsl"))
-        .summary("A fluorescent tube: a cylinder whose side is equally bright everywhere, and whose ends are dark.")
-        .glyph("▮")
-        .at_position()
-        .with_direction()
-        .luminance(20.0, 200.0)
-        .equation("I(p) = L");
+    const DECLARATION: Declaration = Declaration::new(
+        "cylinder",
+        "Cylinder light",
+        wgsl!("light/cylinder.wgsl"),
+    )
+    .summary(
+        "A fluorescent tube: a cylinder whose side is equally bright everywhere, and whose ends are dark.",
+    )
+    .glyph("▮")
+    .at_position()
+    .with_direction()
+    .luminance(20.0, 200.0)
+    .equation("I(p) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
         let Some(view) = self.from(light, p) else { return Sample::default() };

@@ -34,7 +34,7 @@ impl Disc {
 }
 
 impl LightType for Disc {
-    const DECLARATION: Declaration = Declaration::new("disc", "Disc", wgsl!("light/disc.wgsl"))
+    const DECLARATION: Declaration = Declaration::new("disc", "Disc light", wgsl!("light/disc.wgsl"))
         .summary("A round lamp: a disc that is equally bright everywhere and in every direction.")
         .glyph("◐")
         .at_position()

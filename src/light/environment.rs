@@ -63,7 +63,7 @@ const SUN_AZIMUTH: Parameter = of_sky(
 );
 
 const ZENITH_LUMINANCE: Parameter = of_sky(
-    Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.3)
+    Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)
         .symbol("L_z")
         .label("zenith luminance")
         .unit("cd/m²")

@@ -37,7 +37,7 @@ impl Sphere {
 }
 
 impl LightType for Sphere {
-    const DECLARATION: Declaration = Declaration::new("sphere", "Sphere", wgsl!("light/sphere.wgsl"))
+    const DECLARATION: Declaration = Declaration::new("sphere", "Sphere light", wgsl!("light/sphere.wgsl"))
         .summary("A globe lamp: a sphere that is equally bright everywhere.")
         .glyph("◯")
         .at_position()

@@ -146,7 +146,8 @@ fn lights(list: &mut Json, registry: &Registry) {
     // Types may declare the same name with other ranges.
     let shared = |p: &Parameter| parameters().any(|other| other.name == p.name && other != p);
     for p in parameters() {
-        fields[p.name] = if shared(p) { true.into() } else { parameter(p) };
+        // Each type says more of those that are shared.
+        fields[p.name] = if shared(p) { json!({ "description": p.help }) } else { parameter(p) };
     }
     let types = registry.lights().iter().map(|l| {
         let (d, has_flux) = (l.declaration, l.has_flux());

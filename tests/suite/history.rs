@@ -437,6 +437,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
         document.redo().expect("a step");
         assert!(*document == after, "redoing");
     };
+    let mut turns = 0.0;
     for from in registry.lights() {
         for to in registry.lights().iter().filter(|to| to.declaration.id != from.declaration.id) {
             for entry in [from, to] {
@@ -446,11 +447,15 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
                 edit(&mut document, LightField::Type(entry.declaration.id.to_owned()));
                 for p in entry.parameters {
                     if let ParameterKind::Number { min, .. } = p.kind {
-                        edit(&mut document, LightField::Parameter(p.name, Value::Number(min + 0.5)));
+                        // Another value than that which the type before may have left.
+                        let known = document.lights[0].parameters.number(p);
+                        let value = if known == min + 0.5 { min + 0.25 } else { min + 0.5 };
+                        edit(&mut document, LightField::Parameter(p.name, Value::Number(value)));
                     }
                 }
                 if entry.declaration.has_direction {
-                    let direction = Vec3::new(1.0, -2.0, document.done() as f32);
+                    turns += 1.0;
+                    let direction = Vec3::new(1.0, -2.0, turns);
                     edit(&mut document, LightField::Direction(direction));
                 }
             }

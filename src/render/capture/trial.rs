@@ -263,7 +263,8 @@ fn on_one_thread(app: &mut App) {
     }
 }
 
-/// Every light type shines, so that all of the light loop is drawn with.
+/// Every light type without extent shines, so that all of the light loop is drawn with. Light with extent asks the same functions
+/// of a model, hundreds of times.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     let registry = Registry::builtin();
@@ -271,6 +272,7 @@ fn scene() -> Scene {
     scene.lights = registry
         .lights()
         .iter()
+        .filter(|entry| !entry.declaration.extent)
         .map(|entry| {
             let mut light = Light { position: Some(corner * 0.8), ..lamp.clone() };
             light.direction = Some(-corner);

@@ -80,10 +80,11 @@ fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Regis
     compose(sources, model, shading, &registry.lights_in(lights))
 }
 
-/// The light types that are shown, all where nothing is.
+/// The light types that are shown; where nothing is, all that have no extent, which are compiled soon.
 fn lights_of(world: &World, registry: &Registry) -> LightSet {
     let shown = world.get_resource::<Shown>();
-    shown.map_or_else(|| registry.lights().iter().collect(), |shown| shown.light_types(registry))
+    let without = || registry.lights().iter().filter(|light| !light.declaration.extent).collect();
+    shown.map_or_else(without, |shown| shown.light_types(registry))
 }
 
 /// One shader.

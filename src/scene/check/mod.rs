@@ -622,7 +622,8 @@ mod tests {
                 "lights[1].position is given, but an ambient light has no position",
                 "lights[1].cone_angle is given, but an ambient light has no cone_angle",
                 "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \
-                 \"photometric\", \"directional\" or \"ambient\"; did you mean \"spot\"?",
+                 \"photometric\", \"directional\", \"ambient\", \"rectangle\", \"disc\", \"sphere\", \"cylinder\", \
+                 \"sun\" or \"environment\"; did you mean \"spot\"?",
             ]
         );
     }
