@@ -261,14 +261,15 @@ struct LightSample {
     pdf: f32,
 }
 
-// What a light with extent is in a direction; the distance is negative for light from infinitely far away.
+// What a light with extent is in a direction; the distance is negative for light from infinitely far away, zero where there is
+// none.
 struct LightSeen {
     radiance: vec3<f32>,
     pdf: f32,
     distance: f32,
 }
 
-const NOTHING_SEEN: LightSeen = LightSeen(vec3(0.0), 0.0, -1.0);
+const NOTHING_SEEN: LightSeen = LightSeen(vec3(0.0), 0.0, 0.0);
 
 // True if a light shines towards a point: to its front, or to both sides.
 fn light_shines(facing: f32, two_sided: u32) -> bool {

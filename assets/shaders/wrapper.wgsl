@@ -1,4 +1,4 @@
-// The one file that knows the renderer: bindings, vertex attributes, entry points.
+// What knows the renderer: bindings, vertex attributes, entry points; that of lights in the picture is seen.wgsl.
 #import bevy_pbr::mesh_functions
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
@@ -9,14 +9,6 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> illumination: Illumination;
 // The parameters of the lights one after the other, and behind them the numbers of the files that they name.
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
-
-// The largest half float; the twin of `BRIGHTEST` in src/optics/tone.rs.
-const BRIGHTEST: f32 = 65504.0;
-
-// The opacity of a pixel whose channels ask for more than an 8-bit display can show: 254 of 255, which nobody sees, but
-// which can be counted. Exactly white is not cut off, even if half floats round it.
-const CUT_OFF: f32 = 254.0 / 255.0;
-const WHITE: f32 = 1.0005;
 
 // The parameters of the object being drawn.
 var<private> parameters: Parameters;
@@ -111,14 +103,5 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
         return vec4(channel_colour(shaded, in.position, normal, face_normal, in.clip_position.xy), 1.0);
     }
     let light = shaded * illumination.exposure;
-    // Values beyond the target's half floats would become infinite, and black in tone mapping.
-    let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
-#ifdef GAMMA_NAIVE
-    // The display encodes its input; decoding first undoes that, and the numbers stay unchanged.
-    let c = clamp(linear, vec3(0.0), vec3(1.0));
-    let opacity = select(1.0, CUT_OFF, any(linear >= vec3(1.0)));
-    return vec4(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b), opacity);
-#else
-    return vec4(linear, select(1.0, CUT_OFF, any(linear > vec3(WHITE))));
-#endif
+    return displayed(light);
 }

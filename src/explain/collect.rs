@@ -69,6 +69,15 @@ impl Explain<'_> {
         }
     }
 
+    pub(super) fn light(&self, index: usize, light: &Light) -> Part {
+        Part {
+            index,
+            name: light.name.clone(),
+            id: light.light_type.clone(),
+            type_name: self.registry.light(&light.light_type).map_or("", |entry| entry.declaration.name),
+        }
+    }
+
     fn spot(&self, place: Place, point: &Point, surface: &dyn Surface) -> Spot {
         let run = light_loop(self.scene, self.registry, self.settings, surface, point);
         let lit = |by: &LitBy| Some(self.lit(self.scene.lights.get(by.index)?, by, point, &run));
@@ -94,12 +103,7 @@ impl Explain<'_> {
             Incident::Uniform { intensity } => (intensity, None),
         };
         Lit {
-            light: Part {
-                index: by.index,
-                name: light.name.clone(),
-                id: light.light_type.clone(),
-                type_name: declaration.map_or("", |d| d.name),
-            },
+            light: self.light(by.index, light),
             equation: declaration.map_or("", |d| d.equation),
             position,
             distance: position.map(|p| p.distance(point.position)),

@@ -46,7 +46,11 @@ impl Explanation {
             "size": self.size,
             "terms": self.terms.id(),
             "code": self.code(),
-            "background": self.seen.is_none(),
+            "background": self.seen.is_none() && self.lamp.is_none(),
+            "light_seen": self.lamp.as_ref().map(|lamp| json!({
+                "lights": lamp.lights.iter().map(part).collect::<Json>(),
+                "radiance": triple(lamp.radiance),
+            })),
             "seen": self.seen.as_ref().map(Seen::to_json),
             "display": {
                 "light": triple(steps.light),

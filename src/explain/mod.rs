@@ -28,6 +28,7 @@ use crate::{
         DisplaySteps, Picture, Settings,
         meshes::MeshStore,
         probe::{Probe, probe},
+        visible,
     },
     reflection::{Declaration, Surface},
     registry::Registry,
@@ -107,12 +108,23 @@ pub struct Explanation {
     pub size: [u32; 2],
     /// The terms of the equation that are shown.
     pub terms: TermSelection,
-    /// The object at the pixel's centre; none where there is only background.
+    /// The object at the pixel's centre; none where there is only background, or a light.
     pub seen: Option<Seen>,
+    /// The light with extent that is seen at the pixel's centre instead, if there is one.
+    pub lamp: Option<Lamp>,
     /// The settings of the way to the display.
     pub display: Display,
     /// That way, ending at the code.
     pub steps: DisplaySteps,
+}
+
+/// Light with extent that is itself seen at a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lamp {
+    /// The light, or several that are infinitely far away.
+    pub lights: Vec<Part>,
+    /// Their radiance, cd/m².
+    pub radiance: Vec3,
 }
 
 /// A part of the scene.
@@ -418,6 +430,13 @@ fn explained(
     let size = [settings.width, settings.height];
     inside(pixel, size)?;
     let found = probe(meshes, scene, registry, settings, pixel);
+    let explain = Explain { scene, registry, settings };
+    let beyond = found.as_ref().map(|found| found.varying.position);
+    if let Some(shown) = visible::in_front(scene, registry, settings, pixel, beyond) {
+        let lights = shown.lights.iter().filter_map(|i| Some(explain.light(*i, scene.lights.get(*i)?)));
+        let lamp = Lamp { lights: lights.collect(), radiance: shown.radiance };
+        return Ok(explained_as(&explain, pixel, None, Some(lamp), shown.radiance.extend(1.0)));
+    }
     Ok(explanation(scene, registry, settings, pixel, found))
 }
 
@@ -429,13 +448,26 @@ fn explanation(
     pixel: [u32; 2],
     found: Option<Probe>,
 ) -> Explanation {
-    let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
     let explain = Explain { scene, registry, settings };
+    let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
+    explained_as(&explain, pixel, found, None, light)
+}
+
+/// The explanation of what is seen at a pixel, and its light.
+fn explained_as(
+    explain: &Explain,
+    pixel: [u32; 2],
+    found: Option<Probe>,
+    lamp: Option<Lamp>,
+    light: Vec4,
+) -> Explanation {
+    let Explain { scene, settings, .. } = explain;
     Explanation {
         pixel,
         size: [settings.width, settings.height],
         terms: settings.terms,
         seen: found.and_then(|found| explain.seen(found)),
+        lamp,
         display: scene.display,
         steps: Picture::display_steps(light, &scene.display),
     }

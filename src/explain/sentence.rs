@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{Explanation, Place, Seen};
+use super::{Explanation, Lamp, Place, Seen};
 use crate::optics::{TermSelection, colour::luminance};
 
 /// Above this part, a term gives all of the light of a lamp.
@@ -117,6 +117,13 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
 #[must_use]
 pub fn sentence(explanation: &Explanation, subject: &str, name: &dyn Fn(usize) -> String) -> String {
     let [r, g, b] = explanation.code();
+    if let Some(Lamp { lights, .. }) = &explanation.lamp {
+        let names: Vec<_> = lights.iter().map(|light| name(light.index)).collect();
+        return format!(
+            "{subject} ({r}, {g}, {b}): no object is here; {} itself is seen.",
+            names.join(" with ")
+        );
+    }
     let Some(seen) = &explanation.seen else {
         return format!("{subject} ({r}, {g}, {b}): no object is here, and the background shows.");
     };

@@ -69,7 +69,8 @@ impl Explanation {
         out.heading(&format!("View {a} beside view {b}"));
         for (name, explained) in [(a, self), (b, other)] {
             let [red, green, blue] = explained.code();
-            let model = explained.seen.as_ref().map_or("background", |seen| seen.model.declaration.name);
+            let nothing = if explained.lamp.is_some() { "a light" } else { "background" };
+            let model = explained.seen.as_ref().map_or(nothing, |seen| seen.model.declaration.name);
             out.line(1, format_args!("{name}: {model}, red {red}, green {green}, blue {blue}"));
         }
         let (Some(first), Some(second)) = (&self.seen, &other.seen) else { return out.text };
@@ -121,9 +122,15 @@ impl Explanation {
         if self.terms != TermSelection::All {
             out.line(0, format_args!("Only the {} term is shown.", self.terms.id()));
         }
-        match &self.seen {
-            Some(seen) => self.object(&mut out, seen),
-            None => out.line(
+        match (&self.seen, &self.lamp) {
+            (Some(seen), _) => self.object(&mut out, seen),
+            (None, Some(lamp)) => {
+                for light in &lamp.lights {
+                    out.line(0, format_args!("{}, {}, is seen here.", named("lights", light), light.type_name));
+                }
+                out.line(1, format_args!("L = {} cd/m²", triple(lamp.radiance)));
+            }
+            (None, None) => out.line(
                 0,
                 "There is no object at the centre of this pixel, only background. It is not light of the scene: lights and \
                  exposure do not change it, tone mapping does.",
@@ -239,16 +246,15 @@ impl Explanation {
     fn display(&self, out: &mut Writer) {
         let steps = &self.steps;
         out.heading("From light to the code on the display");
-        match &self.seen {
-            Some(_) => {
-                out.line(1, format_args!("light {}", triple(steps.light)));
-                let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
-                out.line(
-                    1,
-                    format_args!("exposure {ev} EV, factor 2^{ev} = {factor}: {}", triple(steps.exposed)),
-                );
-            }
-            None => out.line(1, format_args!("background {}, whatever the exposure", triple(steps.exposed))),
+        if self.seen.is_some() || self.lamp.is_some() {
+            out.line(1, format_args!("light {}", triple(steps.light)));
+            let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
+            out.line(
+                1,
+                format_args!("exposure {ev} EV, factor 2^{ev} = {factor}: {}", triple(steps.exposed)),
+            );
+        } else {
+            out.line(1, format_args!("background {}, whatever the exposure", triple(steps.exposed)));
         }
         if self.display.encoding == Encoding::Off {
             out.line(

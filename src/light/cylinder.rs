@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Declaration, LightRecord, LightType,
-    extent::{self, SMALLEST, Sample, Seen, VISIBLE},
+    extent::{self, Cone, SMALLEST, Sample, Seen, VISIBLE},
 };
 use crate::{
     optics::sampling::{arc_cosine, area_pdf},
@@ -104,6 +104,10 @@ impl LightType for Cylinder {
         }
         let normal = (from_middle - from_middle.dot(light.direction) * light.direction) / self.radius;
         Seen { radiance: Vec3::splat(light.intensity), pdf: area_pdf(at, normal, view.area), distance }
+    }
+
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
+        Cone::of_ball(light.position - p, self.radius.hypot(0.5 * self.length))
     }
 
     fn solid_angle(&self) -> Option<f64> {

@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Declaration, LightRecord, LightType,
-    extent::{self, SMALLEST, Sample, Seen, TWO_SIDED, UNTURNED, VISIBLE},
+    extent::{self, Cone, SMALLEST, Sample, Seen, TWO_SIDED, UNTURNED, VISIBLE},
 };
 use crate::{
     optics::sampling::{area_pdf, disc},
@@ -67,6 +67,10 @@ impl LightType for Disc {
         }
         let pdf = area_pdf(l * distance, light.direction, self.area());
         Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
+    }
+
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
+        Cone::of_ball(light.position - p, self.radius)
     }
 
     fn solid_angle(&self) -> Option<f64> {

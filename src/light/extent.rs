@@ -22,13 +22,33 @@ pub struct Seen {
     pub radiance: Vec3,
     /// The density at which [`LightType::sample`](super::LightType::sample) gives the direction, 1/sr.
     pub pdf: f32,
-    /// The distance of the light, metres; infinite for light from infinitely far away.
+    /// The distance of the light, metres; infinite for light from infinitely far away, zero where there is none.
     pub distance: f32,
 }
 
 impl Seen {
     /// Nothing: the direction leads past the light.
-    pub const NOTHING: Self = Self { radiance: Vec3::ZERO, pdf: 0.0, distance: f32::INFINITY };
+    pub const NOTHING: Self = Self { radiance: Vec3::ZERO, pdf: 0.0, distance: 0.0 };
+}
+
+/// A cone of directions from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// The direction of its middle, unit vector.
+    pub axis: Vec3,
+    /// Half the angle that it fills, radians.
+    pub half_angle: f32,
+}
+
+impl Cone {
+    /// The directions of a ball around a place; none if the point may be within, where every direction leads to it.
+    #[must_use]
+    pub fn of_ball(middle: Vec3, radius: f32) -> Option<Self> {
+        let distance = middle.length();
+        // Rounding must leave nothing of the ball outside.
+        let sine = 1.0001 * radius / distance;
+        (sine < 0.999).then(|| Self { axis: middle / distance, half_angle: sine.asin() })
+    }
 }
 
 /// The rectangle's sides for a unit vector in which it shines, and sine and cosine of its turn about it: without turn the second,

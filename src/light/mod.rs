@@ -38,7 +38,7 @@ pub use cylinder::Cylinder;
 pub use directional::Directional;
 pub use disc::Disc;
 pub use environment::Environment;
-use extent::{BLOCK, Directions, Points, Sample, Seen};
+use extent::{BLOCK, Cone, Directions, Points, Sample, Seen};
 pub use factor::Factor;
 pub use photometric::Photometric;
 pub use point::Point;
@@ -175,6 +175,12 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         Seen::NOTHING
     }
 
+    /// A cone of directions from `p` beside which nothing of a light with extent is [`seen`](Self::seen), so that pictures show it
+    /// sooner. None by default: it may be anywhere.
+    fn bounds(&self, _light: &LightRecord, _p: Vec3) -> Option<Cone> {
+        None
+    }
+
     /// The factors of the intensity at `p`, as the [equation](Declaration::equation) has them, for explanations: their
     /// product is the intensity of [`incident`](Self::incident). By default, the intensity of the light, and the rest.
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
@@ -199,6 +205,9 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::seen`].
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
 
+    /// See [`LightType::bounds`].
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone>;
+
     /// See [`LightType::factors`].
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
@@ -214,6 +223,10 @@ impl<L: LightType> Emitter for L {
 
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
         LightType::seen(self, light, p, l)
+    }
+
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
+        LightType::bounds(self, light, p)
     }
 
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
@@ -363,6 +376,14 @@ impl LightEntry {
     #[must_use]
     pub fn is_visible(&self, values: &Values) -> bool {
         self.declaration.extent && self.parameter("visible").is_none_or(|visible| values.choice(visible) == 1)
+    }
+
+    /// The place of the parameter `visible` among the [`words`](Self::words), which is 1 for lights that are to be seen; none
+    /// if the type has no such parameter.
+    #[must_use]
+    pub fn visible_word(&self) -> Option<usize> {
+        let at = self.parameters.iter().position(|p| p.name == "visible")?;
+        Some(words(&self.parameters[..at], &Values::default(), Encoding::default()).len())
     }
 
     /// The fields of its [struct in WGSL](Self::parameter_struct): its parameters, and what is derived from them.

@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Declaration, LightRecord, LightType,
-    extent::{self, ROLL, SMALLEST, Sample, Seen, TWO_SIDED, VISIBLE},
+    extent::{self, Cone, ROLL, SMALLEST, Sample, Seen, TWO_SIDED, VISIBLE},
 };
 use crate::{optics::sampling::SphericalRectangle, parameter::Parameter, parameters, shader::wgsl};
 
@@ -91,6 +91,10 @@ impl LightType for Rectangle {
         }
         let pdf = self.from(light, p).pdf(l * distance);
         Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
+    }
+
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
+        Cone::of_ball(light.position - p, self.half().length())
     }
 
     fn solid_angle(&self) -> Option<f64> {

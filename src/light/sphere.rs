@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use super::{
     Declaration, LightRecord, LightType,
     disc::RADIUS,
-    extent::{self, Sample, Seen, VISIBLE},
+    extent::{self, Cone, Sample, Seen, VISIBLE},
 };
 use crate::{optics::sampling, parameters, shader::wgsl};
 
@@ -60,6 +60,10 @@ impl LightType for Sphere {
         }
         let distance = distance * (cosine - (squared - off).sqrt());
         Seen { radiance: Vec3::splat(light.intensity), pdf: 1.0 / (2.0 * PI * rise), distance }
+    }
+
+    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
+        Cone::of_ball(light.position - p, self.radius)
     }
 
     fn solid_angle(&self) -> Option<f64> {

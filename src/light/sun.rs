@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Declaration, LightRecord, LightType,
-    extent::{Sample, Seen, VISIBLE, number},
+    extent::{Cone, Sample, Seen, VISIBLE, number},
 };
 use crate::{
     optics::sampling,
@@ -75,5 +75,9 @@ impl LightType for Sun {
         }
         let pdf = 1.0 / (2.0 * PI * self.rise);
         Seen { radiance: self.luminance(light), pdf, distance: f32::INFINITY }
+    }
+
+    fn bounds(&self, light: &LightRecord, _p: Vec3) -> Option<Cone> {
+        Some(Cone { axis: -light.direction, half_angle: 1.0001 * self.radius() })
     }
 }

@@ -16,7 +16,7 @@ use crate::{
 
 /// The light of any model is kept within these bounds, so that interpolating and adding it gives no infinity and no
 /// NaN.
-const BRIGHTEST: f32 = 1e30;
+pub(super) const BRIGHTEST: f32 = 1e30;
 
 /// All lights of a scene, ready for calculation.
 pub(super) struct Lights {

@@ -51,6 +51,7 @@ mod outlines;
 pub(crate) mod probe;
 mod raster;
 mod vertices;
+pub(crate) mod visible;
 mod wires;
 
 pub use crate::optics::colour::BACKGROUND;
@@ -65,6 +66,7 @@ use object::{Draw, hidden};
 pub use outlines::outlines;
 use raster::{Screen, TILE, Tile, Triangle};
 pub use vertices::brightest_vertex;
+use visible::VisibleLights;
 pub use wires::{Dot, Line, WireDrawer, Wires, draw_wires};
 
 /// The settings of a picture, apart from the scene.
@@ -93,8 +95,8 @@ pub struct Picture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Row by row from the top: red, green and blue of the objects' light (linear Rec. 709, the mean
-    /// over the pixel's samples), and the fraction of samples that objects cover. The rest is
+    /// Row by row from the top: red, green and blue of the light of objects and of lights that are seen (linear Rec. 709, the
+    /// mean over the pixel's samples), and the fraction of samples that they cover. The rest is
     /// [`BACKGROUND`].
     pub pixels: Vec<Vec4>,
 }
@@ -216,7 +218,7 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
 
 /// Polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
-/// Draws a scene: `background` where there is no object, and elsewhere the result of `finish` on the light. Anything
+/// Draws a scene: `background` where there is no object and no visible light, and elsewhere the result of `finish` on the light. Anything
 /// not done by `end` is skipped; `odd` is set if light was not finite.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
@@ -255,11 +257,13 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
+    // Channels show objects alone.
+    let visible = sight.is_none().then(|| VisibleLights::new(scene, registry, settings));
 
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
     let shown: Vec<_> = scene.shown().collect();
     let mut rest = &shown[..];
-    while !rest.is_empty() && !late() {
+    loop {
         let (mut batch, mut polygons) = (Vec::new(), 0);
         while let [object, later @ ..] = rest
             && !late()
@@ -310,7 +314,13 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 if !rest.is_empty() {
                     return None;
                 }
-                Some((i, tile.take()?.resolve().map(&finish).collect()))
+                let origin = origin(i, &screen);
+                let mut tile = tile.take();
+                let seen = visible.as_ref().and_then(|visible| visible.within(origin, TILE));
+                if let Some(mut lights) = seen.filter(|_| !late()) {
+                    tile.get_or_insert_with(Tile::new).show(&mut lights);
+                }
+                Some((i, tile?.resolve().map(&finish).collect()))
             })
             .collect();
         for (i, pixels) in finished {
@@ -320,6 +330,9 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 let start = (top + row) * width + left;
                 out[start..start + columns].copy_from_slice(&pixels[..columns]);
             }
+        }
+        if rest.is_empty() || late() {
+            break;
         }
     }
     odd.fetch_or(lights.was_odd(), Ordering::Relaxed);

@@ -4,7 +4,7 @@
 //! A source for drawing holds, in this order: terms, the light record, the row of an object (generated
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
 //! types, the dispatch over light types (generated), the light loop, the shading model after its parameters (generated),
-//! the debug channels, and the wrapper with bindings and entry points.
+//! the debug channels, the last step of a pixel, and the wrapper with bindings and entry points.
 
 use std::fmt::Write as _;
 
@@ -19,8 +19,8 @@ use crate::{
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP, OPTICS,
-            SAMPLING, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
+            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP,
+            OPTICS, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -226,8 +226,8 @@ fn light_number(light: Light, i: u32) -> f32 {
 }
 
 /// The files that every source for drawing needs beside the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 9] =
-    [ALBEDO, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, WRAPPER, EVALUATE];
+pub(crate) const SHARED: [Source; 11] =
+    [ALBEDO, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
 
 /// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -241,7 +241,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     if light.declaration.extent {
         // The directions of lobes are not chosen here.
         c.source(&SAMPLING);
-        c.push("(lobes)", "fn lobe_row(i: u32) -> vec4<f32> {\n    return vec4(0.0);\n}\n");
+        c.push("(lobes)", NO_LOBES);
     }
     push_light(&mut c, light);
     let tables = light.tables(&Values::default());
@@ -319,6 +319,12 @@ const LOBE_ROW: &str = "fn lobe_row(i: u32) -> vec4<f32> {
 }
 ";
 
+/// The same where no object is drawn.
+const NO_LOBES: &str = "fn lobe_row(i: u32) -> vec4<f32> {
+    return vec4(0.0);
+}
+";
+
 /// The part of lights with extent where there are none.
 const NOT_EXTENDED: &str = "fn extended(position: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec3<f32> {
     return vec3(0.0);
@@ -358,8 +364,37 @@ pub fn compose(
     }
     push_shading(&mut c, shading);
     c.source(&CHANNELS);
+    c.source(&DISPLAY);
     c.source(&WRAPPER);
     c.composed
+}
+
+/// The complete source for drawing lights with extent themselves, of the given light types.
+#[must_use]
+pub fn compose_seen(sources: &Sources, lights: &[LightEntry]) -> Composed {
+    let mut c = Composer::new(sources);
+    OPTICS.iter().chain([&LIGHTS, &SAMPLING]).for_each(|s| c.source(s));
+    c.push("(lobes)", NO_LOBES);
+    let lights: Vec<_> = lights.iter().filter(|light| light.declaration.extent).copied().collect();
+    lights.iter().for_each(|light| push_light(&mut c, light));
+    c.push("(light types)", &light_dispatch(&lights));
+    c.push("(visible lights)", &visible(&lights));
+    c.source(&DISPLAY);
+    c.source(&SEEN);
+    c.composed
+}
+
+/// The function that tells if a light is to be seen in the picture, the twin of [`LightEntry::is_visible`].
+fn visible(lights: &[LightEntry]) -> String {
+    let mut text = "fn light_is_visible(light: Light) -> bool {\n    switch light.light_type {\n".to_owned();
+    for light in lights {
+        let visible = light
+            .visible_word()
+            .map_or_else(|| "true".to_owned(), |i| format!("light_word(light, {i}u) == 1u"));
+        let _ = writeln!(text, "        case {}u: {{ return {visible}; }}", light.index);
+    }
+    text.push_str("        default: { return false; }\n    }\n}\n");
+    text
 }
 
 /// The purpose of a file in a composed source, in the order in which authors look for them.
@@ -383,7 +418,7 @@ pub enum Part {
     Stages,
     /// The debug channels.
     Channels,
-    /// Bindings and entry points.
+    /// Bindings and entry points, and the last step of a pixel.
     Wrapper,
 }
 
@@ -420,6 +455,7 @@ pub fn files(
             (Part::Loop, &EXTENDED),
             (Part::ShadingModel, &shading.declaration.wgsl),
             (Part::Channels, &CHANNELS),
+            (Part::Wrapper, &DISPLAY),
             (Part::Wrapper, &WRAPPER),
         ])
         .collect::<Vec<_>>();
@@ -504,7 +540,8 @@ mod tests {
         assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
         assert_eq!(of(Part::LightType).len(), registry.lights().len());
         assert_eq!(of(Part::Vocabulary).len(), OPTICS.len() + 1, "and sampling.wgsl");
-        for part in [Part::LightRecord, Part::Stages, Part::Channels, Part::Wrapper] {
+        assert_eq!(of(Part::Wrapper), [("display.wgsl", false), ("wrapper.wgsl", false)]);
+        for part in [Part::LightRecord, Part::Stages, Part::Channels] {
             assert_eq!(of(part).len(), 1, "{part:?}");
         }
     }

@@ -19,6 +19,7 @@ pub mod parts;
 pub mod plugin;
 mod register;
 pub mod schedule;
+mod seen;
 pub mod show;
 mod shown;
 pub mod stage;

@@ -18,6 +18,7 @@ use super::{
     overrides::Overrides,
     parts,
     schedule::{LabFrame, LabSystems, detect},
+    seen::SeenPlugin,
     shown::{Shown, show_lights},
     stage::{Stage, set_stages},
     straight::StraightPlugin,
@@ -83,7 +84,7 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin));
+            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin, SeenPlugin));
         // Two systems that touch the same data must say who comes first.
         detect(app, LogLevel::Warn);
     }

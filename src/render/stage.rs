@@ -36,6 +36,11 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// Its render layer.
+    pub(super) fn layer(&self) -> usize {
+        self.layer
+    }
+
     pub(super) fn copy(&self, object: Entity) -> Option<Entity> {
         self.copies.get(&object).copied()
     }

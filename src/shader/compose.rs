@@ -37,6 +37,10 @@ pub const LOOP: Source = wgsl!("loop.wgsl");
 pub const SHADING: Source = wgsl!("shading.wgsl");
 /// The debug channels.
 pub const CHANNELS: Source = wgsl!("channels.wgsl");
+/// The last step of every pixel.
+pub const DISPLAY: Source = wgsl!("display.wgsl");
+/// The wrapper that draws lights with extent.
+pub const SEEN: Source = wgsl!("seen.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 

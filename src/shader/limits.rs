@@ -14,7 +14,7 @@ use naga::{Module, Span};
 
 use super::{
     check::{ShaderProblem, locate},
-    compose::{Composed, EVALUATE, LIGHT_ALONE, SHADING_ALONE, WRAPPER},
+    compose::{Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
     token,
 };
 
@@ -98,7 +98,9 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let line_of = |at: usize| text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
     let binds = |at: usize| {
         let file = composed.map.locate(line_of(at)).map(|(file, _)| file);
-        file.is_none_or(|file| [WRAPPER.path, EVALUATE.path, LIGHT_ALONE, SHADING_ALONE].contains(&file))
+        file.is_none_or(|file| {
+            [WRAPPER.path, SEEN.path, EVALUATE.path, LIGHT_ALONE, SHADING_ALONE].contains(&file)
+        })
     };
     text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {
         text::Refusal::At(at, what) => {

@@ -16,7 +16,12 @@ fn mesh_functions__get_world_from_local(i: u32) -> mat4x4<f32> { return mat4x4<f
     ),
     (
         "bevy_pbr::mesh_view_bindings::view",
-        "struct BevyView { world_position: vec3<f32> }
+        "struct BevyView {
+    world_position: vec3<f32>,
+    view_from_clip: mat4x4<f32>,
+    world_from_view: mat4x4<f32>,
+    clip_from_view: mat4x4<f32>,
+}
 var<private> view: BevyView;
 ",
     ),
@@ -84,7 +89,10 @@ pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{
-        registry::{Registry, compose::compose},
+        registry::{
+            Registry,
+            compose::{compose, compose_seen},
+        },
         shader::compose::Sources,
         shading::Stage,
     };
@@ -107,6 +115,19 @@ mod tests {
                 let composed = compose(&Sources::default(), model, shading, registry.lights());
                 let faces = shading.declaration.stage == Stage::Polygon;
                 assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
+            }
+        }
+    }
+
+    #[test]
+    fn what_draws_lights_is_valid_with_all_light_types_and_with_each() {
+        let registry = Registry::builtin();
+        let alone = registry.lights().chunks(1);
+        for lights in alone.chain([registry.lights(), &[]]) {
+            let composed = compose_seen(&Sources::default(), lights);
+            // Nothing is drawn with a scene that has no light with extent.
+            if lights.iter().any(|light| light.declaration.extent) {
+                assert_eq!(validate_drawing(&composed, false), Ok(()), "{}", lights[0].declaration.id);
             }
         }
     }

@@ -146,6 +146,103 @@ fn the_comparison_notices_a_wrong_twin() {
     assert!(fails(&wrong), "an observer 1 cm beside goes unnoticed");
 }
 
+/// A ball with a light of a type before it, or behind it and beside.
+fn beside_a_ball(light_type: &str, before: bool) -> Scene {
+    let mut scene = close_up("sphere", light_type);
+    let registry = Registry::builtin();
+    let declaration = registry.light(light_type).expect("built in").declaration;
+    scene.shading_model = "phong".to_owned();
+    let light = &mut scene.lights[0];
+    light.intensity = 2.0;
+    if declaration.has_position {
+        light.position = Some(if before { Vec3::new(4.4, 5.5, 6.9) } else { Vec3::new(6.2, 5.9, 2.0) });
+    }
+    if declaration.has_direction {
+        // The sun stands behind the ball, beside its edge; the others shine to the observer.
+        light.direction = Some(match (light_type, before) {
+            ("sun", true) => Vec3::new(-0.3, -0.2, 1.0),
+            ("sun", false) => Vec3::new(0.32, 0.0, 1.0),
+            _ => Vec3::new(0.3, -0.2, 1.0),
+        });
+    }
+    light.parameters.set("radius", Value::Number(0.3));
+    light.parameters.set("width", Value::Number(0.7));
+    light.parameters.set("height", Value::Number(0.4));
+    light.parameters.set("length", Value::Number(0.9));
+    light.parameters.set("diameter", Value::Number(9.0));
+    scene
+}
+
+#[test]
+fn lights_with_extent_are_seen_alike_before_objects_and_behind_them() {
+    let registry = Registry::builtin();
+    let mut renderers = [1, 4].map(|samples| {
+        GpuRenderer::new(SIZE, SIZE, samples, Output::Linear).expect("software Vulkan is installed")
+    });
+    let mut shown = 0;
+    for light in registry.lights().iter().filter(|light| light.declaration.extent) {
+        let id = light.declaration.id;
+        for before in [true, false] {
+            let scene = beside_a_ball(id, before);
+            let mut hidden = scene.clone();
+            hidden.lights[0].parameters.set("visible", Value::Choice("false".into()));
+            let [picture, dark] = [&scene, &hidden].map(|scene| cpu(scene, TermSelection::All));
+            let seen = picture.pixels.iter().zip(&dark.pixels).filter(|(a, b)| a != b).count();
+            assert!(seen > 20, "{id} is hardly to be seen: {seen} pixels");
+            for (renderer, samples) in renderers.iter_mut().zip([1, 4]) {
+                let on_gpu = gpu(renderer, &scene, TermSelection::All);
+                let settings =
+                    reference::Settings { width: SIZE, height: SIZE, samples, ..Default::default() };
+                let d =
+                    compare(&on_gpu, &reference::render(&scene, &registry, &settings), background(), 2e-3);
+                let case = format!("{id}, before: {before}, {samples} samples: {d:?}");
+                assert!(d.wrong * 500 <= d.covered && d.edges * 40 <= d.covered, "{case}");
+                // Wrong twins: the light is not to be seen, or elsewhere.
+                let mut elsewhere = scene.clone();
+                let light = &mut elsewhere.lights[0];
+                light.position = light.position.map(|p| p + Vec3::X * 0.1);
+                light.direction = light.direction.map(|d| d + Vec3::X * 0.03);
+                light.intensity *= 1.01;
+                for wrong in [&hidden, &elsewhere] {
+                    let d =
+                        compare(&on_gpu, &reference::render(wrong, &registry, &settings), background(), 2e-3);
+                    assert!(
+                        d.wrong * 500 > d.covered || d.edges * 40 > d.covered,
+                        "{case}, unnoticed: {d:?}"
+                    );
+                }
+                shown += 1;
+            }
+        }
+    }
+    assert_eq!(shown, 24);
+}
+
+#[test]
+fn lights_are_seen_in_pictures_for_people_and_go_when_they_are_switched_off() {
+    let mut renderer = displaying();
+    let mut scene = beside_a_ball("rectangle", true);
+    for (tone_mapping, encoding, exposure) in [
+        (ToneMapping::None, Encoding::Srgb, -2.0),
+        (ToneMapping::None, Encoding::Off, -2.0),
+        (ToneMapping::Reinhard, Encoding::Srgb, 0.0),
+    ] {
+        scene.display = Display { tone_mapping, exposure, encoding };
+        for on in [true, false, true] {
+            scene.lights[0].parameters.set("visible", Value::Choice(on.to_string().into()));
+            let g = displayed(&mut renderer, &scene);
+            let off = |scene: &Scene| {
+                let c = cpu(scene, TermSelection::All).to_rgb8(&scene.display);
+                g.iter().zip(&c).filter(|(g, c)| g.abs_diff(**c) > 1).count() as f32 / g.len() as f32
+            };
+            assert!(off(&scene) < 0.01, "{:?}, {on}: {}", scene.display, off(&scene));
+            let mut wrong = scene.clone();
+            wrong.lights[0].parameters.set("visible", Value::Choice((!on).to_string().into()));
+            assert!(off(&wrong) > 0.01, "{:?}, {on}: {}", scene.display, off(&wrong));
+        }
+    }
+}
+
 #[test]
 fn terms_alone_and_many_lights_give_the_same_picture() {
     let mut renderer = renderer();

@@ -168,6 +168,7 @@ fn text(explanation: &Explanation, name: &dyn Fn(Selection) -> String, doubt: Op
                 lights(&mut out, seen, spot, &|light| name(Selection::Light(light)));
             }
         }
+        None if explanation.lamp.is_some() => out += &paragraph("summary", &format!("{at}: a light.")),
         None => out += &paragraph("summary", &format!("{at}: background.")),
     }
     out

@@ -10,7 +10,7 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     rows::close(ui);
     let (steps, display) = (&explanation.steps, &explanation.display);
     rows::heading(ui, "From light to the code on the display");
-    if explanation.seen.is_some() {
+    if explanation.seen.is_some() || explanation.lamp.is_some() {
         rows::step(ui, "light of the pixel", steps.light);
         let (ev, factor) = (rows::short(display.exposure), rows::short(steps.exposure));
         rows::step(ui, &format!("exposure {ev} EV, × {factor}"), steps.exposed);

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     document::Selection,
-    explain::{Explanation, Seen, Sight, sentence},
+    explain::{Explanation, Lamp, Seen, Sight, sentence},
     optics::TermSelection,
     registry::Registry,
     scene::{limits::Limits, variant::LETTERS},
@@ -315,7 +315,10 @@ fn columns(
             (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice, &name))),
             end,
         ],
-        None => vec![(0.36, Box::new(background)), end],
+        None => match &explanation.lamp {
+            Some(lamp) => vec![(0.36, Box::new(|ui| seen_light(ui, lamp, &name))), end],
+            None => vec![(0.36, Box::new(background)), end],
+        },
     };
     let room = ui.available_rect_before_wrap();
     let shares: Vec<_> = parts.iter().map(|(share, _)| *share).collect();
@@ -393,6 +396,16 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
         super::inspector::model::stage(ui, shading);
     }
     point::point(ui, seen, sight.is_some());
+}
+
+fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
+    for light in &lamp.lights {
+        rows::heading(ui, &name(light.index));
+    }
+    ui.add(
+        egui::Label::new("No object is at the centre of this pixel: the light itself is seen there.").wrap(),
+    );
+    rows::step(ui, "L, cd/m²", lamp.radiance);
 }
 
 fn background(ui: &mut Ui) {

@@ -3,7 +3,10 @@
 use glam::{Vec3, Vec4};
 
 use super::{SUBPIXEL, Screen, Triangle};
-use crate::shading::{Lighting, Shading};
+use crate::{
+    reference::visible::Part,
+    shading::{Lighting, Shading},
+};
 
 /// Edge of a tile in pixels.
 pub(in crate::reference) const TILE: usize = 32;
@@ -125,6 +128,22 @@ impl<const S: usize, const E: usize> Tile<S, E> {
                     for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
                         *sample = colour;
                     }
+                }
+            }
+        }
+    }
+
+    /// Shows lights at the samples where they are nearer than what was drawn; where nothing was, those infinitely far away.
+    pub(in crate::reference) fn show(&mut self, lights: &mut Part) {
+        let samples = const { positions::<S>() }.map(|at| at.map(|c| c as f32 / SUBPIXEL as f32));
+        for (i, (nearness, colour)) in self.nearness.iter_mut().zip(&mut self.colour).enumerate() {
+            let shown = lights.pixel([i % E, i / E], samples);
+            for (s, (radiance, near)) in
+                shown.into_iter().enumerate().filter_map(|(s, seen)| Some((s, seen?)))
+            {
+                if nearness[s] == 0.0 || near > nearness[s] {
+                    nearness[s] = near.max(f32::MIN_POSITIVE);
+                    colour[s] = radiance;
                 }
             }
         }

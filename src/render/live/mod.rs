@@ -46,7 +46,7 @@ use crate::{
     registry::{LightSet, Registry, compose::compose},
     shader::{
         check::ShaderProblem,
-        compose::{Composed, Sources},
+        compose::{Composed, SEEN, Sources},
     },
     shading::ShadingEntry,
 };
@@ -167,6 +167,13 @@ impl LiveShaders {
     #[must_use]
     pub fn refused(&self) -> Option<&ShaderProblem> {
         self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem.what))
+    }
+
+    /// The texts that lights themselves are drawn with: those that were drawn with, since light types light objects too.
+    pub(super) fn sources_of_seen(&self, registry: &Registry) -> Sources {
+        let mut sources = self.library.good().clone();
+        sources.copy_from(registry.sources(), SEEN.path);
+        sources
     }
 
     /// The number of shaders that are ready to be drawn with.

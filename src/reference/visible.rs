@@ -1,0 +1,409 @@
+//! Lights with extent as they are seen in the picture: the nearest in each direction, with its radiance.
+
+use glam::{Mat3, Vec3};
+
+use super::{Settings, lighting::BRIGHTEST};
+use crate::{
+    light::{Emitter, LightRecord, extent::Cone},
+    registry::Registry,
+    scene::{
+        Scene,
+        observer::{half_tangents, orientation},
+        record,
+    },
+};
+
+/// What is seen of lights in one direction.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Shown {
+    /// Their places among the lights of the scene: one, or several that are infinitely far away.
+    pub(crate) lights: Vec<usize>,
+    /// The radiance, cd/m².
+    pub(crate) radiance: Vec3,
+    /// `1 / w`, as objects have it; 0 if infinitely far away.
+    pub(crate) nearness: f32,
+}
+
+/// What lights show, as above, without their places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sight {
+    radiance: Vec3,
+    nearness: f32,
+}
+
+struct Visible {
+    emitter: Box<dyn Emitter>,
+    record: LightRecord,
+    /// Its place among the lights of the scene.
+    index: usize,
+    /// The cone beside which it is not; none if it may be anywhere.
+    cone: Option<Cone>,
+}
+
+impl Visible {
+    /// Its radiance and nearness in a direction, if it is there.
+    fn seen(&self, ray: &Ray, eye: Vec3) -> Option<Sight> {
+        if self.cone.is_some_and(|cone| ray.l.dot(cone.axis) < cone.half_angle.cos() - 1e-6) {
+            return None;
+        }
+        let seen = self.emitter.seen(&self.record, eye, ray.l);
+        let radiance = seen.radiance * self.record.colour;
+        let radiance = radiance.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) });
+        (seen.distance > 0.0).then(|| Sight { radiance, nearness: ray.stretch / seen.distance })
+    }
+}
+
+/// A direction from the eye.
+struct Ray {
+    l: Vec3,
+    /// One over the cosine to where the observer looks.
+    stretch: f32,
+}
+
+/// The lights of a scene that are seen, and the eye.
+pub(super) struct VisibleLights {
+    lights: Vec<Visible>,
+    eye: Vec3,
+    /// From pixels right, down, and 1 to directions.
+    rays: Mat3,
+}
+
+/// The lights that are seen at the centre of a pixel in front of a point, or of nothing.
+pub(crate) fn in_front(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    pixel: [u32; 2],
+    point: Option<Vec3>,
+) -> Option<Shown> {
+    let shown = VisibleLights::new(scene, registry, settings).at(pixel.map(|c| c as f32 + 0.5))?;
+    let ahead = scene.observer.direction.normalize_or_zero();
+    let nearer = |point: Vec3| shown.nearness * (point - scene.observer.position).dot(ahead) > 1.0;
+    point.is_none_or(nearer).then_some(shown)
+}
+
+impl VisibleLights {
+    pub(super) fn new(scene: &Scene, registry: &Registry, settings: &Settings) -> Self {
+        let encoding = scene.display.encoding;
+        let eye = scene.observer.position;
+        let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
+        let lights = shining.filter_map(|(index, light)| {
+            let entry = registry.light(&light.light_type).filter(|e| e.is_visible(&light.parameters))?;
+            let emitter = (entry.instantiate)(&light.parameters, encoding);
+            let record = record(light, registry, encoding);
+            let cone = emitter.bounds(&record, eye);
+            Some(Visible { emitter, record, index, cone })
+        });
+        let size = [settings.width, settings.height];
+        let axes = orientation(scene.observer.direction);
+        let [across, up] = half_tangents(size, scene.observer.field_of_view.to_radians());
+        let [across, up] = [across as f32, up as f32];
+        let step = [2.0 * across, 2.0 * up].map(f64::from);
+        let [right, down] = [step[0] / f64::from(size[0].max(1)), step[1] / f64::from(size[1].max(1))];
+        let rays = Mat3::from_cols(
+            axes.x_axis * right as f32,
+            -axes.y_axis * down as f32,
+            -axes.z_axis - axes.x_axis * across + axes.y_axis * up,
+        );
+        Self { lights: lights.collect(), eye, rays }
+    }
+
+    fn ray(&self, [x, y]: [f32; 2]) -> Ray {
+        let d = self.rays * Vec3::new(x, y, 1.0);
+        let stretch = d.length();
+        Ray { l: d / stretch, stretch }
+    }
+
+    /// What is seen at a place of the picture, in pixels from the top left; none if no light is.
+    pub(super) fn at(&self, place: [f32; 2]) -> Option<Shown> {
+        let ray = self.ray(place);
+        let seen = self.lights.iter().filter_map(|light| Some((light.index, light.seen(&ray, self.eye)?)));
+        let mut shown: Option<Shown> = None;
+        for (index, sight) in seen {
+            let Sight { radiance, nearness } = sight;
+            match &mut shown {
+                Some(known) if nearness < known.nearness => {}
+                Some(known) if nearness == 0.0 => {
+                    known.lights.push(index);
+                    known.radiance += radiance;
+                }
+                _ => shown = Some(Shown { lights: vec![index], radiance, nearness }),
+            }
+        }
+        shown
+    }
+
+    /// Those that may be seen in a square part of the picture; none if there are none.
+    pub(super) fn within(&self, [left, top]: [usize; 2], edge: usize) -> Option<Part<'_>> {
+        if self.lights.is_empty() {
+            return None;
+        }
+        let corner = |x: usize, y: usize| self.ray([(left + x) as f32, (top + y) as f32]).l;
+        let middle = self.ray([left as f32 + 0.5 * edge as f32, top as f32 + 0.5 * edge as f32]).l;
+        let corners = [corner(0, 0), corner(edge, 0), corner(0, edge), corner(edge, edge)];
+        let half = corners.iter().map(|c| middle.angle_between(*c)).fold(0.0, f32::max) + 1e-3;
+        let touches = |cone: Cone| middle.angle_between(cone.axis) <= cone.half_angle + half;
+        let (bounded, around): (Vec<_>, Vec<_>) = self
+            .lights
+            .iter()
+            .filter(|light| light.cone.is_none_or(touches))
+            .partition(|light| light.cone.is_some());
+        let any = !bounded.is_empty() || !around.is_empty();
+        any.then(|| Part { of: self, bounded, around, origin: [left, top], edge, centres: Vec::new() })
+    }
+}
+
+/// The lights that may be seen in a part of the picture.
+pub(super) struct Part<'a> {
+    of: &'a VisibleLights,
+    bounded: Vec<&'a Visible>,
+    /// Those that may be anywhere.
+    around: Vec<&'a Visible>,
+    origin: [usize; 2],
+    edge: usize,
+    /// What the latter show at the centres of the pixels, and of those around the part.
+    centres: Vec<Option<Sight>>,
+}
+
+impl Part<'_> {
+    /// Makes ready to give [`pixel`](Self::pixel): where something that is all around is even, it is asked once for a pixel,
+    /// not for each of its samples.
+    fn prepare(&mut self) {
+        if self.around.is_empty() || !self.centres.is_empty() {
+            return;
+        }
+        let side = self.edge + 2;
+        let centre = |i: usize| {
+            let at = |axis: usize, step: usize| self.origin[axis] as f32 + step as f32 - 0.5;
+            sum(&self.around, None, &self.of.ray([at(0, i % side), at(1, i / side)]), self.of.eye)
+        };
+        self.centres = (0..side * side).map(centre).collect();
+    }
+
+    /// What is seen at the samples of a pixel, which are given within it: radiance and `1 / w`.
+    pub(super) fn pixel<const S: usize>(
+        &mut self,
+        [x, y]: [usize; 2],
+        samples: [[f32; 2]; S],
+    ) -> [Option<(Vec3, f32)>; S] {
+        self.prepare();
+        let even = if S > 1 && !self.around.is_empty() { self.even(x, y) } else { None };
+        let at = |axis: usize, place: usize| (self.origin[axis] + place) as f32;
+        samples.map(|[right, down]| {
+            let ray = self.of.ray([at(0, x) + right, at(1, y) + down]);
+            let around = even.or_else(|| sum(&self.around, None, &ray, self.of.eye));
+            let sight = sum(&self.bounded, around, &ray, self.of.eye)?;
+            Some((sight.radiance, sight.nearness))
+        })
+    }
+
+    /// What is all around at the centre of a pixel, if it is nearly the same at those beside it.
+    fn even(&self, x: usize, y: usize) -> Option<Sight> {
+        /// The largest difference, as a part of the value.
+        const EVEN: f32 = 1.0 / 64.0;
+        let side = self.edge + 2;
+        let i = (y + 1) * side + x + 1;
+        let here = self.centres[i]?;
+        let is_near = |i: usize| {
+            let there = self.centres[i]?;
+            let difference = (there.radiance - here.radiance).abs().max_element();
+            (there.nearness == here.nearness && difference <= EVEN * here.radiance.abs().max_element())
+                .then_some(())
+        };
+        [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
+        // Something near has a nearness of its own at each sample.
+        (here.nearness == 0.0).then_some(here)
+    }
+}
+
+/// What lights show in a direction, beside what is known of others: the nearest, and of those that are infinitely far
+/// away the sum.
+fn sum(lights: &[&Visible], known: Option<Sight>, ray: &Ray, eye: Vec3) -> Option<Sight> {
+    lights.iter().filter_map(|light| light.seen(ray, eye)).fold(known, |known, sight| match known {
+        Some(known) if sight.nearness < known.nearness => Some(known),
+        Some(known) if sight.nearness == 0.0 => {
+            Some(Sight { radiance: known.radiance + sight.radiance, ..known })
+        }
+        _ => Some(sight),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+    use crate::{
+        parameter::Value,
+        reference::{LightSamples, Picture, render_samples},
+        scene::{Light, Object, Observer},
+    };
+
+    const SIZE: u32 = 64;
+
+    fn settings(samples: u32) -> Settings {
+        Settings { width: SIZE, height: SIZE, samples, ..Settings::default() }
+    }
+
+    /// A light in front of the observer, who looks along −z from z = 10.
+    fn scene(light_type: &str, z: f32) -> Scene {
+        let registry = Registry::builtin();
+        let declaration = registry.light(light_type).expect("built in").declaration;
+        // The cylinder stands upright; the others shine to the observer, and the sun from where it looks.
+        let direction = if light_type == "cylinder" { Vec3::Y } else { Vec3::Z };
+        let mut light = Light {
+            light_type: light_type.to_owned(),
+            position: declaration.has_position.then_some(Vec3::new(5.0, 5.0, z)),
+            direction: declaration.has_direction.then_some(direction),
+            intensity: 3.0,
+            colour: [255, 128, 0],
+            ..Light::default()
+        };
+        light.parameters.set("diameter", Value::Number(20.0));
+        light.parameters.set("radius", Value::Number(0.5));
+        Scene {
+            lights: vec![light],
+            objects: Vec::new(),
+            observer: Observer {
+                position: Vec3::new(5.0, 5.0, 10.0),
+                direction: Vec3::NEG_Z,
+                field_of_view: 60.0,
+            },
+            ..Scene::default()
+        }
+    }
+
+    fn extended() -> Vec<&'static str> {
+        let registry = Registry::builtin();
+        registry.lights().iter().map(|l| l.declaration).filter(|d| d.extent).map(|d| d.id).collect()
+    }
+
+    fn picture(scene: &Scene, samples: u32) -> Picture {
+        let few = LightSamples::of(8);
+        render_samples(scene, &Registry::builtin(), &settings(samples), few, &AtomicBool::default())
+    }
+
+    fn middle(scene: &Scene) -> Vec3 {
+        picture(scene, 4).pixel(SIZE / 2, SIZE / 2).truncate()
+    }
+
+    /// What a light of the scene sends to the observer from straight ahead.
+    fn ahead(scene: &Scene) -> Vec3 {
+        let shown = in_front(scene, &Registry::builtin(), &settings(1), [SIZE / 2; 2], None);
+        shown.expect("it is in the middle").radiance
+    }
+
+    #[test]
+    fn a_light_is_seen_with_its_radiance_unless_it_is_to_be_invisible_or_off() {
+        assert_eq!(extended().len(), 6);
+        for light_type in extended() {
+            let mut scene = scene(light_type, 5.0);
+            let radiance = ahead(&scene);
+            assert!(radiance.x > 0.0 && radiance.z == 0.0, "{light_type}: {radiance}");
+            if light_type != "sun" && light_type != "environment" {
+                assert!((radiance.x - 3.0).abs() < 1e-5, "{light_type}: {radiance}");
+            }
+            let error = (middle(&scene) - radiance).abs().max_element();
+            assert!(error <= 2e-2 * radiance.x, "{light_type}: {error}");
+            let covers = |scene: &Scene| picture(scene, 4).pixels.iter().any(|p| p.w > 0.0);
+            assert!(covers(&scene), "{light_type}");
+            scene.lights[0].enabled = false;
+            assert!(!covers(&scene), "{light_type}");
+            scene.lights[0].enabled = true;
+            scene.lights[0].parameters.set("visible", Value::Choice("false".into()));
+            assert!(!covers(&scene), "{light_type}");
+        }
+    }
+
+    #[test]
+    fn lights_and_objects_hide_what_is_behind_them() {
+        let ball = Object { position: Vec3::new(5.0, 5.0, 5.0), size: 1.0, ..Object::default() };
+        for light_type in extended() {
+            let is_near = !["sun", "environment"].contains(&light_type);
+            for (z, in_front) in [(7.0, is_near), (2.0, false)] {
+                let mut scene = scene(light_type, z);
+                scene.objects.push(ball.clone());
+                let shows = (middle(&scene) - ahead(&scene)).abs().max_element() < 1e-4;
+                assert_eq!(shows, in_front, "{light_type} at {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_light_is_seen_and_lights_without_end_add_up() {
+        let mut both = scene("sphere", 5.0);
+        both.lights.push(Light { intensity: 7.0, ..scene("disc", 3.0).lights.remove(0) });
+        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        both.lights.reverse();
+        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        let mut sum = scene("environment", 0.0);
+        let [sky, sun] = [ahead(&sum), ahead(&scene("sun", 0.0))];
+        sum.lights.extend(scene("sun", 0.0).lights);
+        assert!((ahead(&sum) - sky - sun).abs().max_element() < 1e-5 * sun.x);
+        sum.lights.extend(scene("sphere", 5.0).lights);
+        assert!((ahead(&sum).x - 3.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_parts_of_a_picture_show_every_light_that_the_whole_shows() {
+        let registry = Registry::builtin();
+        for light_type in extended().into_iter().filter(|id| *id != "environment") {
+            for (x, z) in [(5.0, 5.0), (2.5, 6.0), (7.4, 8.5), (5.3, 9.4)] {
+                let mut scene = scene(light_type, z);
+                if let Some(position) = &mut scene.lights[0].position {
+                    *position += Vec3::new(x - 5.0, 0.4, 0.0);
+                }
+                scene.lights[0].direction = scene.lights[0].direction.map(|d| d + Vec3::new(0.3, 0.2, 0.0));
+                scene.lights[0].parameters.set("diameter", Value::Number(10.0 + x));
+                let mut lights = VisibleLights::new(&scene, &registry, &settings(1));
+                let differ = |lights: &VisibleLights| {
+                    let mut differ = 0;
+                    for (column, row) in (0..SIZE as usize / 8).flat_map(|r| (0..8).map(move |c| (c, r))) {
+                        let mut part = lights.within([8 * column, 8 * row], 8);
+                        for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
+                            let shown = part.as_mut().map(|part| part.pixel([x, y], [[0.5, 0.5]]));
+                            let place = [8 * column + x, 8 * row + y].map(|c| c as f32 + 0.5);
+                            let all = VisibleLights::new(&scene, &registry, &settings(1));
+                            let cone = |light: Visible| Visible { cone: None, ..light };
+                            let all =
+                                VisibleLights { lights: all.lights.into_iter().map(cone).collect(), ..all };
+                            let known = all.at(place).map(|shown| (shown.radiance, shown.nearness));
+                            differ += usize::from(shown.and_then(|[one]| one) != known);
+                        }
+                    }
+                    differ
+                };
+                assert_eq!(differ(&lights), 0, "{light_type} at {x}, {z}");
+                // The wrong twin: a narrower cone.
+                let Some(cone) = &mut lights.lights[0].cone else { continue };
+                cone.half_angle *= 0.8;
+                if ["sphere", "sun"].contains(&light_type) && (x, z) == (5.0, 5.0) {
+                    assert!(differ(&lights) > 0, "{light_type}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_even_is_asked_once_for_a_pixel_and_edges_at_each_sample() {
+        let mut scene = scene("environment", 0.0);
+        scene.observer.direction = Vec3::new(0.7, 0.1, -1.0);
+        let registry = Registry::builtin();
+        let shown = picture(&scene, 4);
+        let exact = VisibleLights::new(&scene, &registry, &settings(4));
+        let samples = [[96.0, 32.0], [224.0, 96.0], [32.0, 160.0], [160.0, 224.0]];
+        let (mut edges, mut worst) = (0, 0.0f32);
+        for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
+            let at = |[right, down]: [f32; 2]| {
+                let place = [x as f32 + right / 256.0, y as f32 + down / 256.0];
+                exact.at(place).expect("it is everywhere").radiance.x
+            };
+            let each = samples.map(at);
+            let mean = each.iter().sum::<f32>() / 4.0;
+            edges += usize::from(each.iter().any(|one| (one - each[0]).abs() > 0.1 * mean));
+            worst = worst.max((shown.pixel(x, y).x - mean).abs() / mean);
+        }
+        assert!(edges > 5, "{edges} pixels with edges of softboxes");
+        assert!(worst < 0.02, "{worst}");
+    }
+}
