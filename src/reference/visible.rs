@@ -24,7 +24,7 @@ pub(crate) struct Shown {
     pub(crate) nearness: f32,
 }
 
-/// What lights show, as above, without their places.
+/// The same without their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sight {
     radiance: Vec3,
@@ -36,14 +36,15 @@ struct Visible {
     record: LightRecord,
     /// Its place among the lights of the scene.
     index: usize,
-    /// The cone beside which it is not; none if it may be anywhere.
-    cone: Option<Cone>,
+    /// The cone beside which it is not, and the cosine of half its angle; none if it may be anywhere.
+    cone: Option<(Cone, f32)>,
 }
 
 impl Visible {
     /// Its radiance and nearness in a direction, if it is there.
     fn seen(&self, ray: &Ray, eye: Vec3) -> Option<Sight> {
-        if self.cone.is_some_and(|cone| ray.l.dot(cone.axis) < cone.half_angle.cos() - 1e-6) {
+        // Rounding of small angles must leave nothing out.
+        if self.cone.is_some_and(|(cone, cosine)| ray.l.dot(cone.axis) < cosine - 1e-6) {
             return None;
         }
         let seen = self.emitter.seen(&self.record, eye, ray.l);
@@ -91,7 +92,7 @@ impl VisibleLights {
             let entry = registry.light(&light.light_type).filter(|e| e.is_visible(&light.parameters))?;
             let emitter = (entry.instantiate)(&light.parameters, encoding);
             let record = record(light, registry, encoding);
-            let cone = emitter.bounds(&record, eye);
+            let cone = emitter.bounds(&record, eye).map(|cone| (cone, cone.half_angle.cos()));
             Some(Visible { emitter, record, index, cone })
         });
         let size = [settings.width, settings.height];
@@ -117,20 +118,11 @@ impl VisibleLights {
     /// What is seen at a place of the picture, in pixels from the top left; none if no light is.
     pub(super) fn at(&self, place: [f32; 2]) -> Option<Shown> {
         let ray = self.ray(place);
-        let seen = self.lights.iter().filter_map(|light| Some((light.index, light.seen(&ray, self.eye)?)));
-        let mut shown: Option<Shown> = None;
-        for (index, sight) in seen {
-            let Sight { radiance, nearness } = sight;
-            match &mut shown {
-                Some(known) if nearness < known.nearness => {}
-                Some(known) if nearness == 0.0 => {
-                    known.lights.push(index);
-                    known.radiance += radiance;
-                }
-                _ => shown = Some(Shown { lights: vec![index], radiance, nearness }),
-            }
-        }
-        shown
+        let all: Vec<_> = self.lights.iter().collect();
+        let Sight { radiance, nearness } = sum(&all, None, &ray, self.eye)?;
+        let is_it = |light: &&Visible| light.seen(&ray, self.eye).is_some_and(|s| s.nearness == nearness);
+        let lights = self.lights.iter().filter(is_it).map(|light| light.index).collect();
+        Some(Shown { lights, radiance, nearness })
     }
 
     /// Those that may be seen in a square part of the picture; none if there are none.
@@ -146,7 +138,7 @@ impl VisibleLights {
         let (bounded, around): (Vec<_>, Vec<_>) = self
             .lights
             .iter()
-            .filter(|light| light.cone.is_none_or(touches))
+            .filter(|light| light.cone.is_none_or(|(cone, _)| touches(cone)))
             .partition(|light| light.cone.is_some());
         let any = !bounded.is_empty() || !around.is_empty();
         any.then(|| Part { of: self, bounded, around, origin: [left, top], edge, centres: Vec::new() })
@@ -220,11 +212,12 @@ impl Part<'_> {
 /// away the sum.
 fn sum(lights: &[&Visible], known: Option<Sight>, ray: &Ray, eye: Vec3) -> Option<Sight> {
     lights.iter().filter_map(|light| light.seen(ray, eye)).fold(known, |known, sight| match known {
-        Some(known) if sight.nearness < known.nearness => Some(known),
-        Some(known) if sight.nearness == 0.0 => {
+        Some(known) if sight.nearness > known.nearness => Some(sight),
+        Some(known) if known.nearness == 0.0 => {
             Some(Sight { radiance: known.radiance + sight.radiance, ..known })
         }
-        _ => Some(sight),
+        Some(known) => Some(known),
+        None => Some(sight),
     })
 }
 
@@ -375,8 +368,8 @@ mod tests {
                 };
                 assert_eq!(differ(&lights), 0, "{light_type} at {x}, {z}");
                 // The wrong twin: a narrower cone.
-                let Some(cone) = &mut lights.lights[0].cone else { continue };
-                cone.half_angle *= 0.8;
+                let Some((cone, cosine)) = &mut lights.lights[0].cone else { continue };
+                *cosine = (0.8 * cone.half_angle).cos();
                 if ["sphere", "sun"].contains(&light_type) && (x, z) == (5.0, 5.0) {
                     assert!(differ(&lights) > 0, "{light_type}");
                 }
