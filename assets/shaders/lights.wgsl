@@ -35,8 +35,10 @@ struct Illumination {
     // The samples of light with extent that are taken: the number of the first, and how many.
     first_sample: u32,
     sample_count: u32,
+    // 1 if the picture is a part of a mean, which gets its look later.
+    is_part: u32,
     // Not in use.
-    spare: vec2<u32>,
+    spare: u32,
     lights: array<Light, MAX_LIGHTS>,
 }
 

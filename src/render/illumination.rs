@@ -15,6 +15,7 @@ use bevy::{
 };
 use glam::Vec3;
 
+use super::converge::Part;
 use crate::{
     channel::Setting,
     light::{LightRecord, MAX_LIGHTS},
@@ -26,10 +27,12 @@ use crate::{
 };
 
 /// Bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends of its scale; the first
-/// sample of light with extent, their number.
+/// sample of light with extent, their number, and whether the picture is a part of a mean.
 pub const HEADER_BYTES: usize = 48;
 /// Where the samples stand among them.
 pub(super) const SAMPLES_AT: usize = 32;
+/// Bytes of the samples: the first, their number, and whether the picture is a part of a mean.
+const SAMPLE_BYTES: usize = 12;
 /// Bytes of one light.
 pub const LIGHT_BYTES: usize = 48;
 /// Words for the parameters of all lights that a buffer has room for at first: four for each.
@@ -45,7 +48,7 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
     ("first_word", 44),
 ];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 12] = [
+pub const ILLUMINATION_LAYOUT: [(&str, usize); 13] = [
     ("count", 0),
     ("terms", 4),
     ("exposure", 8),
@@ -56,7 +59,8 @@ pub const ILLUMINATION_LAYOUT: [(&str, usize); 12] = [
     ("channel_high", 28),
     ("first_sample", SAMPLES_AT),
     ("sample_count", SAMPLES_AT + 4),
-    ("spare", SAMPLES_AT + 8),
+    ("is_part", SAMPLES_AT + 8),
+    ("spare", SAMPLES_AT + 12),
     ("lights", HEADER_BYTES),
 ];
 
@@ -195,6 +199,13 @@ pub fn word_count(lights: &[Lit]) -> usize {
     Places::of(&lights[..lights.len().min(MAX_LIGHTS)]).count
 }
 
+/// The bytes of the samples at [`SAMPLES_AT`]: those of a frame that is a part of a mean, or all.
+pub(super) fn sample_bytes(part: Option<Part>) -> [u8; SAMPLE_BYTES] {
+    let Part { first, count } = part.unwrap_or(Part { first: 0, count: LightSamples::DEFAULT });
+    let words = [first, count, u32::from(part.is_some())];
+    std::array::from_fn(|i| words[i / 4].to_le_bytes()[i % 4])
+}
+
 /// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use. Lights beyond
 /// [`MAX_LIGHTS`] are left out; the checker refuses such scenes.
 #[must_use]
@@ -207,6 +218,7 @@ pub fn illumination_bytes(
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
     let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
+    bytes[SAMPLES_AT..][..SAMPLE_BYTES].copy_from_slice(&sample_bytes(None));
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
     put(4, terms.code().to_le_bytes());
@@ -220,7 +232,6 @@ pub fn illumination_bytes(
         put(24, low.to_le_bytes());
         put(28, high.to_le_bytes());
     }
-    put(SAMPLES_AT + 4, LightSamples::DEFAULT.to_le_bytes());
     for (i, (Lit { record, .. }, first)) in lights.iter().zip(&places.lights).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {

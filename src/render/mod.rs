@@ -4,6 +4,7 @@
 pub(crate) mod absorb;
 pub mod camera;
 pub mod capture;
+pub mod converge;
 pub mod drawn;
 pub mod entities;
 pub(crate) mod exchange;
@@ -11,6 +12,7 @@ mod facing;
 pub mod illumination;
 pub mod live;
 pub mod material;
+mod mean;
 pub mod meshes;
 mod mirror;
 mod nearest;

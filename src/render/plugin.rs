@@ -14,6 +14,7 @@ use super::{
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
+    mean::MeanPlugin,
     meshes::ShapeMeshes,
     overrides::Overrides,
     parts,
@@ -84,7 +85,7 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin, SeenPlugin));
+            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin, SeenPlugin, MeanPlugin));
         // Two systems that touch the same data must say who comes first.
         detect(app, LogLevel::Warn);
     }

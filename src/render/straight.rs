@@ -33,7 +33,10 @@ use bevy::{
 use super::{
     camera::{ForDisplay, PictureCamera, follow_scene},
     schedule::{LabFrame, LabSystems},
+    shown::Shown,
+    view::View,
 };
+use crate::registry::Registry;
 
 /// The schedule of cameras that draw straight into their textures, in place of Bevy's [`Core3d`].
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
@@ -86,13 +89,18 @@ impl Plugin for StraightPlugin {
 /// Chooses the way in which each picture is drawn.
 fn choose(
     cameras: Query<
-        (Entity, Option<&ForDisplay>, &Tonemapping, &Msaa, Has<Hdr>),
+        (Entity, Option<&ForDisplay>, &Tonemapping, &Msaa, Has<Hdr>, Has<View>),
         (With<PictureCamera>, Or<(With<ForDisplay>, With<Hdr>)>),
     >,
+    shown: Res<Shown>,
+    registry: Res<Registry>,
     mut commands: Commands,
 ) {
-    for (camera, known, tone, samples, hdr) in &cameras {
-        let straight = *tone == Tonemapping::None && *samples == Msaa::Off;
+    let extent = registry.has_extent(shown.light_types(&registry));
+    for (camera, known, tone, samples, hdr, view) in &cameras {
+        // Means are of half floats.
+        let converges = view && extent;
+        let straight = *tone == Tonemapping::None && *samples == Msaa::Off && !converges;
         if known.is_some_and(|known| known.straight == straight) && hdr != straight {
             continue;
         }

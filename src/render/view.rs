@@ -7,7 +7,7 @@ use bevy::{
     app::{App, Plugin, PostUpdate},
     asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
     camera::{
-        Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget, SubCameraView,
+        Camera, CameraUpdateSystems, ClearColorConfig, Hdr, Projection, RenderTarget, SubCameraView,
         primitives::Frustum, visibility::Visibility, visibility::VisibilitySystems,
     },
     color::Color,
@@ -27,11 +27,13 @@ use glam::UVec2;
 use std::collections::HashSet;
 
 use super::{
+    converge::{Converged, Convergence, Part},
     drawn::Drawn,
     entities::CurrentScene,
     illumination::{IlluminationBuffer, ShownTerms},
     overrides::Overrides,
     parts::Animated,
+    shown::Shown,
     stage::{Stage, ViewCopy},
     tables::ParameterTables,
 };
@@ -46,7 +48,7 @@ pub struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(
+        app.init_resource::<Convergence>().add_systems(
             PostUpdate,
             (
                 fit.before(AssetEventSystems).before(CameraUpdateSystems),
@@ -96,11 +98,22 @@ pub struct Drawing {
     drawn: u64,
     /// One is drawn in this frame.
     draws: bool,
+    /// The samples of light with extent, none if there is no such light.
+    converged: Converged,
+    /// Those of them that this frame draws.
+    part: Option<Part>,
 }
 
 impl Default for Drawing {
     fn default() -> Self {
-        Self { last: None, due: PICTURES, drawn: 0, draws: false }
+        Self {
+            last: None,
+            due: PICTURES,
+            drawn: 0,
+            draws: false,
+            converged: Converged::default(),
+            part: None,
+        }
     }
 }
 
@@ -119,7 +132,18 @@ impl Drawing {
     /// True once the picture shows everything as it is.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        self.due == 0
+        self.due == 0 && self.converged.is_done()
+    }
+
+    /// The samples of light with extent that the picture is the mean of; 0 of 0 if there is no such light.
+    #[must_use]
+    pub fn converged(&self) -> Converged {
+        self.converged
+    }
+
+    /// Those of them that this frame draws, if the picture converges.
+    pub(super) fn part(&self) -> Option<Part> {
+        self.part
     }
 
     /// True if the picture shows everything as it is, and is not drawn in this frame.
@@ -246,9 +270,11 @@ impl Changes<'_, '_> {
     }
 }
 
-/// Chooses the views that this frame draws.
+/// Chooses the views that this frame draws, and the samples of light with extent in those that converge.
 fn rest(
     mut changes: Changes,
+    shown: Res<Shown>,
+    mut convergence: ResMut<Convergence>,
     mut views: Query<(
         Entity,
         &View,
@@ -258,10 +284,15 @@ fn rest(
         &Projection,
         &Tonemapping,
         Option<&Overrides>,
+        Has<Hdr>,
     )>,
 ) {
     let (all, some) = changes.find();
-    for (entity, view, mut drawing, mut camera, transform, lens, tone, overrides) in &mut views {
+    let extent = changes.registry.has_extent(shown.light_types(&changes.registry));
+    let target = if extent { convergence.target.max(1) } else { 0 };
+    // True if a picture begins, and the fewest samples that another lacks.
+    let (mut begins, mut missing) = (false, None::<u32>);
+    for (entity, view, mut drawing, mut camera, transform, lens, tone, overrides, hdr) in &mut views {
         let look = Look {
             view: *view,
             transform: *transform,
@@ -273,18 +304,43 @@ fn rest(
             tone: *tone,
             overrides: overrides.cloned(),
         };
-        if all || some.contains(&overrides.map(|_| entity)) || drawing.last.as_ref() != Some(&look) {
+        let total = if hdr { target } else { 0 };
+        let changed =
+            all || some.contains(&overrides.map(|_| entity)) || drawing.last.as_ref() != Some(&look);
+        if changed || drawing.converged.total != total {
             drawing.last = Some(look);
             drawing.due = PICTURES;
+            drawing.converged.total = total;
         }
-        let draws = drawing.due > 0 && view.size.min_element() > 0;
+        let starts = drawing.due > 0;
+        if starts {
+            drawing.converged.done = 0;
+        }
+        let draws = !drawing.is_done() && view.size.min_element() > 0;
         if draws {
-            drawing.due -= 1;
+            drawing.due = drawing.due.saturating_sub(1);
             drawing.drawn += 1;
+            let Converged { done, total } = drawing.converged;
+            begins |= starts && total > 0;
+            if !starts {
+                missing = Some(missing.map_or(total - done, |least| least.min(total - done)));
+            }
         }
         drawing.draws = draws;
         if camera.is_active != draws {
             camera.is_active = draws;
+        }
+    }
+    let converges = begins || missing.is_some();
+    let part = converges.then(|| convergence.bypass_change_detection().part(begins, missing));
+    if !converges {
+        convergence.bypass_change_detection().rest();
+    }
+    for (_, _, mut drawing, ..) in &mut views {
+        let drawing = drawing.bypass_change_detection();
+        drawing.part = part.filter(|_| drawing.draws && drawing.converged.total > 0);
+        if let Some(Part { count, .. }) = drawing.part {
+            drawing.converged.done += count;
         }
     }
 }
@@ -313,6 +369,8 @@ mod tests {
             .insert_resource(Registry::builtin())
             .init_asset::<ShaderBuffer>()
             .init_resource::<ShownTerms>()
+            .init_resource::<Shown>()
+            .init_resource::<Convergence>()
             .init_resource::<IlluminationBuffer>()
             .init_resource::<ParameterTables>()
             .add_systems(Update, (fit, rest).chain());

@@ -1,0 +1,271 @@
+//! Pictures that converge: each frame has a few samples of light with extent, and the picture is the mean of the frames.
+//! A pass between that of the objects and the display's joins a frame to the mean.
+//!
+//! While a view's picture converges it has two textures of 32-bit floats, one to read and one to write: 2 × 16 bytes for
+//! each pixel. A view that rests has none. Cameras without a [`View`] draw all samples in each frame, and should not share
+//! the frames of views that converge.
+
+use std::collections::{HashMap, HashSet};
+
+use bevy::{
+    app::{App, Plugin},
+    asset::AssetId,
+    core_pipeline::{Core3d, Core3dSystems, tonemapping::tonemapping},
+    ecs::prelude::*,
+    log::error_once,
+    render::{
+        Extract, ExtractSchedule, Render, RenderApp, RenderSystems,
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroupEntries, BindGroupLayout, BindGroupLayoutEntries, BufferInitDescriptor, BufferUsages,
+            Extent3d, LoadOp, Operations, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            ShaderStages, StoreOp, TextureDescriptor, TextureDimension, TextureFormat, TextureSampleType,
+            TextureUsages, TextureView, TextureViewDescriptor,
+            binding_types::{texture_2d, uniform_buffer_sized},
+        },
+        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+        storage::{GpuShaderBuffer, ShaderBuffer},
+        sync_world::RenderEntity,
+        view::ViewTarget,
+    },
+};
+
+use super::{
+    converge::Part,
+    illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
+    stage::Stage,
+    view::{Drawing, View},
+};
+use crate::shader::wgsl;
+
+/// The format of means.
+const MEAN: TextureFormat = TextureFormat::Rgba32Float;
+/// The format of frames.
+const FRAME: TextureFormat = TextureFormat::Rgba16Float;
+
+/// Joins frames to means.
+pub(super) struct MeanPlugin;
+
+impl Plugin for MeanPlugin {
+    fn build(&self, app: &mut App) {
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            render
+                .init_resource::<Samples>()
+                .add_systems(ExtractSchedule, extract)
+                .add_systems(Render, (write, prepare).in_set(RenderSystems::PrepareResources))
+                .add_systems(Core3d, join.after(Core3dSystems::MainPass).before(tonemapping));
+        }
+    }
+}
+
+/// What the frame of a view adds to its mean.
+#[derive(Component, Clone, Copy, Debug)]
+struct Joins {
+    /// Samples that the mean has, with those of the frame.
+    done: u32,
+    /// Those of the frame.
+    count: u32,
+    illumination: AssetId<ShaderBuffer>,
+}
+
+/// The mean of the frames of a view.
+#[derive(Component)]
+struct Mean {
+    size: Extent3d,
+    /// That to read, and that to write.
+    textures: [TextureView; 2],
+}
+
+impl Mean {
+    fn new(size: Extent3d, device: &RenderDevice) -> Self {
+        let texture = |_| {
+            let texture = device.create_texture(&TextureDescriptor {
+                label: Some("mean"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: TextureDimension::D2,
+                format: MEAN,
+                usage: TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            texture.create_view(&TextureViewDescriptor::default())
+        };
+        Self { size, textures: [0, 1].map(texture) }
+    }
+}
+
+/// The samples of this frame, for buffers of lights; none are all.
+#[derive(Default, Resource)]
+struct Samples {
+    wanted: HashMap<AssetId<ShaderBuffer>, Part>,
+    /// Buffers that have not all samples.
+    written: HashSet<AssetId<ShaderBuffer>>,
+}
+
+type Views<'w, 's> = Query<'w, 's, (RenderEntity, &'static Drawing, Option<&'static Stage>), With<View>>;
+
+fn extract(
+    views: Extract<Views>,
+    shared: Extract<Res<IlluminationBuffer>>,
+    known: Query<(), With<Joins>>,
+    mut samples: ResMut<Samples>,
+    mut commands: Commands,
+) {
+    for (entity, drawing, stage) in &views {
+        let Some(part) = drawing.part() else {
+            if known.contains(entity) {
+                commands.entity(entity).remove::<(Joins, Mean)>();
+            }
+            continue;
+        };
+        let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
+        samples.wanted.insert(illumination, part);
+        let done = drawing.converged().done;
+        commands.entity(entity).insert(Joins { done, count: part.count, illumination });
+    }
+}
+
+/// Writes the samples of this frame into the buffers of lights, and all into those whose pictures have converged.
+fn write(mut samples: ResMut<Samples>, buffers: Res<RenderAssets<GpuShaderBuffer>>, queue: Res<RenderQueue>) {
+    let Samples { wanted, written } = &mut *samples;
+    written.retain(|buffer| {
+        let done = !wanted.contains_key(buffer);
+        if done && let Some(gpu) = buffers.get(*buffer) {
+            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(None));
+        }
+        !done
+    });
+    for (buffer, part) in wanted.drain() {
+        if let Some(gpu) = buffers.get(buffer) {
+            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(Some(part)));
+            written.insert(buffer);
+        }
+    }
+}
+
+/// Gives views textures for their means. What was written in the frame before is read in this one.
+fn prepare(
+    mut views: Query<(Entity, &ViewTarget, Option<&mut Mean>), With<Joins>>,
+    device: Res<RenderDevice>,
+    mut commands: Commands,
+) {
+    for (view, target, mean) in &mut views {
+        let size = target.main_texture().size();
+        match mean {
+            Some(mut mean) if mean.size == size => mean.textures.reverse(),
+            _ => _ = commands.entity(view).insert(Mean::new(size, &device)),
+        }
+    }
+}
+
+/// The pass that joins a frame to a mean.
+struct Pass {
+    layout: BindGroupLayout,
+    pipeline: RenderPipeline,
+}
+
+impl Pass {
+    fn new(device: &RenderDevice) -> Self {
+        let float = TextureSampleType::Float { filterable: false };
+        let entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::FRAGMENT,
+            (
+                texture_2d(float),
+                texture_2d(float),
+                uniform_buffer_sized(false, None),
+                uniform_buffer_sized(false, None),
+            ),
+        );
+        let layout = device.create_bind_group_layout("mean", &entries);
+        let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
+        let module = device.create_and_validate_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("mean"),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("mean"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let targets = [FRAME, MEAN].map(|format| Some(format.into()));
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("mean"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+}
+
+/// Joins the frame of a view to its mean, and shows that in place of the frame.
+fn join(
+    view: ViewQuery<(&ViewTarget, &Joins, &Mean)>,
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
+    device: Res<RenderDevice>,
+    mut pass: Local<Option<Pass>>,
+    mut context: RenderContext,
+) {
+    let (target, joins, Mean { textures: [known, next], .. }) = view.into_inner();
+    let Some(illumination) = buffers.get(joins.illumination) else { return };
+    if target.main_texture_format() != FRAME {
+        error_once!(
+            "The frames of a picture have the format {:?} in place of {FRAME:?}",
+            target.main_texture_format()
+        );
+        return;
+    }
+    let Pass { layout, pipeline } = pass.get_or_insert_with(|| Pass::new(&device));
+    let share = [joins.count as f32 / joins.done as f32, 0.0, 0.0, 0.0];
+    let share = device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("mean"),
+        contents: &share.map(f32::to_le_bytes).concat(),
+        usage: BufferUsages::UNIFORM,
+    });
+    let frame = target.post_process_write();
+    let group = device.create_bind_group(
+        "mean",
+        layout,
+        &BindGroupEntries::sequential((
+            frame.source,
+            known,
+            illumination.buffer.as_entire_buffer_binding(),
+            share.as_entire_buffer_binding(),
+        )),
+    );
+    let attachment = |view| {
+        Some(RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations { load: LoadOp::Clear(Default::default()), store: StoreOp::Store },
+        })
+    };
+    let mut pass = context.command_encoder().begin_render_pass(&RenderPassDescriptor {
+        label: Some("mean"),
+        color_attachments: &[attachment(frame.destination), attachment(next)],
+        depth_stencil_attachment: None,
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &*group, &[]);
+    pass.draw(0..3, 0..1);
+}

@@ -1,0 +1,49 @@
+// The mean of the frames of a picture that converges, and the picture of it. `srgb_decode` comes before it.
+
+// The beginning of `Illumination` in lights.wgsl.
+struct Header {
+    count: u32,
+    terms: u32,
+    exposure: f32,
+    gamma_naive: u32,
+    channel: u32,
+}
+
+@group(0) @binding(0) var frame: texture_2d<f32>;
+@group(0) @binding(1) var known: texture_2d<f32>;
+@group(0) @binding(2) var<uniform> illumination: Header;
+// The part that the frame has in the mean; 1 in a picture that begins.
+@group(0) @binding(3) var<uniform> share: vec4<f32>;
+
+// As in wrapper.wgsl.
+const CUT_OFF: f32 = 254.0 / 255.0;
+const WHITE: f32 = 1.0005;
+
+struct Drawn {
+    @location(0) picture: vec4<f32>,
+    @location(1) mean: vec4<f32>,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let corner = vec2(f32(index >> 1u), f32(index & 1u));
+    return vec4(corner * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> Drawn {
+    let pixel = vec2<u32>(position.xy);
+    var mean = textureLoad(frame, pixel, 0);
+    if share.x < 1.0 {
+        mean = mix(textureLoad(known, pixel, 0), mean, share.x);
+    }
+    // The opacity of the mean is 0 where something is seen, 1 where nothing is, and in a channel everywhere.
+    var colour = mean.rgb;
+    var is_cut_off = mean.a < 1.0 && any(colour > vec3(WHITE));
+    if illumination.gamma_naive != 0u && illumination.channel == 0u {
+        is_cut_off = mean.a < 1.0 && any(colour >= vec3(1.0));
+        let c = clamp(colour, vec3(0.0), vec3(1.0));
+        colour = mix(vec3(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)), colour, mean.a);
+    }
+    return Drawn(vec4(colour, select(1.0, CUT_OFF, is_cut_off)), mean);
+}
