@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use super::{Asked, Corner, Geometry, Lit, Model, Part, Place, Seen, Setting, Spot};
+use super::{Asked, Brightest, Corner, Geometry, Integral, Lit, Model, Part, Place, Seen, Setting, Spot};
+use glam::Vec3;
+
 use crate::{
     light::Incident,
-    optics::colour::Encoding,
+    optics::{TermSelection, colour::Encoding},
     parameter::{Parameter, Value, Values},
     reference::{
         Settings,
@@ -102,17 +104,33 @@ impl Explain<'_> {
             Incident::From { l, intensity } => (intensity, Some(Geometry::new(l, run))),
             Incident::Uniform { intensity } => (intensity, None),
         };
+        let integral = by.integral.map(|integral| Integral {
+            errors: integral.errors,
+            error: match self.settings.terms {
+                TermSelection::All => integral.error,
+                terms => integral.errors.select(terms),
+            },
+            samples: integral.samples,
+            solid_angle: integral.solid_angle,
+            brightest: integral.brightest.map(|brightest| Brightest {
+                geometry: Geometry::new(brightest.l, run),
+                luminance: brightest.radiance,
+                response: brightest.response,
+            }),
+        });
+        let extends = integral.is_some();
         Lit {
             light: self.light(by.index, light),
             equation: declaration.map_or("", |d| d.equation),
             position,
             distance: position.map(|p| p.distance(point.position)),
-            factors: by.factors.clone(),
+            factors: if extends { Vec::new() } else { by.factors.clone() },
             intensity,
             colour: by.record.colour,
-            arriving: intensity * by.record.colour,
-            geometry,
+            arriving: if extends { Vec3::ONE } else { intensity * by.record.colour },
+            geometry: geometry.filter(|_| !extends),
             response: by.response,
+            integral,
             contribution: by.contribution,
         }
     }

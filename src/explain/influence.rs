@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{ExplainError, Explainer};
+use super::{ExplainError, Explainer, Seen, integral::digits_within, numbers::DIGITS};
 use crate::{
     optics::colour::luminance,
     parameter::{ParameterKind, Value},
@@ -52,6 +52,8 @@ pub struct Influence {
     pub light: [Vec3; 2],
     /// A hundredth of its range.
     pub hundredth: f64,
+    /// The significant digits of the differences that mean something: fewer where light with extent has noise.
+    pub digits: usize,
 }
 
 impl Influence {
@@ -92,6 +94,8 @@ impl Explainer {
         let explanation = self.pixel(scene, registry, settings, pixel)?;
         let Some(seen) = explanation.seen else { return Ok(Vec::new()) };
         let object = seen.object.index;
+        // The samples are the same for all values, so that differences are smooth; they have the relative error of the sum.
+        let digits = digits_within(noise(&seen), DIGITS);
         let mut knobs = Vec::new();
         for setting in &seen.model.settings {
             let parameter = setting.parameter;
@@ -133,12 +137,23 @@ impl Explainer {
                 *light = self.pixel(&changed, registry, settings, pixel)?.steps.light;
             }
             knob.restore(&mut changed, scene);
-            found.push(Influence { knob, symbol, label, unit, value, tried, light, hundredth });
+            found.push(Influence { knob, symbol, label, unit, value, tried, light, hundredth, digits });
         }
         let size = |influence: &Influence| influence.effect().abs();
         found.sort_by(|a, b| size(b).total_cmp(&size(a)));
         Ok(found)
     }
+}
+
+/// The standard error of the light of a pixel over that light, at the worst of its points.
+fn noise(seen: &Seen) -> f32 {
+    let of = |spot: &super::Spot| {
+        let squares: f32 =
+            spot.lights.iter().filter_map(|lit| Some(luminance(lit.integral?.error).powi(2))).sum();
+        let light = luminance(spot.sum);
+        if light > 0.0 { squares.sqrt() / light } else { 0.0 }
+    };
+    seen.spots.iter().map(of).fold(0.0, f32::max)
 }
 
 impl Knob {

@@ -3,7 +3,10 @@
 use glam::Vec3;
 use serde_json::{Value as Json, json};
 
-use super::{Explanation, Influence, Lit, Model, Part, Place, Seen, Setting, Spot, angle};
+use super::{
+    Brightest, Explanation, Geometry, Influence, Integral, Line, Lit, Model, Part, Place, Seen, Setting,
+    Spot, angle,
+};
 use crate::{light::Factor, optics::Terms, parameter, text::number as finite};
 
 /// The digits of numbers that are put in: all that 32 bits have.
@@ -158,16 +161,62 @@ impl Spot {
     }
 }
 
+/// The scalar products at a point by name, as they are or as angles.
+fn cosines(geometry: &Geometry, of: impl Fn(f32) -> f32) -> Json {
+    geometry.cosines.into_iter().map(|(name, c)| (name.to_owned(), number(of(c)))).collect()
+}
+
+fn terms(Terms { ambient, diffuse, specular }: &Terms) -> Json {
+    json!({ "ambient": triple(*ambient), "diffuse": triple(*diffuse), "specular": triple(*specular) })
+}
+
+fn lines(lines: &[Line]) -> Json {
+    let line = |line: &Line| {
+        json!({
+            "term": line.symbol(),
+            "text": line.text,
+            "numbers": line.numbers,
+            "value": line.value.map(|value| value.rgb.map(exact)),
+            "error": line.error.map(triple),
+            "defines": line.defines(),
+            "unit": line.value.map(|value| if value.degrees == 1 { "°" } else { "" }),
+            "quantity": line.quantity.map(|quantity| quantity.label),
+            "source": line.quantity.map(|quantity| quantity.source),
+        })
+    };
+    lines.iter().map(line).collect()
+}
+
+impl Integral {
+    fn to_json(&self, model: &Model) -> Json {
+        let brightest = |brightest: &Brightest| {
+            let geometry = &brightest.geometry;
+            json!({
+                "L": triple(geometry.l),
+                "H": triple(geometry.h),
+                "R": triple(geometry.r),
+                "cosines": cosines(geometry, |c| c),
+                "angles": cosines(geometry, angle),
+                "luminance": triple(brightest.luminance),
+                "response": terms(&brightest.response),
+                "lines": lines(&brightest.lines(model, FULL)),
+            })
+        };
+        let [solid_angle, solid_angle_error] = self.solid_angle.map(number);
+        json!({
+            "samples": { "light": self.samples, "lobes": self.samples },
+            "errors": terms(&self.errors),
+            "error": triple(self.error),
+            "solid_angle": solid_angle,
+            "solid_angle_error": solid_angle_error,
+            "brightest": self.brightest.as_ref().map(brightest),
+        })
+    }
+}
+
 impl Lit {
     fn to_json(&self, model: &Model) -> Json {
-        let cosines = self.geometry.map(|geometry| {
-            let cosines = geometry.cosines.into_iter();
-            cosines.map(|(name, c)| (name.to_owned(), number(c))).collect::<serde_json::Map<_, _>>()
-        });
-        let angles = self.geometry.map(|geometry| {
-            let cosines = geometry.cosines.into_iter();
-            cosines.map(|(name, c)| (name.to_owned(), number(angle(c)))).collect::<serde_json::Map<_, _>>()
-        });
+        let one = self.integral.is_none();
         let factor = |factor: &Factor| {
             let from = factor.from.iter().map(
                 |(symbol, value, unit)| json!({ "symbol": symbol, "value": number(*value), "unit": unit }),
@@ -180,20 +229,6 @@ impl Lit {
                 "from": from.collect::<Json>(),
             })
         };
-        let lines = self.rounded_lines(model, FULL);
-        let line = |line: &super::Line| {
-            json!({
-                "term": line.symbol(),
-                "text": line.text,
-                "numbers": line.numbers,
-                "value": line.value.map(|value| value.rgb.map(exact)),
-                "defines": line.defines(),
-                "unit": line.value.map(|value| if value.degrees == 1 { "°" } else { "" }),
-                "quantity": line.quantity.map(|quantity| quantity.label),
-                "source": line.quantity.map(|quantity| quantity.source),
-            })
-        };
-        let Terms { ambient, diffuse, specular } = self.response;
         json!({
             "light": part(&self.light),
             "position": self.position.map(triple),
@@ -201,15 +236,16 @@ impl Lit {
             "L": self.geometry.map(|g| triple(g.l)),
             "H": self.geometry.map(|g| triple(g.h)),
             "R": self.geometry.map(|g| triple(g.r)),
-            "cosines": cosines,
-            "angles": angles,
-            "equation": self.equation,
+            "cosines": self.geometry.map(|g| cosines(&g, |c| c)),
+            "angles": self.geometry.map(|g| cosines(&g, angle)),
+            "equation": one.then_some(self.equation),
             "factors": self.factors.iter().map(factor).collect::<Json>(),
-            "intensity": triple(self.intensity),
+            "intensity": one.then(|| triple(self.intensity)),
             "colour": triple(self.colour),
-            "arriving": triple(self.arriving),
-            "response": { "ambient": triple(ambient), "diffuse": triple(diffuse), "specular": triple(specular) },
-            "lines": lines.iter().map(line).collect::<Json>(),
+            "arriving": one.then(|| triple(self.arriving)),
+            "response": terms(&self.response),
+            "integral": self.integral.as_ref().map(|integral| integral.to_json(model)),
+            "lines": lines(&self.rounded_lines(model, FULL)),
             "contribution": triple(self.contribution),
         })
     }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{
-    Geometry, Lit, Model, Setting, number,
+    Geometry, Lit, Model, Setting, measured, number,
     numbers::{DIGITS, colour, of_value, rounded_triple},
     put::{Put, Symbols, put},
     triple,
@@ -42,6 +42,8 @@ pub struct Line {
     pub symbols: Vec<Option<String>>,
     /// Its value, where it is known.
     pub value: Option<Value>,
+    /// The standard error of the value, where it is an integral over a light with extent.
+    pub error: Option<Vec3>,
     /// The declaration of a quantity; none for a part of the equation itself.
     pub quantity: Option<&'static Quantity>,
 }
@@ -79,6 +81,15 @@ impl Line {
     #[must_use]
     pub fn rgb(&self) -> Option<Vec3> {
         self.value.map(|value| Vec3::from_array(value.rgb.map(|v| v as f32)))
+    }
+
+    /// The value as it is to be written: with so many digits, or with those that its standard error allows.
+    #[must_use]
+    pub fn outcome(&self, digits: usize) -> Option<String> {
+        match (self.rgb(), self.error) {
+            (Some(value), Some(error)) => Some(measured(value, error)),
+            _ => self.value.as_ref().map(|value| of_value(value, digits)),
+        }
     }
 
     /// The right side with numbers, without what is defined.
@@ -154,7 +165,10 @@ impl Lit {
     /// The same with so many significant digits, and more where the value would not follow from so few.
     #[must_use]
     pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
-        model.lines(self.geometry.as_ref(), &self.response, digits)
+        match &self.integral {
+            Some(integral) => integral.lines(&self.response),
+            None => model.lines(self.geometry.as_ref(), &self.response, digits),
+        }
     }
 
     /// The terms that reach the observer: those that are shown and not 0.
@@ -242,6 +256,7 @@ impl Lines<'_> {
             numbers: None,
             symbols: Vec::new(),
             value: Some(value),
+            error: None,
             quantity: albedo.then_some(&ALBEDO),
         };
         let texts: Vec<_> = parts(self.model, term).filter(|_| said).collect();
@@ -327,7 +342,7 @@ impl Lines<'_> {
     ) {
         let put = self.numbers(text, given);
         let (numbers, symbols) = put.map_or((None, Vec::new()), |put| (Some(put.text), put.symbols));
-        self.lines.push(Line { term, text: text.to_owned(), numbers, symbols, value, quantity });
+        self.lines.push(Line { term, text: text.to_owned(), numbers, symbols, value, error: None, quantity });
     }
 
     /// A text with numbers, of as many digits as it takes to get the value from them.

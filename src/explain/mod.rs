@@ -42,6 +42,7 @@ mod factor_curve;
 pub mod finite;
 mod geometry;
 mod influence;
+mod integral;
 mod json;
 mod lines;
 mod numbers;
@@ -57,8 +58,9 @@ use collect::Explain;
 pub use factor_curve::{Along, FactorCurve};
 pub use geometry::Geometry;
 pub use influence::{Influence, Knob};
+pub use integral::{Brightest, Integral};
 pub use lines::{Line, agrees, reading};
-pub use numbers::{number, of_value, rounded, rounded_number_or_triple, rounded_triple, triple};
+pub use numbers::{measured, number, of_value, rounded, rounded_number_or_triple, rounded_triple, triple};
 pub use pairs::{Pair, pairs};
 pub use pinned::{Anchor, Sight};
 pub use put::{Put, Symbols, put, put_in};
@@ -280,12 +282,15 @@ pub struct Lit {
     pub intensity: Vec3,
     /// The linear colour of the light.
     pub colour: Vec3,
-    /// Intensity times colour.
+    /// Intensity times colour. Of a light with extent 1: its luminance is in the integral.
     pub arriving: Vec3,
-    /// Directions and cosines; none for light from everywhere.
+    /// Directions and cosines; none for light from everywhere, and for light with extent.
     pub geometry: Option<Geometry>,
-    /// The answer of the model to light of unit intensity, by term; for light from everywhere, its ambient response.
+    /// The answer of the model to light of unit intensity, by term; for light from everywhere, its ambient response; for light
+    /// with extent the integral of the answer times the luminance.
     pub response: Terms,
+    /// What the integral rests on, for light with extent.
+    pub integral: Option<Integral>,
     /// The light that leaves to the observer: the response times the arriving light, of the terms that are shown.
     pub contribution: Vec3,
 }
@@ -341,7 +346,7 @@ impl Lit {
     /// True if the light does not reach the point, as outside a cone.
     #[must_use]
     pub fn is_dark(&self) -> bool {
-        self.arriving == Vec3::ZERO
+        self.arriving == Vec3::ZERO || self.integral.is_some() && self.response == Terms::default()
     }
 
     /// True if the surface faces away from the light.
@@ -357,7 +362,7 @@ impl Lit {
             Some("None of its light reaches the point.")
         } else if self.is_behind() {
             Some("N·L ≤ 0: the surface faces away from the light.")
-        } else if self.geometry.is_none() {
+        } else if self.geometry.is_none() && self.integral.is_none() {
             Some("Light from everywhere: the model answers it as a whole, with its ambient term.")
         } else {
             None

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::integral::with_error;
 use crate::text::expression::Value;
 
 /// Digits that tell: codes have eight bits.
@@ -79,6 +80,16 @@ pub fn of_value(value: &Value, digits: usize) -> String {
 #[must_use]
 pub fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
     if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
+}
+
+/// A number, or the three that differ, with standard errors, and as many digits as those allow: `0.512 ± 0.003`.
+#[must_use]
+pub fn measured(v: Vec3, error: Vec3) -> String {
+    let all: [[String; 2]; 3] = std::array::from_fn(|i| with_error(v[i], error[i]));
+    match &all {
+        [x, y, z] if x == y && y == z => format!("{} ± {}", x[0], x[1]),
+        [x, y, z] => format!("({}, {}, {}) ± ({}, {}, {})", x[0], y[0], z[0], x[1], y[1], z[1]),
+    }
 }
 
 /// A colour as equations have it.

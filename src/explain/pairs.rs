@@ -1,6 +1,11 @@
 //! Two explanations of one point beside each other: the lines that belong together, and those that differ.
 
+use glam::DVec3;
+
 use super::{Line, agrees};
+
+/// Two integrals differ if they are more standard errors apart than this.
+const SURE: f64 = 2.0;
 
 /// A line of one explanation, the line of the other that defines the same, or both.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +23,13 @@ impl Pair {
         match (&self.a, &self.b) {
             (Some(a), Some(b)) => {
                 let same = match (&a.value, &b.value) {
+                    // What the noise of the samples may make is no difference.
+                    (Some(x), Some(y)) if a.error.is_some() || b.error.is_some() => {
+                        let [of_a, of_b] = [a, b].map(|line| line.error.unwrap_or_default().as_dvec3());
+                        let reach = SURE * (of_a * of_a + of_b * of_b).map(f64::sqrt);
+                        let apart = DVec3::from_array(x.rgb) - DVec3::from_array(y.rgb);
+                        agrees(x, y, super::numbers::DIGITS) || apart.abs().cmple(reach).all()
+                    }
                     (Some(a), Some(b)) => agrees(a, b, super::numbers::DIGITS),
                     (a, b) => a.is_none() && b.is_none(),
                 };
@@ -69,8 +81,21 @@ mod tests {
             numbers: None,
             symbols: Vec::new(),
             value: Some(Value::number(value)),
+            error: None,
             quantity: None,
         }
+    }
+
+    #[test]
+    fn the_noise_of_integrals_is_no_difference() {
+        let pair = |a: f64, b: f64, error: f32| {
+            let of = |v: f64| Line {
+                error: Some(glam::Vec3::splat(error)),
+                ..line("I_d = ∫ I_d(l) L(l) dω", v)
+            };
+            Pair { a: Some(of(a)), b: Some(of(b)) }.differs()
+        };
+        assert_eq!([pair(1.0, 1.01, 0.01), pair(1.0, 1.05, 0.01), pair(1.0, 1.01, 0.0)], [false, true, true]);
     }
 
     #[test]

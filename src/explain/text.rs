@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
+    Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
     lines::{self, calculation, reading},
     number,
     numbers::{DIGITS, colour, of_value},
@@ -39,6 +39,9 @@ impl Explanation {
         let form = if markdown { Form::Markdown } else { Form::Text };
         let mut out = Writer { text: String::new(), form };
         out.heading("What would move this pixel most, by differences");
+        if influences.iter().any(|influence| influence.digits < DIGITS) {
+            out.line(1, "The digits are those that the noise of the light with extent leaves.");
+        }
         if !influences.iter().any(Influence::moves) {
             out.line(1, "No number of the material or of a light changes this pixel.");
         }
@@ -47,13 +50,13 @@ impl Explanation {
             let space = if matches!(*unit, "" | "°") { "" } else { " " };
             let [low, high] = tried.map(|v| rounded(v, DIGITS));
             let what = format!("{symbol} = {}{space}{unit}", rounded(*value, DIGITS));
-            let derivative = triple(influence.derivative());
+            let derivative = rounded_triple(influence.derivative(), influence.digits);
             out.line(
                 1,
                 format_args!(
                     "{what}, {label}: Δ light/Δ {symbol} = {derivative} between {low} and {high}; luminance {} for 1 % of \
                      the range",
-                    signed(influence.effect())
+                    signed(influence.effect(), influence.digits)
                 ),
             );
         }
@@ -91,8 +94,7 @@ impl Explanation {
                     for (name, line) in [(a, &pair.a), (b, &pair.b)] {
                         match line {
                             Some(line) => {
-                                let value =
-                                    line.value.as_ref().map(|v| format!(" = {}", of_value(v, DIGITS)));
+                                let value = line.outcome(DIGITS).map(|value| format!(" = {value}"));
                                 let numbers = line.right().map(|n| format!(" = {n}")).unwrap_or_default();
                                 let value = value.unwrap_or_default();
                                 out.mathematics(
@@ -209,20 +211,15 @@ impl Explanation {
             out.line(2, format_args!("position {} m, distance d = {} m", triple(position), number(distance)));
         }
         if let Some(geometry) = &lit.geometry {
-            let [l, h, r] = [geometry.l, geometry.h, geometry.r].map(triple);
-            out.line(2, format_args!("L = {l}, H = {h}, R = {r}"));
-            let shown = if seen.model.declaration.anisotropic {
-                [0, 1, 2, 3, 4, 7, 8].as_slice()
-            } else {
-                &[0, 1, 2, 3, 4]
-            };
-            let cosines = shown.iter().map(|i| geometry.cosines[*i]);
-            let cosines: Vec<_> =
-                cosines.map(|(name, c)| format!("{name} = {} ({}°)", number(c), number(angle(c)))).collect();
-            out.line(2, cosines.join(", "));
-            angles(out, seen, geometry);
+            directions(out, seen, geometry);
         }
-        arriving(out, lit);
+        match &lit.integral {
+            Some(integral) => {
+                out.line(2, integral.basis());
+                out.line(2, integral.filled());
+            }
+            None => arriving(out, lit),
+        }
         if let Some(remark) = lit.remark() {
             out.line(2, remark);
         }
@@ -233,14 +230,34 @@ impl Explanation {
             equation(out, &line);
         }
         let sum = lit.sum(self.terms);
-        out.line(2, format_args!("light to the observer: {sum} × {}", triple(lit.arriving)));
-        if sum != "0" {
-            out.mathematics(3, "= ", &lit.product(self.terms), "");
+        if lit.integral.is_some() {
+            out.line(2, format_args!("light to the observer: {sum}"));
+        } else {
+            out.line(2, format_args!("light to the observer: {sum} × {}", triple(lit.arriving)));
+            if sum != "0" {
+                out.mathematics(3, "= ", &lit.product(self.terms), "");
+            }
         }
-        out.mathematics(3, "= ", &triple(lit.contribution), "");
+        out.mathematics(3, "= ", &lit.outcome(DIGITS), "");
+        if let Some(brightest) = lit.integral.and_then(|integral| integral.brightest) {
+            self.brightest(out, seen, &brightest);
+        }
         if !lit.is_finite() {
             out.line(2, "Some of these are not finite numbers.");
         }
+    }
+
+    /// The direction of a light with extent that gives most, with the equation as for light from there.
+    fn brightest(&self, out: &mut Writer, seen: &Seen, brightest: &Brightest) {
+        out.line(2, "Of the directions that were sampled, the one that gives most:");
+        directions(out, seen, &brightest.geometry);
+        let luminance = rounded_number_or_triple(brightest.luminance, DIGITS);
+        out.mathematics(2, "", &format!("L(l) = {luminance} cd/m²"), ": the luminance from there");
+        for line in brightest.lines(&seen.model, DIGITS) {
+            equation(out, &line);
+        }
+        let gives = triple(brightest.gives(self.terms));
+        out.line(2, format_args!("from there to the observer, per steradian: {gives}"));
     }
 
     fn display(&self, out: &mut Writer) {
@@ -291,7 +308,7 @@ impl Explanation {
 
 /// A line of the equation: as it is written, with numbers, and its value.
 fn equation(out: &mut Writer, line: &Line) {
-    let value = line.value.as_ref().map(|value| of_value(value, DIGITS));
+    let value = line.outcome(DIGITS);
     let about = line.quantity.map_or_else(String::new, |quantity| match quantity.source {
         "" => format!(": {}", quantity.label),
         source => format!(": {}, {source}", quantity.label),
@@ -311,9 +328,10 @@ fn equation(out: &mut Writer, line: &Line) {
     }
 }
 
-/// A number with its sign.
-fn signed(v: f32) -> String {
-    if v > 0.0 { format!("+{}", number(v)) } else { number(v) }
+/// A number with its sign and so many digits.
+fn signed(v: f32, digits: usize) -> String {
+    let sign = if v > 0.0 { "+" } else { "" };
+    format!("{sign}{}", rounded(v, digits))
 }
 
 /// A part of the scene as messages name it.
@@ -382,6 +400,19 @@ fn result(out: &mut Writer, seen: &Seen) {
         out.line(1, format_args!("{sign}{} × {}", number(corner.weight), triple(corner.colour)));
     }
     out.line(1, format_args!("= {}", triple(seen.light)));
+}
+
+/// Directions, their cosines and angles.
+fn directions(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
+    let [l, h, r] = [geometry.l, geometry.h, geometry.r].map(triple);
+    out.line(2, format_args!("L = {l}, H = {h}, R = {r}"));
+    let shown =
+        if seen.model.declaration.anisotropic { [0, 1, 2, 3, 4, 7, 8].as_slice() } else { &[0, 1, 2, 3, 4] };
+    let cosines = shown.iter().map(|i| geometry.cosines[*i]);
+    let cosines: Vec<_> =
+        cosines.map(|(name, c)| format!("{name} = {} ({}°)", number(c), number(angle(c)))).collect();
+    out.line(2, cosines.join(", "));
+    angles(out, seen, geometry);
 }
 
 /// The angles of directions, by the symbols that equations have for them; those around the normal, and the tangent from which they

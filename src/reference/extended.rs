@@ -5,12 +5,12 @@ use glam::Vec3;
 
 use crate::{
     light::{
-        Emitters,
+        Emitter, Emitters, LightRecord,
         extent::{BLOCK, Directions, Sample},
     },
     optics::{
-        Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sampling::power_heuristic,
-        sequence::Sequence,
+        Frame, TermSelection, Terms, colour::luminance, lobes::Lobes, radiometry::Arriving,
+        sampling::power_heuristic, sequence::Sequence,
     },
     reflection::Surface,
 };
@@ -54,10 +54,27 @@ pub(super) struct Extended {
 pub(crate) struct Integral {
     /// The answer by term, times the radiance.
     pub(crate) terms: Terms,
-    /// The standard error of the sum of the terms.
+    /// The standard error of each term.
+    pub(crate) errors: Terms,
+    /// That of the sum of the terms, whose errors may add up or cancel.
     pub(crate) error: Vec3,
     /// The number of samples of the light, and as many of the lobes.
     pub(crate) samples: u32,
+    /// The solid angle from which the light shines, sr, and its standard error.
+    pub(crate) solid_angle: [f32; 2],
+    /// Of the directions that were taken, the one in which radiance times answer is largest; none if all are dark.
+    pub(crate) brightest: Option<Brightest>,
+}
+
+/// One direction of a light with extent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Brightest {
+    /// Unit vector to the light.
+    pub(crate) l: Vec3,
+    /// The radiance from there, the colour of the light included.
+    pub(crate) radiance: Vec3,
+    /// The answer of the model to light of unit intensity from there.
+    pub(crate) response: Terms,
 }
 
 /// A direction and what arrives from there, over its density.
@@ -93,9 +110,10 @@ impl Extended {
         sum / count.max(1) as f32
     }
 
-    /// The integral over the lights by term, with its standard error from parts of the samples.
+    /// The integral over its one light by term, with its standard error from parts of the samples, and what explains it.
     pub(super) fn integral(
         &self,
+        (emitter, record): (&dyn Emitter, &LightRecord),
         surface: &dyn Surface,
         p: Vec3,
         v: Vec3,
@@ -104,38 +122,59 @@ impl Extended {
     ) -> Integral {
         /// The parts: independently scrambled sequences of a sixteenth of the samples each.
         const PARTS: u32 = 16;
-        let count = self.samples.count;
-        let answer = |at: &At, first: u32, count: u32| {
-            let mut terms = Terms::default();
+        let LightSamples { first, count } = self.samples;
+        let answer = |at: &At, first: u32, count: u32, watch: &mut dyn FnMut(Vec3, Terms)| {
+            let mut terms = [Vec3::ZERO; 3];
             let mut take = |arriving: &[Arriving]| {
                 for Arriving { l, light } in arriving {
                     let answer = surface.response(*l, v, frame);
-                    terms.ambient += answer.ambient * *light;
-                    terms.diffuse += answer.diffuse * *light;
-                    terms.specular += answer.specular * *light;
+                    watch(*l, answer);
+                    terms = std::array::from_fn(|i| terms[i] + by_term(&answer)[i] * *light);
                 }
             };
             for start in (0..count).step_by(BLOCK) {
-                self.block(at, first + start, (count - start).min(BLOCK as u32) as usize, &mut take);
+                let number = first.wrapping_add(start);
+                self.block(at, number, (count - start).min(BLOCK as u32) as usize, &mut take);
             }
-            let share = 1.0 / count.max(1) as f32;
-            Terms {
-                ambient: terms.ambient * share,
-                diffuse: terms.diffuse * share,
-                specular: terms.specular * share,
+            terms.map(|term| term / count.max(1) as f32)
+        };
+        let mut brightest: Option<(f32, Brightest)> = None;
+        let mut watch = |l: Vec3, response: Terms| {
+            let radiance = emitter.seen(record, p, l).radiance * record.colour;
+            let size = luminance(response.select(TermSelection::All) * radiance);
+            if size > brightest.map_or(0.0, |(most, _)| most) {
+                brightest = Some((size, Brightest { l, radiance, response }));
             }
         };
-        let whole = answer(&At::new(surface.lobes(), p, v, frame, seed), self.samples.first, count);
-        let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-        for part in 0..PARTS {
-            let at = At::new(surface.lobes(), p, v, frame, seed ^ (part + 1) << 26);
-            let x = answer(&at, 0, (count / PARTS).max(1)).select(TermSelection::All);
-            sum += x;
-            squares += x * x;
+        let at = At::new(surface.lobes(), p, v, frame, seed);
+        let [ambient, diffuse, specular] = answer(&at, first, count, &mut watch);
+        let parts: [[Vec3; 3]; PARTS as usize] = std::array::from_fn(|part| {
+            let at = At::new(surface.lobes(), p, v, frame, seed ^ (part as u32 + 1) << 26);
+            answer(&at, 0, (count / PARTS).max(1), &mut |_, _| ())
+        });
+        let errors = std::array::from_fn::<_, 3, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
+        Integral {
+            terms: Terms { ambient, diffuse, specular },
+            errors: Terms { ambient: errors[0], diffuse: errors[1], specular: errors[2] },
+            error: standard_error(parts.iter().map(|terms| terms.iter().sum())),
+            samples: count,
+            solid_angle: self.solid_angle((emitter, record), p, seed),
+            brightest: brightest.map(|(_, brightest)| brightest),
         }
-        let n = PARTS as f32;
-        let variance = ((squares - sum * sum / n) / (n - 1.0)).max(Vec3::ZERO);
-        Integral { terms: whole, error: (variance / n).map(f32::sqrt), samples: count }
+    }
+
+    /// The solid angle from which its one light shines, and its standard error: the mean of the inverse densities.
+    fn solid_angle(&self, (emitter, record): (&dyn Emitter, &LightRecord), p: Vec3, seed: u32) -> [f32; 2] {
+        let number = self.groups.first().map_or(0, |(_, number)| *number);
+        let sequence = Sequence::new(seed, number + 1);
+        let inverse = |i: u32| {
+            let Sample { radiance, pdf, .. } =
+                emitter.sample(record, p, sequence.point(self.samples.first.wrapping_add(i)));
+            if pdf > 0.0 && radiance != Vec3::ZERO { pdf.recip() } else { 0.0 }
+        };
+        let all = || (0..self.samples.count).map(|i| Vec3::splat(inverse(i)));
+        let mean = all().sum::<Vec3>().x / self.samples.count.max(1) as f32;
+        [mean, standard_error(all()).x]
     }
 
     /// Hands out what arrives by some samples.
@@ -184,6 +223,20 @@ impl Extended {
     }
 }
 
+/// Ambient, diffuse, specular.
+fn by_term(terms: &Terms) -> [Vec3; 3] {
+    [terms.ambient, terms.diffuse, terms.specular]
+}
+
+/// The standard error of the mean of independent values; zero of a single one.
+fn standard_error(values: impl ExactSizeIterator<Item = Vec3> + Clone) -> Vec3 {
+    let n = values.len() as f32;
+    let mean = values.clone().sum::<Vec3>() / n;
+    // From the mean, since the squares of nearly equal numbers lose the digits in which they differ.
+    let squares: Vec3 = values.map(|x| (x - mean) * (x - mean)).sum();
+    (squares / (n * (n - 1.0)).max(1.0)).map(f32::sqrt)
+}
+
 /// The point, the viewer and the lobes of the model there.
 struct At<'a> {
     lobes: Lobes,
@@ -209,7 +262,7 @@ mod tests {
     use super::*;
     use crate::{
         light::{
-            LightEntry, LightRecord, LightType,
+            LightEntry, LightType,
             extent::{Sample, Seen},
         },
         optics::{colour::Encoding, geometry::direction, lobes::Lobe},

@@ -218,7 +218,7 @@ pub(super) fn light_by_light(
         let integral = entry
             .declaration
             .extent
-            .then(|| extended.integral(surface, point.position, v, &frame, point.seed));
+            .then(|| extended.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed));
         let alone = Lights {
             groups,
             extended,

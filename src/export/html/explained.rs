@@ -229,6 +229,11 @@ fn light(out: &mut String, seen: &Seen, lit: &Lit) {
     for line in lit.lines(&seen.model).iter().filter(|line| line.is_equation()) {
         *out += &worked(line);
     }
+    if let Some(integral) = &lit.integral {
+        *out += &paragraph("summary", &integral.basis());
+        *out += &paragraph("summary", &format!("Light to the observer: {}", lit.outcome(DIGITS)));
+        return;
+    }
     let sum = numbers(&format!("{} × {}", lit.sum(TermSelection::All), triple(lit.arriving)));
     *out += &paragraph("summary", "Light to the observer:");
     *out +=
@@ -245,6 +250,7 @@ fn worked(line: &Line) -> String {
     let written = line.text.contains('=');
     let head = if written { line.text.clone() } else { format!("{} =", line.defines()) };
     let value = line.value.as_ref().map(|value| match line.rgb() {
+        Some(_) if line.error.is_some() => numbers(&line.outcome(DIGITS).unwrap_or_default()),
         Some(light) if value.is_colour => colour(light),
         _ => {
             let (shown, all) = (of_value(value, DIGITS), of_value(value, 2 * DIGITS));

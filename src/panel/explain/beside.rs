@@ -69,7 +69,12 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         }
         halves(ui, first.contribution != second.contribution, |ui, i| {
             rows::note(ui, "light to the observer");
-            rows::light(ui, "=", lit[i].map_or(glam::Vec3::ZERO, |lit| lit.contribution), true);
+            match lit[i].and_then(|lit| Some((lit.contribution, lit.integral?.error))) {
+                Some((light, error)) => rows::measured(ui, "=", light, error, true),
+                None => {
+                    drop(rows::light(ui, "=", lit[i].map_or(glam::Vec3::ZERO, |lit| lit.contribution), true))
+                }
+            }
         });
         let count = all.iter().filter(|pair| pair.differs()).count();
         rows::note(ui, &format!("≠ marks what differs: {count} of {} lines.", all.len()));

@@ -9,7 +9,7 @@ use super::{
     rows,
 };
 use crate::{
-    explain::{Explanation, Line, Lit, Model, Place, Seen, Spot, angle, of_value},
+    explain::{Brightest, Explanation, Geometry, Line, Lit, Model, Place, Seen, Spot, angle, of_value},
     panel::{
         linked::{self, Domain, linked},
         maths,
@@ -148,11 +148,34 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
     ui.add_space(4.0);
     rows::note(ui, "light that arrives");
-    linked::within(ui, Domain::Light, |ui| arriving(ui, lit));
+    linked::within(ui, Domain::Light, |ui| match &lit.integral {
+        Some(integral) => {
+            place_of(ui, lit);
+            rows::note(ui, &integral.basis());
+            rows::note(ui, &integral.filled());
+        }
+        None => arriving(ui, lit),
+    });
+    if let Some(brightest) = lit.integral.and_then(|integral| integral.brightest) {
+        most(ui, seen, &brightest);
+    }
     if lit.geometry.is_some() {
         ui.add_space(4.0);
         rows::note(ui, "directions and angles");
-        directions(ui, seen, lit);
+        directions(ui, seen, lit.geometry.as_ref());
+    }
+}
+
+/// The direction of a light with extent that gives most; at the level of factors with the equation for light from there.
+fn most(ui: &mut Ui, seen: &Seen, brightest: &Brightest) {
+    ui.add_space(4.0);
+    rows::note(ui, "of the directions that were sampled, the one that gives most");
+    directions(ui, seen, Some(&brightest.geometry));
+    rows::light(ui, "L(l) =", brightest.luminance, false);
+    if probe::choice(ui.ctx()).level == Level::Factors {
+        for line in brightest.lines(&seen.model, rows::DIGITS).iter().filter(|line| line.is_equation()) {
+            written(ui, line, &|symbol| meaning(&seen.model, symbol));
+        }
     }
 }
 
@@ -188,8 +211,17 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     ui.add_space(2.0);
     rows::note(ui, "light to the observer");
     let sum = lit.sum(explanation.terms);
-    rows::equation(ui, Term::Total, &format!("{sum} × {}", rows::formula(lit.arriving)), true, name);
-    rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
+    match &lit.integral {
+        Some(integral) => {
+            rows::equation(ui, Term::Total, &sum, true, name);
+            rows::inset(ui, |ui| rows::measured(ui, "=", lit.contribution, integral.error, true));
+        }
+        None => {
+            let product = format!("{sum} × {}", rows::formula(lit.arriving));
+            rows::equation(ui, Term::Total, &product, true, name);
+            rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
+        }
+    }
     if !lit.is_finite() {
         rows::note(ui, "Some of these are not finite numbers.");
     }
@@ -213,6 +245,9 @@ pub(super) fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<St
     let clicked = line.right().and_then(|numbers| rows::calculation(ui, numbers, &line.symbols, name));
     if let (Some(value), Some(rgb)) = (&line.value, line.rgb()) {
         rows::inset(ui, |ui| match (line.is_term() || value.is_colour, bare) {
+            _ if line.error.is_some() => {
+                rows::measured(ui, "=", rgb, line.error.unwrap_or_default(), false);
+            }
             (true, true) => drop(rows::light(ui, &head, rgb, false)),
             (true, false) => drop(rows::light(ui, "=", rgb, false)),
             (false, true) => drop(ui.label(format!("{head} {}", of_value(value, rows::DIGITS)))),
@@ -232,8 +267,8 @@ fn origin(ui: &Ui, symbol: &str, lines: &[Line]) {
 }
 
 /// The directions to and from the light, as far as the equation has them, and their angles.
-fn directions(ui: &mut Ui, seen: &Seen, lit: &Lit) {
-    if let Some(geometry) = &lit.geometry {
+fn directions(ui: &mut Ui, seen: &Seen, geometry: Option<&Geometry>) {
+    if let Some(geometry) = geometry {
         // Half vector and mirror direction where the equation has them.
         let all = [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)];
         let belongs = |letter: &str| pairs::belongs(&seen.model, letter);
@@ -256,12 +291,17 @@ fn directions(ui: &mut Ui, seen: &Seen, lit: &Lit) {
     }
 }
 
-/// The light that arrives at the point.
-fn arriving(ui: &mut Ui, lit: &Lit) {
+/// Distance and position of a light that has them.
+fn place_of(ui: &mut Ui, lit: &Lit) {
     if let (Some(position), Some(distance)) = (lit.position, lit.distance) {
         let from = format!("{} m, at {} m", rows::short(distance), rows::short_triple(position));
         rows::value(ui, "d", &from, &rows::all(distance));
     }
+}
+
+/// The light that arrives at the point.
+fn arriving(ui: &mut Ui, lit: &Lit) {
+    place_of(ui, lit);
     let equation = lit.arrival();
     let name = |symbol: &str| {
         let factor = lit.factors.iter().find(|f| maths::same_symbol(f.symbol, symbol));

@@ -135,7 +135,7 @@ pub fn lobes_shown_in(ctx: &Context, view: usize) -> Option<Arc<Lobes>> {
 /// The lights whose lobes are shown, the brightest first, and how many there would be.
 fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), String> {
     let reason = |lit: &Lit| match () {
-        () if lit.geometry.is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
+        () if lit.leading().is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
         () if lit.is_behind() => {
             Some("The surface faces away from the light: f is 0, and there is no lobe.".to_owned())
         }
@@ -224,7 +224,7 @@ fn start(
     let (surface, frame, ctx) = (seen.model.surface.0.clone(), spot.frame, ctx.clone());
     let of = |index: &usize| {
         let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
-        Some((*index, name(*index), lit.geometry?.l))
+        Some((*index, name(*index), lit.leading()?.l))
     };
     let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
     thread::spawn(move || {

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::pairs;
 use crate::{
-    explain::{Model, number, rounded, rounded_number_or_triple, rounded_triple, triple},
+    explain::{self, Model, number, rounded, rounded_number_or_triple, rounded_triple, triple},
     panel::{
         linked::{self, linked},
         maths::{self, Sizes},
@@ -226,6 +226,20 @@ pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response 
         ui.add(Label::new(shown).selectable(true));
     });
     row.response.on_hover_text(rounded_triple(v, ALL))
+}
+
+/// A colour with its standard error behind words: as many digits as the error allows.
+pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bool) {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let before = text(ui, before);
+        ui.label(before);
+        sample(ui, v);
+        let shown = raised(&explain::measured(v, error));
+        let shown = if bold { theme::strong(ui, shown) } else { text(ui, shown) };
+        ui.add(Label::new(shown).selectable(true).wrap());
+    });
+    row.response.on_hover_text("The integral and its standard error, from sixteen parts of the samples");
 }
 
 /// An equation, or what it becomes with numbers, over the width that is left.

@@ -17,7 +17,7 @@ fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     let seen = explained.explanation.seen.as_ref()?;
     let choice = probe::choice(ctx);
     let spot = *probe::spots(seen).get(probe::shown_spot(seen, choice))?;
-    let l = probe::shown_light(spot, choice).and_then(|lit| Some(lit.geometry?.l));
+    let l = probe::shown_light(spot, choice).and_then(|lit| Some(lit.leading()?.l));
     let (up, right) = (session.facts.camera * Vec3::Y, session.facts.camera * Vec3::X);
     let ways = l.into_iter().chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
     let way = ways.into_iter().find(|way| way.is_finite() && way.length() > APART)?;

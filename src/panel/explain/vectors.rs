@@ -61,7 +61,7 @@ struct Arrow {
 
 fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
     let arrow = |letter, way, colour, dashes| Arrow { letter, way, colour, dashes };
-    let geometry = lit.and_then(|lit| lit.geometry);
+    let geometry = lit.and_then(Lit::leading);
     let mut all = Vec::new();
     if let Some(geometry) = geometry {
         all.push(arrow("R", geometry.r, VERMILION, &[4.0, 5.0]));
@@ -234,7 +234,7 @@ impl Drawing {
 
     /// Arcs between the vectors, where they are seen apart.
     fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32, shown: &[Arrow]) {
-        let Some(geometry) = lit.and_then(|lit| lit.geometry) else { return };
+        let Some(geometry) = lit.and_then(Lit::leading) else { return };
         let n = spot.normal;
         let all = [
             (["N", "L"], [n, geometry.l], YELLOW, 0.62),
