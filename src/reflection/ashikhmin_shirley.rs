@@ -5,7 +5,12 @@ use super::{
     preset,
 };
 use crate::{
-    optics::{Frame, Terms, fresnel::schlick, geometry::half_slope},
+    optics::{
+        Frame, Terms,
+        fresnel::schlick,
+        geometry::half_slope,
+        lobes::{Lobe, Lobes},
+    },
     parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
     parameters,
     shader::wgsl,
@@ -102,6 +107,16 @@ impl ReflectionModel for AshikhminShirley {
         anisotropic: true,
         wgsl: wgsl!("reflection/ashikhmin_shirley.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        let width = |exponent: f32| (2.0 / (exponent + 2.0)).sqrt();
+        let lobe = Lobe::Ggx { alpha_x: width(self.exponent_u), alpha_y: width(self.exponent_v) };
+        Lobes::diffuse_and(
+            lobe,
+            self.base_colour.max_element(),
+            self.k_s * self.specular_colour.max_element(),
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

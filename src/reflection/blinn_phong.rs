@@ -2,7 +2,11 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms, geometry::half_vector},
+    optics::{
+        Frame, Terms,
+        geometry::half_vector,
+        lobes::{Lobe, Lobes},
+    },
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
     parameters,
     shader::wgsl,
@@ -65,6 +69,14 @@ impl ReflectionModel for BlinnPhong {
         anisotropic: false,
         wgsl: wgsl!("reflection/blinn_phong.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::diffuse_and(
+            Lobe::of_half_vectors(self.alpha),
+            self.k_d * self.base_colour.max_element(),
+            self.k_s * self.specular_colour.max_element(),
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

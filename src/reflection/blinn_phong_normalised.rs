@@ -5,6 +5,7 @@ use crate::{
     optics::{
         Frame, Terms,
         lobe::{half_tangent_squared, power_of_cosine},
+        lobes::{Lobe, Lobes},
     },
     parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
     parameters,
@@ -72,6 +73,14 @@ impl ReflectionModel for BlinnPhongNormalised {
         anisotropic: false,
         wgsl: wgsl!("reflection/blinn_phong_normalised.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::diffuse_and(
+            Lobe::of_half_vectors(self.alpha),
+            self.base_colour.max_element(),
+            self.k_s * self.specular_colour.max_element(),
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

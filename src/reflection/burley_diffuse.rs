@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms, diffuse::burley, geometry::half_vector},
+    optics::{Frame, Terms, diffuse::burley, geometry::half_vector, lobes::Lobes},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
     shader::wgsl,
@@ -62,6 +62,10 @@ impl ReflectionModel for BurleyDiffuse {
         anisotropic: false,
         wgsl: wgsl!("reflection/burley_diffuse.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -12,6 +12,7 @@ use crate::{
         distribution::beckmann,
         fresnel::{conductor_rgb, normal_reflectance_rgb},
         geometry::half_vector,
+        lobes::{Lobe, Lobes},
         masking::v_cavity,
     },
     parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -138,6 +139,14 @@ impl ReflectionModel for CookTorrance {
         anisotropic: false,
         wgsl: wgsl!("reflection/cook_torrance.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::diffuse_and(
+            Lobe::ggx(self.slope),
+            (1.0 - self.specular_weight) * self.base_colour.max_element(),
+            self.specular_weight,
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -14,6 +14,7 @@ use crate::{
         distribution::{MINIMUM_ALPHA, ggx, gtr},
         fresnel::{schlick, schlick_weight},
         geometry::half_vector,
+        lobes::{Lobe, Lobes},
         masking::{separable, smith_ggx},
     },
     parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
@@ -288,6 +289,18 @@ impl ReflectionModel for Disney {
         anisotropic: true,
         wgsl: wgsl!("reflection/disney.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        let alpha = self.alpha();
+        let lobe = Lobe::Ggx { alpha_x: alpha.x, alpha_y: alpha.y };
+        let (diffuse, coat) = ((1.0 - self.metallic) * self.base_colour.max_element(), 0.25 * self.clearcoat);
+        // The coat has long tails, which are not missed by a wider lobe.
+        Lobes::new(&[
+            (Lobe::Cosine, diffuse.max(0.1)),
+            (lobe, self.metallic.max(0.3)),
+            (Lobe::ggx(0.15), coat),
+        ])
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms, diffuse::eon},
+    optics::{Frame, Terms, diffuse::eon, lobes::Lobes},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
     shader::wgsl,
@@ -79,6 +79,10 @@ impl ReflectionModel for Eon {
         anisotropic: false,
         wgsl: wgsl!("reflection/eon.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms},
+    optics::{Frame, Terms, lobes::Lobes},
     parameter::BASE_COLOUR,
     parameters,
     shader::wgsl,
@@ -43,6 +43,10 @@ impl ReflectionModel for Lambert {
         anisotropic: false,
         wgsl: wgsl!("reflection/lambert.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         Terms { diffuse: frame.n.dot(l).max(0.0) * self.base_colour, ..Terms::default() }

@@ -12,6 +12,7 @@ use crate::{
         distribution::{MINIMUM_ALPHA, ggx},
         fresnel::schlick,
         geometry::half_vector,
+        lobes::{Lobe, Lobes},
         masking::{height_correlated, smith_ggx},
     },
     parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
@@ -119,6 +120,16 @@ impl ReflectionModel for MetallicRoughness {
         anisotropic: false,
         wgsl: wgsl!("reflection/metallic_roughness.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        // At grazing angles even the least reflective surface shines.
+        let shine = self.metallic.max(0.3);
+        Lobes::diffuse_and(
+            Lobe::ggx(self.roughness * self.roughness),
+            (1.0 - self.metallic) * self.base_colour.max_element(),
+            shine,
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

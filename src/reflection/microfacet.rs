@@ -13,6 +13,7 @@ use crate::{
         diffuse, distribution,
         fresnel::{conductor_rgb, dielectric_rgb, normal_reflectance_rgb, schlick},
         geometry::half_vector,
+        lobes::{Lobe, Lobes},
         masking,
     },
     parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -531,6 +532,11 @@ impl ReflectionModel for Microfacet {
         anisotropic: true,
         wgsl: wgsl!("reflection/microfacet.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        let diffuse = if self.diffuse == 0 { 0.0 } else { 0.5 };
+        Lobes::diffuse_and(Lobe::Ggx { alpha_x: self.alpha_x, alpha_y: self.alpha_y }, diffuse, 0.5)
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));

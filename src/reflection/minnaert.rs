@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms},
+    optics::{Frame, Terms, lobes::Lobes},
     parameter::{BASE_COLOUR, Parameter, ParameterKind},
     parameters,
     shader::wgsl,
@@ -78,6 +78,10 @@ impl ReflectionModel for Minnaert {
         anisotropic: false,
         wgsl: wgsl!("reflection/minnaert.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
-    optics::{Frame, Terms},
+    optics::{Frame, Terms, lobes::Lobes},
     parameter::{BASE_COLOUR, K_D, Parameter, ParameterKind},
     parameters,
     shader::wgsl,
@@ -64,6 +64,10 @@ impl ReflectionModel for ModLambert {
         anisotropic: false,
         wgsl: wgsl!("reflection/mod_lambert.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);

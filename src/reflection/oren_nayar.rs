@@ -5,6 +5,7 @@ use crate::{
     optics::{
         Frame, Terms,
         diffuse::{oren_nayar_full, oren_nayar_qualitative},
+        lobes::Lobes,
     },
     parameter::{BASE_COLOUR, Parameter, ParameterKind, SIGMA},
     parameters,
@@ -114,6 +115,10 @@ impl ReflectionModel for OrenNayar {
         anisotropic: false,
         wgsl: wgsl!("reflection/oren_nayar.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -7,6 +7,7 @@ use crate::{
     optics::{
         Frame, Terms,
         lobe::{mirror_tangent_squared, power_of_cosine},
+        lobes::{Lobe, Lobes},
     },
     parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, Value},
     parameters,
@@ -147,6 +148,15 @@ impl ReflectionModel for Strauss {
         anisotropic: false,
         wgsl: wgsl!("reflection/strauss.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        let exponent = 3.0 / (1.0 - self.smoothness).max(1e-4);
+        Lobes::diffuse_and(
+            Lobe::of_half_vectors(exponent),
+            (1.0 - self.metallic * self.smoothness) * self.base_colour.max_element(),
+            self.smoothness.max(0.2),
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));

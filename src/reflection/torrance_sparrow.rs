@@ -11,6 +11,7 @@ use crate::{
         Frame, Terms,
         fresnel::{conductor_rgb, normal_reflectance_rgb},
         geometry::half_vector,
+        lobes::{Lobe, Lobes},
         masking::v_cavity,
     },
     parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -109,6 +110,15 @@ impl ReflectionModel for TorranceSparrow {
         anisotropic: false,
         wgsl: wgsl!("reflection/torrance_sparrow.wgsl"),
     };
+
+    fn lobes(&self) -> Lobes {
+        let width = self.facet_spread.to_radians();
+        Lobes::diffuse_and(
+            Lobe::ggx(width * std::f32::consts::SQRT_2),
+            (1.0 - self.specular_weight) * self.base_colour.max_element(),
+            self.specular_weight,
+        )
+    }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

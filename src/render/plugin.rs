@@ -85,7 +85,14 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin, SeenPlugin, MeanPlugin));
+            .add_plugins((
+                LiveShadersPlugin,
+                ViewPlugin,
+                TablesPlugin,
+                StraightPlugin,
+                SeenPlugin,
+                MeanPlugin,
+            ));
         // Two systems that touch the same data must say who comes first.
         detect(app, LogLevel::Warn);
     }
