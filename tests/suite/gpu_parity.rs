@@ -176,9 +176,7 @@ fn beside_a_ball(light_type: &str, before: bool) -> Scene {
 #[test]
 fn lights_with_extent_are_seen_alike_before_objects_and_behind_them() {
     let registry = Registry::builtin();
-    let mut renderers = [1, 4].map(|samples| {
-        GpuRenderer::new(SIZE, SIZE, samples, Output::Linear).expect("software Vulkan is installed")
-    });
+    let mut renderer = renderer();
     let mut shown = 0;
     for light in registry.lights().iter().filter(|light| light.declaration.extent) {
         let id = light.declaration.id;
@@ -189,36 +187,43 @@ fn lights_with_extent_are_seen_alike_before_objects_and_behind_them() {
             let [picture, dark] = [&scene, &hidden].map(|scene| cpu(scene, TermSelection::All));
             let seen = picture.pixels.iter().zip(&dark.pixels).filter(|(a, b)| a != b).count();
             assert!(seen > 20, "{id} is hardly to be seen: {seen} pixels");
-            for (renderer, samples) in renderers.iter_mut().zip([1, 4]) {
-                let settings =
-                    reference::Settings { width: SIZE, height: SIZE, samples, ..Default::default() };
-                let against = |picture: &[Vec3], scene: &Scene| {
-                    compare(picture, &reference::render(scene, &registry, &settings), background(), 2e-3)
-                };
-                // The silhouette of the ball alone.
-                let ball = against(&gpu(renderer, &hidden, TermSelection::All), &hidden);
-                let on_gpu = gpu(renderer, &scene, TermSelection::All);
-                let agrees = |d: &Difference| {
-                    d.wrong * 500 <= d.covered && d.edges * 100 <= ball.edges * 100 + d.covered
-                };
-                let d = against(&on_gpu, &scene);
-                let case = format!("{id}, before: {before}, {samples} samples: {d:?}, without {ball:?}");
-                assert!(agrees(&d), "{case}");
-                // Wrong twins: the light is not to be seen, or elsewhere.
-                let mut elsewhere = scene.clone();
-                let light = &mut elsewhere.lights[0];
-                light.position = light.position.map(|p| p + Vec3::X * 0.1);
-                light.direction = light.direction.map(|d| d + Vec3::X * 0.03);
-                light.parameters.set("rotation", Value::Number(3.0));
-                for wrong in [&hidden, &elsewhere] {
-                    let d = against(&on_gpu, wrong);
-                    assert!(!agrees(&d), "{case}, unnoticed: {d:?}");
-                }
-                shown += 1;
+            let on_gpu = gpu(&mut renderer, &scene, TermSelection::All);
+            let agrees = |scene: &Scene| {
+                let d = compare(&on_gpu, &cpu(scene, TermSelection::All), background(), 2e-3);
+                (d.wrong * 500 <= d.covered && d.edges * 40 <= d.covered, d)
+            };
+            assert!(agrees(&scene).0, "{id}, before: {before}: {:?}", agrees(&scene).1);
+            // Wrong twins: the light is not to be seen, or elsewhere.
+            let mut elsewhere = scene.clone();
+            let light = &mut elsewhere.lights[0];
+            light.position = light.position.map(|p| p + Vec3::X * 0.1);
+            light.direction = light.direction.map(|d| d + Vec3::X * 0.03);
+            light.parameters.set("rotation", Value::Number(3.0));
+            for wrong in [&hidden, &elsewhere] {
+                assert!(!agrees(wrong).0, "{id}, before: {before}, unnoticed: {:?}", agrees(wrong).1);
             }
+            shown += 1;
         }
     }
-    assert_eq!(shown, 24);
+    assert_eq!(shown, 12);
+}
+
+#[test]
+fn edges_of_lights_are_smooth_where_those_of_objects_are() {
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 4, Output::Display).expect("software Vulkan is installed");
+    let registry = Registry::builtin();
+    for id in ["disc", "cylinder", "sphere"] {
+        let mut scene = beside_a_ball(id, true);
+        scene.display.exposure = -2.0;
+        let g = displayed(&mut renderer, &scene);
+        let off = |samples| {
+            let settings = reference::Settings { width: SIZE, height: SIZE, samples, ..Default::default() };
+            let c = reference::render(&scene, &registry, &settings).to_rgb8(&scene.display);
+            g.iter().zip(&c).filter(|(g, c)| g.abs_diff(**c) > 2).count()
+        };
+        assert!(off(4) * 10 < off(1), "{id}: {} values differ, with one sample {}", off(4), off(1));
+    }
 }
 
 #[test]
