@@ -34,7 +34,7 @@ use crate::{
     registry::Registry,
     render::{
         capture::png::{self, About},
-        view::ViewSystems,
+        view::{Drawing, ViewSystems},
     },
     scene::{
         Observer, Scene,
@@ -107,7 +107,10 @@ fn take(
                 format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
             return session.pictured(PictureEnd::Failed(why));
         };
-        let rest = found.iter().all(|view| view.drawing.rests()) || since.elapsed() > PATIENCE;
+        // One that converges comes to rest, however long it takes; one that always begins anew does not.
+        let converges = |drawing: &Drawing| drawing.converged().done > 1 && !drawing.is_done();
+        let waits = found.iter().any(|view| converges(view.drawing));
+        let rest = found.iter().all(|view| view.drawing.rests()) || !waits && since.elapsed() > PATIENCE;
         let textures: Option<Vec<_>> =
             found.iter().map(|view| view.texture().filter(|_| rest).cloned()).collect();
         if let (Some(textures), Some(first)) = (textures, found.first()) {
