@@ -11,7 +11,7 @@ use super::{
     state::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
-use crate::text::plural;
+use crate::{scene::variant::LETTERS, text::plural};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +61,7 @@ impl Panel for StatusLine {
             shader_errors(ui, session, actions);
             export::progress(ui, session, actions);
             matching::progress(ui, session, actions);
+            samples(ui, session);
             let selected = format!("{} selected · F1 keys", session.name_of(session.selection, registry));
             latest(ui, session, theme::small_width(ui, &selected), actions);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -68,6 +69,28 @@ impl Panel for StatusLine {
             });
         });
     }
+}
+
+/// The samples of light with extent in words, per view if there are several; none while no view has such light.
+fn samples_in_words(converged: &[[u32; 2]]) -> Option<String> {
+    let shown = || converged.iter().enumerate().filter(|(_, [_, total])| *total > 0);
+    let words: Vec<_> = shown()
+        .map(|(view, [done, total])| {
+            let letter = LETTERS.get(view).copied().unwrap_or_default();
+            let of = if shown().count() > 1 { format!("{letter}: ") } else { String::new() };
+            format!("{of}{done} of {total}")
+        })
+        .collect();
+    (!words.is_empty()).then(|| format!("{} samples", words.join(", ")))
+}
+
+/// How far pictures of light with extent have converged.
+fn samples(ui: &mut Ui, session: &Session) {
+    let Some(words) = samples_in_words(&session.facts.converged) else { return };
+    ui.add(egui::Label::new(theme::small(ui, words))).on_hover_text(
+        "Light with extent is added up from samples, a few in each frame. The picture is their mean: noise goes as samples \
+         come, and nothing more is drawn at the end. Every change begins anew.",
+    );
 }
 
 /// The part of the line that the last message may take from what stands at the right.
@@ -119,5 +142,18 @@ fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let button = ui.add(Button::new(text).frame_when_inactive(false).small());
     if button.on_hover_text("Show where the errors are (F9)").clicked() {
         actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::samples_in_words;
+
+    #[test]
+    fn samples_are_told_per_view_where_there_are_several() {
+        assert_eq!(samples_in_words(&[[0, 0]; 2]), None);
+        assert_eq!(samples_in_words(&[[64, 256], [0, 0]]).as_deref(), Some("64 of 256 samples"));
+        let both = samples_in_words(&[[64, 256], [8, 256]]);
+        assert_eq!(both.as_deref(), Some("A: 64 of 256, B: 8 of 256 samples"));
     }
 }

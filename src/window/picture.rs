@@ -23,7 +23,7 @@ use glam::UVec2;
 use super::{
     WindowView, camera,
     place::{PicturePlace, area_of},
-    views::{set_views, show_views},
+    views::{set_views, show_views, tell_convergence},
 };
 use crate::{
     panel::{
@@ -70,7 +70,7 @@ impl Plugin for PicturePlugin {
                     .before(ViewSystems)
                     .before(TransformSystems::Propagate),
             )
-            .add_systems(PostUpdate, show_views.after(ViewSystems));
+            .add_systems(PostUpdate, (show_views, tell_convergence).after(ViewSystems));
     }
 
     fn finish(&self, app: &mut App) {

@@ -8,7 +8,7 @@ use bevy::{
     math::URect,
     render::view::Msaa,
     transform::components::Transform,
-    window::{PrimaryWindow, Window},
+    window::{PrimaryWindow, RequestRedraw, Window},
 };
 use bevy_egui::{PrimaryEguiContext, egui::Rect};
 use glam::{UVec2, Vec3};
@@ -19,10 +19,11 @@ use super::{
 };
 use crate::{
     channel::{DebugChannel, Setting},
-    panel::state::{Cell, PictureArea},
+    panel::state::{Cell, PictureArea, Session},
     registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
+        converge::Converged,
         entities::CurrentScene,
         overrides::Overrides,
         show::{ShownPicture, Shows},
@@ -160,6 +161,23 @@ impl ShownViews<'_, '_> {
         let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
         let (view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
         Some(ShownView { view, drawing, target })
+    }
+}
+
+/// Tells the panels how far the pictures of the views have converged.
+pub(super) fn tell_convergence(
+    views: ShownViews,
+    mut session: ResMut<Session>,
+    mut requests: MessageWriter<RequestRedraw>,
+) {
+    let now = std::array::from_fn(|view| {
+        let Converged { done, total } =
+            views.find(view).map(|view| view.drawing.converged()).unwrap_or_default();
+        [done, total]
+    });
+    let known = &mut session.bypass_change_detection().facts.converged;
+    if std::mem::replace(known, now) != now {
+        requests.write(RequestRedraw);
     }
 }
 

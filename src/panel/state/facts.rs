@@ -20,6 +20,9 @@ pub struct Facts {
     pub compiling: bool,
     /// The clipped parts of the picture of each view, view A first; `None` where nothing clips.
     pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
+    /// The samples of light with extent that the picture of each view is the mean of, and those that it will be, view A
+    /// first; 0 of 0 where there is no such light.
+    pub converged: [[u32; 2]; MAX_VARIANTS + 1],
     /// The numbers of the comparison; `None` until they are known.
     pub comparison: Option<Numbers>,
     /// The export that runs.
