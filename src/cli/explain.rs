@@ -1,22 +1,31 @@
 //! `lcm explain`: the colour of a pixel with every number behind it.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{
+    io,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
 
 use clap::Args;
 
 use super::{
-    Options, Outcome, print_json, print_text,
+    Options, Outcome, outputs, print_json, print_text,
     render::{Size, cpu_can_draw, term},
     scenes::Source,
     views::{Plan, find},
     workshop::{Workshop, drawable},
 };
 use crate::{
-    explain::{self, Explainer, Explanation, Influence},
+    explain::{
+        self, Explainer, Explanation, Influence,
+        hemisphere::{Hemisphere, Shining},
+    },
     failure::Failure,
+    files::{Shown as _, words},
     optics::TermSelection,
     reference::{Settings, ignored_edits},
     registry::Registry,
+    render::capture::png::{self, About},
     scene::{Scene, variant::LETTERS},
     text::listed,
 };
@@ -44,6 +53,10 @@ pub(super) struct Arguments {
     /// Also print the lines that differ in another view at this pixel
     #[arg(long, value_name = "VIEW")]
     beside: Option<String>,
+    /// Also write a picture of the hemisphere above the point, a PNG file: the light that arrives, the lobe of the model, and
+    /// their product
+    #[arg(long, value_name = "FILE", value_parser = outputs::place())]
+    hemisphere: Option<PathBuf>,
     /// Print the explanation as JSON
     #[arg(long, conflicts_with = "markdown")]
     json: bool,
@@ -71,7 +84,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;
     let registry = &workshop.registry;
+    if let Some(file) = &arguments.hemisphere {
+        outputs::picture(file, arguments.scene.as_slice())?;
+    }
     let first = explained(arguments, &source, &scene, &arguments.view, options, registry)?;
+    if let Some(file) = &arguments.hemisphere {
+        hemisphere(file, &first, registry)?;
+    }
     let influences = match arguments.derivatives {
         true => Some(influences(arguments, &first, registry)?),
         false => None,
@@ -154,6 +173,31 @@ fn influences(
     let Explained { scene, settings, .. } = explained;
     let found = Explainer::default().influences(scene, registry, settings, arguments.at.0);
     found.map_err(|error| Failure::Usage(format!("--at: {error}")))
+}
+
+/// Writes the hemisphere above the point that counts most in the pixel.
+fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcome {
+    /// Pixels per disc.
+    const SIDE: usize = 320;
+    let seen = explained.explanation.seen.as_ref();
+    let spot = seen.and_then(|seen| Some((seen, seen.spots.get(seen.main_spot()?)?)));
+    let (seen, spot) = spot.ok_or_else(|| {
+        Failure::Usage(
+            "--hemisphere: no reflection model was evaluated for this pixel; choose one on an object"
+                .to_owned(),
+        )
+    })?;
+    let surface = &*seen.model.surface.0;
+    let shining = Shining::new(&explained.scene, registry);
+    let found = Hemisphere::new(&shining, surface, spot, explained.settings.terms, SIDE).picture();
+    let about =
+        About::program().with("Title", "The hemisphere above a point").with("Description", found.about);
+    let [width, height] = found.size;
+    outputs::tidy_beside(file);
+    png::write(file, width, height, &found.rgb8, &about).map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => Failure::Closed,
+        _ => Failure::Write(format!("{} could not be written: {}", file.shown(), words(&error))),
+    })
 }
 
 #[cfg(test)]

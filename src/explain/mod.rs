@@ -41,6 +41,7 @@ mod collect;
 mod factor_curve;
 pub mod finite;
 mod geometry;
+pub mod hemisphere;
 mod influence;
 mod integral;
 mod json;

@@ -557,3 +557,15 @@ fn models_that_say_less_are_explained_as_far_as_they_say() {
         assert!(whole.contains(expected), "{expected}\n{whole}");
     }
 }
+
+#[test]
+fn the_hemisphere_above_a_point_is_a_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = lcm_in(folder.path(), &["explain", "--at", "640,360", "--hemisphere", "above.png"], b"");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let bytes = fs::read(folder.path().join("above.png")).expect("written");
+    assert!(bytes.starts_with(b"\x89PNG"));
+    let run = lcm_in(folder.path(), &["explain", "--at", "0,0", "--hemisphere", "none.png"], b"");
+    assert!(run.status == Some(2) && run.err.contains("choose one on an object"), "{}", run.err);
+    assert!(!folder.path().join("none.png").exists());
+}

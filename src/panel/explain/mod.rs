@@ -29,6 +29,7 @@ mod beside;
 mod display;
 mod factors;
 mod held;
+mod hemisphere;
 mod lights;
 mod lobe;
 mod pairs;
@@ -312,7 +313,13 @@ fn columns(
     let parts: Vec<Part> = match &explanation.seen {
         Some(seen) => vec![
             (0.3, Box::new(|ui| surface(ui, seen, explained.sight, session, registry))),
-            (0.42, Box::new(move |ui| lights::lights(ui, explanation, seen, choice, &name))),
+            (
+                0.42,
+                Box::new(move |ui| {
+                    lights::lights(ui, explanation, seen, choice, &name);
+                    hemisphere::hemisphere(ui, explained, seen, choice, registry);
+                }),
+            ),
             end,
         ],
         None => match &explanation.lamp {

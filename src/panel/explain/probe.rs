@@ -325,6 +325,13 @@ pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influenc
     found
 }
 
+/// Something about the scene of a view that is explained.
+pub(super) fn with_scene<T>(ctx: &Context, view: usize, of: impl FnOnce(&Scene) -> T) -> Option<T> {
+    let shared = shared(ctx);
+    let probe = lock(&shared);
+    probe.scenes.iter().find(|(_, known, _)| *known == view).map(|(.., scene)| of(scene))
+}
+
 /// The rectangle of a view, points.
 fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
     let cell = area.cells.iter().find(|cell| cell.view == view).or(area.cells.first());

@@ -1,0 +1,306 @@
+//! The hemisphere above a point, seen from straight above: W. Nusselt's picture (1928), in which area is projected solid angle. The
+//! light that arrives, the lobe of the model, and their product, whose mean times π is the light to the observer.
+
+use glam::{Vec2, Vec3};
+
+use super::Spot;
+use crate::{
+    light::{Emitter, Incident, LightRecord},
+    optics::{Frame, TermSelection, geometry::mirror},
+    reflection::Surface,
+    registry::Registry,
+    scene::{Light, Scene, record},
+};
+
+mod picture;
+
+pub use picture::HemispherePicture;
+
+/// Points per side of a pixel.
+const FINE: usize = 2;
+
+/// What lies in one direction above a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Above {
+    /// The luminance that arrives from all lights with extent, cd/m².
+    pub arriving: Vec3,
+    /// The lobe: the answer of the model over the cosine, π f for a BRDF f.
+    pub lobe: Vec3,
+    /// Their product.
+    pub product: Vec3,
+}
+
+/// A light of one direction, which has no area.
+#[derive(Clone, Debug)]
+pub struct PointLight {
+    /// Its place in the disc.
+    pub place: Vec2,
+    /// The light that arrives, lx.
+    pub light: Vec3,
+}
+
+/// The hemisphere above a point as a disc in a square: the tangent to the right, the bitangent up, the normal in the middle.
+#[derive(Clone, Debug)]
+pub struct Hemisphere {
+    /// Width and height, pixels.
+    pub side: usize,
+    /// Row by row from the top: means over the part of each pixel that is in the disc; none beside the disc.
+    pub pixels: Vec<Option<Above>>,
+    /// The mean of the product over the disc times π: the integral over all lights with extent.
+    pub integral: Vec3,
+    /// Lights of one direction that shine on the point.
+    pub points: Vec<PointLight>,
+    /// The direction to the viewer in the disc.
+    pub view: Vec2,
+    /// Its mirror direction.
+    pub mirror: Vec2,
+}
+
+/// The direction above a point for a place in the disc, whose radius is 1: in the local frame, normal +z. Area is projected solid
+/// angle.
+#[must_use]
+pub fn above(place: Vec2) -> Option<Vec3> {
+    let squared = place.length_squared();
+    (squared < 1.0).then(|| place.extend((1.0 - squared).sqrt()))
+}
+
+/// The lights of a scene that can shine on a point.
+pub struct Shining(Vec<(Box<dyn Emitter>, LightRecord, bool)>);
+
+impl std::fmt::Debug for Shining {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Shining").finish_non_exhaustive()
+    }
+}
+
+impl Shining {
+    /// The lights of a scene that are switched on.
+    #[must_use]
+    pub fn new(scene: &Scene, registry: &Registry) -> Self {
+        let encoding = scene.display.encoding;
+        let emitter = |light: &Light| {
+            let entry = registry.light(&light.light_type)?;
+            let emitter = (entry.instantiate)(&light.parameters, encoding);
+            Some((emitter, record(light, registry, encoding), entry.declaration.extent))
+        };
+        Self(scene.shining().filter_map(emitter).collect())
+    }
+
+    /// The luminance that arrives from lights with extent.
+    fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
+        let extended = self.0.iter().filter(|(.., extent)| *extent);
+        extended.map(|(emitter, record, _)| emitter.seen(record, p, l).radiance * record.colour).sum()
+    }
+
+    /// The lights of one direction above a point.
+    fn points(&self, p: Vec3, frame: &Frame) -> Vec<PointLight> {
+        let point = |(emitter, record, extent): &(Box<dyn Emitter>, LightRecord, bool)| match emitter
+            .incident(record, p)
+        {
+            Incident::From { l, intensity } if !extent && frame.n.dot(l) > 0.0 && intensity != Vec3::ZERO => {
+                Some(PointLight { place: frame.to_local(l).truncate(), light: intensity * record.colour })
+            }
+            _ => None,
+        };
+        self.0.iter().filter_map(point).collect()
+    }
+}
+
+/// One of the three discs.
+#[derive(Debug)]
+pub struct Disc {
+    /// What it shows.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its values.
+    pub of: fn(&Above) -> Vec3,
+}
+
+/// The discs.
+pub const DISCS: [Disc; 3] = [
+    Disc { name: "Light that arrives: L", unit: "cd/m²", of: |above| above.arriving },
+    Disc { name: "Lobe of the model: π f", unit: "", of: |above| above.lobe },
+    Disc { name: "Product: π f L", unit: "cd/m²", of: |above| above.product },
+];
+
+impl Hemisphere {
+    /// The hemisphere above a point of an explanation, with these terms of the model, as discs of so many pixels.
+    #[must_use]
+    pub fn new(
+        shining: &Shining,
+        surface: &dyn Surface,
+        spot: &Spot,
+        terms: TermSelection,
+        side: usize,
+    ) -> Self {
+        Self::by(above, shining, surface, spot, (terms, side))
+    }
+
+    fn by(
+        project: impl Fn(Vec2) -> Option<Vec3>,
+        shining: &Shining,
+        surface: &dyn Surface,
+        spot: &Spot,
+        (terms, side): (TermSelection, usize),
+    ) -> Self {
+        let frame = &spot.frame;
+        let place = |d: Vec3| frame.to_local(d).truncate();
+        let at = |place: Vec2| {
+            let local = project(place)?;
+            let l = frame.t * local.x + frame.b * local.y + frame.n * local.z;
+            let arriving = shining.seen(spot.position, l);
+            let lobe = surface.response(l, spot.view, frame).select(terms) / local.z;
+            Some(Above { arriving, lobe, product: arriving * lobe })
+        };
+        let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
+        let mut pixels = Vec::with_capacity(side * side);
+        let fine = (side * FINE) as f32;
+        for pixel in 0..side * side {
+            let (column, row) = (pixel % side, pixel / side);
+            let (mut all, mut n) = (Above::default(), 0.0f32);
+            for part in 0..FINE * FINE {
+                let x = (column * FINE + part % FINE) as f32 + 0.5;
+                let y = (row * FINE + part / FINE) as f32 + 0.5;
+                let Some(found) = at(Vec2::new(2.0 * x / fine - 1.0, 1.0 - 2.0 * y / fine)) else { continue };
+                all.arriving += found.arriving;
+                all.lobe += found.lobe;
+                all.product += found.product;
+                n += 1.0;
+            }
+            (sum, count) = (sum + all.product, count + n);
+            pixels.push((n > 0.0).then(|| Above {
+                arriving: all.arriving / n,
+                lobe: all.lobe / n,
+                product: all.product / n,
+            }));
+        }
+        let integral = std::f32::consts::PI * sum / count.max(1.0);
+        let [view, mirror] = [spot.view, mirror(spot.view, frame.n)].map(place);
+        Self { side, pixels, integral, points: shining.points(spot.position, frame), view, mirror }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        explain::{Explanation, pixel},
+        parameter::Value,
+        reference::Settings,
+    };
+
+    const SETTINGS: Settings = Settings { width: 64, height: 36, samples: 1, terms: TermSelection::All };
+
+    fn light(light_type: &str, intensity: f32) -> Light {
+        Light {
+            light_type: light_type.to_owned(),
+            position: Some(Vec3::new(1.0, 1.5, 2.0)),
+            direction: Some(Vec3::new(-1.0, -1.5, -2.0)),
+            intensity,
+            ..Scene::default().lights[0].clone()
+        }
+    }
+
+    fn scene(model: &str, lights: Vec<Light>) -> Scene {
+        let shading_model = "phong".to_owned();
+        Scene { reflection_model: model.to_owned(), shading_model, lights, ..Scene::default() }
+    }
+
+    fn explained(scene: &Scene) -> Explanation {
+        pixel(scene, &Registry::builtin(), &SETTINGS, [34, 16]).expect("inside")
+    }
+
+    fn hemisphere(scene: &Scene, project: impl Fn(Vec2) -> Option<Vec3>) -> (Hemisphere, Vec3) {
+        let seen = explained(scene).seen.expect("the sphere");
+        let (spot, surface) = (&seen.spots[0], &*seen.model.surface.0);
+        let found = Hemisphere::by(
+            project,
+            &Shining::new(scene, &Registry::builtin()),
+            surface,
+            spot,
+            (TermSelection::All, 96),
+        );
+        (found, spot.sum)
+    }
+
+    fn stereographic(place: Vec2) -> Option<Vec3> {
+        let squared = place.length_squared();
+        (squared < 1.0).then(|| (2.0 * place).extend(1.0 - squared) / (1.0 + squared))
+    }
+
+    #[test]
+    fn the_mean_of_the_product_times_pi_is_the_integral() {
+        let mut wrong = 0;
+        let mut everywhere = light("environment", 10.0);
+        everywhere.parameters.set("source", Value::Choice("uniform".into()));
+        for model in ["lambert", "blinn_phong", "oren_nayar"] {
+            let scene =
+                scene(model, vec![light("rectangle", 10.0), light("sphere", 3.0), everywhere.clone()]);
+            let off = |(found, sum): (Hemisphere, Vec3)| (found.integral - sum).length() / sum.length();
+            let right = off(hemisphere(&scene, above));
+            assert!(right < 0.02, "{model}: {right}");
+            wrong += usize::from(off(hemisphere(&scene, stereographic)) > 0.04);
+        }
+        assert_eq!(wrong, 3, "another projection gives other integrals");
+    }
+
+    #[test]
+    fn a_uniform_environment_fills_the_disc_evenly_and_a_point_is_a_dot() {
+        let mut everywhere = light("environment", 2.0);
+        everywhere.parameters.set("source", Value::Choice("uniform".into()));
+        let (found, _) = hemisphere(&scene("lambert", vec![everywhere, light("point", 10.0)]), above);
+        let all: Vec<_> = found.pixels.iter().flatten().map(|above| above.arriving).collect();
+        assert!(all.iter().all(|l| (*l - all[0]).abs().max_element() < 1e-5 && l.x > 0.0));
+        let part = all.len() as f32 / (96.0 * 96.0);
+        assert!((part - std::f32::consts::FRAC_PI_4).abs() < 0.04, "{part}");
+        let lobe = found.pixels[96 * 48 + 48].expect("the middle").lobe;
+        assert!(found.pixels.iter().flatten().all(|above| (above.lobe - lobe).abs().max_element() < 1e-3));
+        assert_eq!(found.points.len(), 1);
+        assert!((found.view + found.mirror).length() < 1e-4, "beside each other's opposite");
+    }
+
+    #[test]
+    fn the_picture_says_what_it_shows() {
+        let scene = scene("blinn_phong", vec![light("rectangle", 10.0), light("point", 10.0)]);
+        let picture = hemisphere(&scene, above).0.picture();
+        assert_eq!(picture.rgb8.len() as u32, 3 * picture.size[0] * picture.size[1]);
+        assert!(picture.about.contains("tangent") && picture.about.contains("cd/m²"), "{}", picture.about);
+        let dark = hemisphere(&self::scene("lambert", vec![light("point", 10.0)]), above).0;
+        assert_eq!(dark.integral, Vec3::ZERO);
+        assert_ne!(dark.picture().rgb8, picture.rgb8);
+    }
+
+    #[test]
+    fn an_explanation_of_light_with_extent_is_an_integral() {
+        let scene = scene("blinn_phong", vec![light("rectangle", 10.0), light("sphere", 3.0)]);
+        let text = explained(&scene).to_text();
+        for part in [
+            "256 samples of the light and 256 of the lobes",
+            "I_d = ∫ I_d(l) L(l) dω",
+            " ± ",
+            " sr.",
+            "the one that gives most",
+        ] {
+            assert!(text.contains(part), "{part}:\n{text}");
+        }
+        assert!(!text.contains("I(p)"), "{text}");
+        let json = explained(&scene).to_json();
+        let lit = &json["seen"]["spots"][0]["lights"][0];
+        assert!(lit["intensity"].is_null() && lit["integral"]["samples"]["light"] == 256, "{lit:#}");
+        assert!(lit["integral"]["solid_angle"].as_f64().is_some_and(|angle| angle > 0.0), "{lit:#}");
+        assert!(lit["lines"][0]["error"].is_array(), "{lit:#}");
+    }
+
+    #[test]
+    fn differences_are_smooth_though_integrals_have_noise() {
+        let scene = scene("lambert", vec![light("rectangle", 10.0)]);
+        let registry = Registry::builtin();
+        let mut explainer = crate::explain::Explainer::default();
+        let found = explainer.influences(&scene, &registry, &SETTINGS, [34, 16]).expect("inside");
+        let intensity = found.iter().find(|i| i.symbol == "I").expect("a light");
+        let expected = explained(&scene).steps.light / 10.0;
+        let off = (intensity.derivative() - expected).length() / expected.length();
+        assert!(off < 1e-3, "{:?} {expected}", intensity.derivative());
+    }
+}
