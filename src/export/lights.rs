@@ -90,6 +90,11 @@ impl<'a> Lights<'a> {
         Self { types, rows, numbers, uniform }
     }
 
+    /// The lights with extent.
+    pub fn extended(&self) -> impl Iterator<Item = &LightRow> {
+        self.rows.iter().filter(|row| self.types[row.light_type].declaration.extent)
+    }
+
     /// The fields that lights of these types may need, in an order that leaves few gaps.
     #[must_use]
     pub fn fields(&self) -> Vec<LightField> {

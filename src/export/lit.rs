@@ -7,7 +7,7 @@ use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use glam::{Mat4, Vec3};
 
 use super::{
-    ExportError, Request,
+    ExportError, Request, light_path,
     lights::Lights,
     names::Names,
     object_path,
@@ -31,6 +31,10 @@ use crate::{
     shading::{ShadingEntry, Stage},
     shape::MeshKey,
 };
+
+/// Why a light with extent is no part of a shader that takes no samples; `{}` is its type.
+const EXTENT: &str = "the {} light has extent, which this form cannot show; the forms executable and mitsuba can, and a \
+                      light without extent in its place would do";
 
 /// A scene taken apart.
 pub struct Lit<'a> {
@@ -168,6 +172,10 @@ impl<'a> Lit<'a> {
             objects: Vec::new(),
         };
         let mut refused = Refusals::default();
+        for row in lit.lights.extended() {
+            let id = lit.lights.types[row.light_type].declaration.id;
+            refused.add(light_path(scene, row.index), EXTENT.replace("{}", id));
+        }
         let mut known = Known::default();
         for (index, object) in scene.objects.iter().enumerate().filter(|(i, o)| o.visible && wanted(*i)) {
             match lit.add(index, object, host, &mut known) {

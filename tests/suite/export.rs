@@ -9,7 +9,7 @@ use std::{
 
 use lights_camera_models::{
     export::{
-        Export, FORMS, File, Form, Makes, form,
+        Export, FORMS, File, Form, Makes, Progress, Request, form,
         write::{may_write, write},
     },
     files::Before,
@@ -18,6 +18,12 @@ use lights_camera_models::{
 };
 
 use crate::support::{Run, check_wording, command_in, lcm_in, names};
+
+/// The forms that have light with extent, and its types there. An environment is a studio by default.
+const HAS_EXTENT: &[(&str, &[&str])] = &[
+    ("executable", &["rectangle", "disc", "sphere", "cylinder", "sun", "environment"]),
+    ("mitsuba", &["rectangle", "disc", "sphere", "cylinder"]),
+];
 
 /// Runs an export in a folder.
 fn export(folder: &Path, arguments: &[&str]) -> Run {
@@ -294,6 +300,40 @@ fn what_cannot_be_exported_is_refused_part_by_part_and_leaves_nothing() {
     let run = export(folder.path(), &["bad.json", "--as", "mitsuba", "-o", "out", "--use-defaults"]);
     refused(&run, 1, "bad.json:1");
     assert_eq!(below(folder.path()), ["bad.json", "room.json"]);
+}
+
+/// Light with extent is a part of an export, or the export is refused with the name of the light and the reason.
+#[test]
+fn no_form_loses_light_with_extent() {
+    let registry = Registry::builtin();
+    for entry in registry.lights().iter().filter(|entry| entry.declaration.extent) {
+        let id = entry.declaration.id;
+        let mut scene = Scene::default();
+        scene.reflection_model = "lambert".to_owned();
+        scene.lights[0].set_type(entry, &registry, scene.scene_size);
+        scene.lights[0].name = Some("Key".to_owned());
+        for form in FORMS {
+            let request = Request {
+                scene: &scene,
+                registry: &registry,
+                stem: "room",
+                size: (64, 48),
+                object: 0,
+                point: None,
+            };
+            let has = HAS_EXTENT.iter().any(|(known, types)| *known == form.id && types.contains(&id));
+            match (form.make)(&request, &Progress::NONE) {
+                Ok(_) => assert!(has, "{} has {id}", form.id),
+                Err(error) => {
+                    let said = error.to_string();
+                    assert!(!has, "{} {id}: {said}", form.id);
+                    let expected = format!("lights[0] (\"Key\"): the {id} light has extent");
+                    assert!(said.contains(&expected), "{} {id}: {said}", form.id);
+                    check_wording(&said);
+                }
+            }
+        }
+    }
 }
 
 #[test]

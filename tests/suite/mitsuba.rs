@@ -5,7 +5,7 @@
 
 use std::{env, fs, io::Write as _, path::Path, process::Command, sync::LazyLock};
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use lights_camera_models::{
     export::write::write,
     export::{Export, Progress, Request, form},
@@ -236,6 +236,85 @@ fn lights_and_shapes_look_the_same_in_mitsuba() {
         ("three lights", all, 0.005),
         ("cube", flat, 0.005),
     ]);
+}
+
+/// Light with extent: the difference of the means over pixels within the object, relative, and the part of those pixels that
+/// differ by more than three standard errors of both and the rounding of the picture. The noise is that of five pixels around.
+fn unlike(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
+    let (width, height) = (ours.width as usize, ours.height as usize);
+    let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
+    let inner = |x: usize, y: usize| (x - 2..=x + 2).all(|x| (y - 2..=y + 2).all(|y| covered(x, y)));
+    let within: Vec<_> = (2..height - 2)
+        .flat_map(|y| (2..width - 2).map(move |x| (x, y)))
+        .filter(|(x, y)| inner(*x, *y))
+        .map(|(x, y)| y * width + x)
+        .collect();
+    assert!(within.len() > 500, "the scene shows little");
+    let [own, other] = [&|i: usize| ours.pixels[i].y, &|i: usize| theirs[i].y] as [&dyn Fn(usize) -> f32; 2];
+    let mean = |of: &dyn Fn(usize) -> f32| within.iter().map(|i| of(*i)).sum::<f32>() / within.len() as f32;
+    let [a, b] = [mean(own), mean(other)];
+    // Second differences are nearly free of the picture itself; their variance is six times that of a pixel.
+    let bend = |of: &dyn Fn(usize) -> f32, i: usize| of(i - 1) - 2.0 * of(i) + of(i + 1);
+    let variance = |of: &dyn Fn(usize) -> f32, i: usize| {
+        let rows = [i - 2 * width, i - width, i, i + width, i + 2 * width];
+        rows.iter().map(|i| bend(of, *i).powi(2)).sum::<f32>() / 30.0
+    };
+    let far = |i: &&usize| {
+        let error = (variance(own, **i) + variance(other, **i)).sqrt() + 2e-4 * a;
+        (own(**i) - other(**i)).abs() > 3.0 * error
+    };
+    ((a - b).abs() / a, within.iter().filter(far).count() as f32 / within.len() as f32)
+}
+
+#[test]
+fn light_with_extent_is_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let lit = |id: &str, light_of: &dyn Fn(&mut Light)| Scene {
+        lights: vec![light(id, |light| {
+            let position = Vec3::new(8.0, 8.0, 9.0);
+            (light.position, light.direction) = (Some(position), Some(Vec3::splat(5.0) - position));
+            light_of(light);
+        })],
+        ..scene("sphere", "lambert", &[])
+    };
+    let two_sided = |light: &mut Light| {
+        light.parameters.set("two_sided", choice("true"));
+        light.direction = light.direction.map(|direction| -direction);
+        light.parameters.set("roll", Value::Number(30.0));
+    };
+    let mut gold = lit("rectangle", &|_| ());
+    let rough = [("alpha_x", Value::Number(0.3)), ("alpha_y", Value::Number(0.3))];
+    let shiny = scene("sphere", "microfacet", &metal(&rough));
+    (gold.reflection_model, gold.objects) = (shiny.reflection_model, shiny.objects);
+    let mut everywhere = gold.clone();
+    everywhere.lights = vec![light("environment", |light| light.parameters.set("source", choice("uniform")))];
+    let all = [
+        ("rectangle", lit("rectangle", &|_| ())),
+        ("rectangle, turned, seen from its back", lit("rectangle", &two_sided)),
+        ("disc", lit("disc", &|_| ())),
+        ("sphere", lit("sphere", &|_| ())),
+        ("cylinder", lit("cylinder", &|light| light.direction = Some(Vec3::new(1.0, 0.2, -1.0)))),
+        ("rectangle on gold", gold),
+        ("uniform environment on gold", everywhere),
+    ];
+    let pictures = theirs(&all.iter().map(|(_, scene)| scene).collect::<Vec<_>>());
+    let mut wrong = Vec::new();
+    for ((name, scene), theirs) in all.iter().zip(&pictures) {
+        let ours = ours(scene);
+        let (means, far) = unlike(&ours, theirs);
+        println!(
+            "{name}: means differ by {means:.6}, {far:.4} of the pixels by more than three standard errors"
+        );
+        if !(means < 1e-3 && far < 0.01) {
+            wrong.push(format!("{name}: {means}, {far}"));
+        }
+        let mut dimmer = ours.clone();
+        dimmer.pixels.iter_mut().for_each(|pixel| *pixel *= Vec4::new(0.995, 0.995, 0.995, 1.0));
+        assert!(unlike(&dimmer, theirs).0 > 1e-3, "{name}: half a per cent less must show");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// The wrong twins: light without the factor π, another masking, a brushed surface turned.

@@ -2,12 +2,12 @@
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{Mat3, Mat4, Vec2, Vec3};
 
-use super::xml::{Xml, number, triple};
+use super::xml::{Xml, number, to_world, triple};
 use crate::{
     export::File,
-    light::{LightEntry, LightRecord},
+    light::{LightEntry, LightRecord, extent::sides},
     optics::radiometry::cone,
     parameter::Values,
     scene::observer::orientation,
@@ -22,17 +22,34 @@ pub(super) struct Lamp<'a> {
     pub(super) number: usize,
 }
 
-/// The counterpart of a light: an element, and a file that it names.
+/// The counterpart of a light: elements, and a file that they name.
 pub(super) struct Emitter {
-    pub(super) xml: Xml,
+    pub(super) xml: Vec<Xml>,
     pub(super) file: Option<File>,
+    /// True if it shines from all around: Mitsuba has room for one such.
+    pub(super) around: bool,
 }
 
 /// A counterpart, or the reason why there is none.
 type Counterpart = fn(&Lamp) -> Result<Emitter, String>;
 
-const COUNTERPARTS: &[(&str, Counterpart)] =
-    &[("point", point), ("spot", spot), ("directional", directional), ("ambient", ambient)];
+const COUNTERPARTS: &[(&str, Counterpart)] = &[
+    ("point", point),
+    ("spot", spot),
+    ("directional", directional),
+    ("ambient", ambient),
+    ("rectangle", rectangle),
+    ("disc", disc),
+    ("sphere", sphere),
+    ("cylinder", cylinder),
+    ("sun", |_| {
+        Err("the sun light has extent, which Mitsuba can show as a picture of pixels only".to_owned())
+    }),
+    ("environment", environment),
+];
+
+/// The distance between the two sides of a light that shines to both, metres: in one plane, each would hide the other.
+const APART: f32 = 1e-3;
 
 /// The widest cone, degrees: the picture in which Mitsuba looks up the light of a cone has no end at 90°.
 const WIDEST: f32 = 85.0;
@@ -54,29 +71,96 @@ impl Lamp<'_> {
     fn parameter(&self, name: &str) -> f32 {
         self.entry.parameter(name).map_or(0.0, |p| self.values.number(p))
     }
+
+    /// The index of the option that is chosen.
+    fn choice(&self, name: &str) -> u32 {
+        self.entry.parameter(name).map_or(0, |p| self.values.choice(p))
+    }
+
+    /// A shape that shines; by itself it is black.
+    fn shining(&self, shape: Xml) -> Xml {
+        let black = Xml::plugin("bsdf", "diffuse").rgb("reflectance", Vec3::ZERO);
+        shape.with(black).with(Xml::plugin("emitter", "area").rgb("radiance", PI * self.power()))
+    }
+
+    /// A flat shape between −1 and 1 in x and y, with half of each side in the room; one for each side that shines.
+    fn flat(&self, shape: &str, [x, y]: [Vec3; 2]) -> Result<Emitter, String> {
+        let LightRecord { position, direction, .. } = self.record;
+        let two_sided = self.choice("two_sided") == 1;
+        let apart = if two_sided { 0.5 * APART } else { 0.0 };
+        let side = |x: Vec3, front: Vec3| {
+            let axes = Mat3::from_cols(x, y, front);
+            let matrix = Mat4::from_translation(position + apart * front) * Mat4::from_mat3(axes);
+            self.shining(Xml::plugin("shape", shape).with(to_world(matrix)))
+        };
+        let mut xml = vec![side(x, direction)];
+        xml.extend(two_sided.then(|| side(-x, -direction)));
+        Ok(Emitter { xml, file: None, around: false })
+    }
 }
 
 fn alone(xml: Xml) -> Result<Emitter, String> {
-    Ok(Emitter { xml, file: None })
+    Ok(Emitter { xml: vec![xml], file: None, around: false })
+}
+
+fn all_around(radiance: Vec3) -> Result<Emitter, String> {
+    Ok(Emitter { around: true, ..alone(Xml::plugin("emitter", "constant").rgb("radiance", radiance))? })
+}
+
+/// `<point name="…" x="…" y="…" z="…"/>`, or a vector.
+fn place(kind: &str, name: &str, Vec3 { x, y, z }: Vec3) -> Xml {
+    Xml::element(format!("{kind} name=\"{name}\" x=\"{x}\" y=\"{y}\" z=\"{z}\""))
 }
 
 fn point(lamp: &Lamp) -> Result<Emitter, String> {
-    let Vec3 { x, y, z } = lamp.record.position;
-    let position = format!("point name=\"position\" x=\"{x}\" y=\"{y}\" z=\"{z}\"");
-    let xml = Xml::plugin("emitter", "point").with(Xml::element(position));
+    let xml = Xml::plugin("emitter", "point").with(place("point", "position", lamp.record.position));
     alone(xml.rgb("intensity", PI * lamp.power()))
 }
 
 fn directional(lamp: &Lamp) -> Result<Emitter, String> {
-    let Vec3 { x, y, z } = lamp.record.direction;
-    let direction = format!("vector name=\"direction\" x=\"{x}\" y=\"{y}\" z=\"{z}\"");
-    let xml = Xml::plugin("emitter", "directional").with(Xml::element(direction));
+    let xml = Xml::plugin("emitter", "directional").with(place("vector", "direction", lamp.record.direction));
     alone(xml.rgb("irradiance", PI * lamp.power()))
+}
+
+fn rectangle(lamp: &Lamp) -> Result<Emitter, String> {
+    let (sine, cosine) = lamp.parameter("roll").to_radians().sin_cos();
+    let [x, y] = sides(lamp.record.direction, Vec2::new(sine, cosine));
+    lamp.flat("rectangle", [0.5 * lamp.parameter("width") * x, 0.5 * lamp.parameter("height") * y])
+}
+
+fn disc(lamp: &Lamp) -> Result<Emitter, String> {
+    lamp.flat("disk", sides(lamp.record.direction, Vec2::Y).map(|side| lamp.parameter("radius") * side))
+}
+
+fn sphere(lamp: &Lamp) -> Result<Emitter, String> {
+    let shape = Xml::plugin("shape", "sphere").with(place("point", "center", lamp.record.position));
+    alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
+}
+
+fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
+    let LightRecord { position, direction, .. } = lamp.record;
+    let half = 0.5 * lamp.parameter("length") * direction;
+    let shape = Xml::plugin("shape", "cylinder").with(place("point", "p0", position - half)).with(place(
+        "point",
+        "p1",
+        position + half,
+    ));
+    alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
+}
+
+/// Its luminance L is a factor of π f_r cos θ, as that of all lights with extent.
+fn environment(lamp: &Lamp) -> Result<Emitter, String> {
+    if lamp.choice("source") != 0 {
+        return Err("the environment light has extent, and Mitsuba has a counterpart only where its source is uniform; \
+                    of others it shows a picture of pixels"
+            .to_owned());
+    }
+    all_around(PI * lamp.power())
 }
 
 /// A surface with the albedo E answers to the radiance L from everywhere with E L, and to our ambient light I with E I.
 fn ambient(lamp: &Lamp) -> Result<Emitter, String> {
-    alone(Xml::plugin("emitter", "constant").rgb("radiance", lamp.power()))
+    all_around(lamp.power())
 }
 
 /// Mitsuba's cone fades linearly with the angle, ours by a cubic of its cosine. So that one has no soft edge, and our
@@ -106,7 +190,8 @@ fn spot(lamp: &Lamp) -> Result<Emitter, String> {
         .set("string", "filename", &path)
         .set("boolean", "raw", "true")
         .set("string", "wrap_mode", "clamp");
-    Ok(Emitter { xml: xml.with(texture), file: Some(File::new(path, profile(angle, penumbra))) })
+    let file = Some(File::new(path, profile(angle, penumbra)));
+    Ok(Emitter { file, ..alone(xml.with(texture))? })
 }
 
 /// The profile of a cone as a picture in the plane at distance 1, in the Portable FloatMap format.

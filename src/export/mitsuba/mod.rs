@@ -13,7 +13,7 @@ use self::{
     bsdf::{Bsdf, Material},
     emitter::{Emitter, Lamp},
     mesh::{Surface, ply},
-    xml::{Xml, triple},
+    xml::{Xml, to_world, triple},
 };
 use super::{
     Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path, refusals::Refusals,
@@ -70,8 +70,8 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         .with(Xml::plugin("integrator", "direct").set("boolean", "hide_emitters", "true"))
         .with(sensor(request));
     let mut files = Vec::new();
-    for (name, Emitter { xml, file: texture }) in lights {
-        file = file.says(&name).with(xml);
+    for (name, Emitter { xml, file: texture, .. }) in lights {
+        file = xml.into_iter().fold(file.says(&name), Xml::with);
         files.extend(texture);
     }
     let mut meshes: HashMap<(MeshKey, Surface), String> = HashMap::new();
@@ -92,7 +92,8 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         notes.extend(bsdf.note.map(str::to_owned));
         let shape = Xml::plugin("shape", "ply").set("string", "filename", path);
         let shape = if smooth { shape } else { shape.set("boolean", "face_normals", "true") };
-        file = file.says(&name).with(shape.with(placed(object)).with(bsdf.xml));
+        file =
+            file.says(&name).with(shape.with(to_world(object_transform(object).to_matrix())).with(bsdf.xml));
     }
     notes.extend(differences(request));
     let title = scene.name.as_deref().unwrap_or(request.stem);
@@ -111,7 +112,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
 /// The lights that shine, each with its name.
 fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
     let Request { scene, registry, .. } = request;
-    let mut emitters = Vec::new();
+    let mut emitters: Vec<(String, Emitter)> = Vec::new();
     for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
         let Some(entry) = registry.light(&light.light_type) else { continue };
         let name = light_path(scene, i);
@@ -122,7 +123,12 @@ fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
             Some(_) => Err(format!("the edited {shader} has no counterpart in Mitsuba")),
             None => lamp.emitter(),
         };
+        let first = emitters.iter().find(|(_, known)| known.around).map(|(first, _)| first);
         match emitter {
+            Ok(Emitter { around: true, .. }) if let Some(first) = first => refused.add(
+                name,
+                format!("Mitsuba has room for one light from all around, and {first} is the first; one of them would do"),
+            ),
             Ok(emitter) => emitters.push((name, emitter)),
             Err(why) => refused.add(name, why),
         }
@@ -206,20 +212,20 @@ fn sensor(request: &Request) -> Xml {
         )
 }
 
-/// The place, size and rotation of an object.
-fn placed(object: &Object) -> Xml {
-    let matrix = object_transform(object).to_matrix().transpose();
-    let rows: Vec<_> = matrix.to_cols_array().iter().map(f32::to_string).collect();
-    let matrix = Xml::element(format!("matrix value=\"{}\"", rows.join(" ")));
-    Xml::element("transform name=\"to_world\"").with(matrix)
-}
-
 /// Where the picture differs from that of the lab.
 fn differences(request: &Request) -> Vec<String> {
     let scene = request.scene;
     let shown = |id: &str| scene.shown().any(|object| scene.shading_model_of(object) == id);
     let display = &scene.display;
     let mut notes = vec!["Mitsuba casts shadows, the lab does not; its background is black".to_owned()];
+    let extent = |id: &str| request.registry.light(id).is_some_and(|entry| entry.declaration.extent);
+    if scene.shining().any(|light| extent(&light.light_type)) {
+        notes.push(
+            "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and those that shine to both \
+             sides are two, a millimetre apart"
+                .to_owned(),
+        );
+    }
     if shown("gouraud") || shown("flat") {
         notes.push(
             "Mitsuba shades every pixel: gouraud becomes phong, and flat becomes derivative".to_owned(),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use crate::{files::printable, text::xml::comment};
 
@@ -88,6 +88,13 @@ fn harmless(text: &str) -> String {
 /// A number that is read back exactly.
 pub(super) fn number(value: f32) -> String {
     format!("{value}")
+}
+
+/// A place in the room.
+pub(super) fn to_world(matrix: Mat4) -> Xml {
+    let rows: Vec<_> = matrix.transpose().to_cols_array().iter().map(f32::to_string).collect();
+    let matrix = Xml::element(format!("matrix value=\"{}\"", rows.join(" ")));
+    Xml::element("transform name=\"to_world\"").with(matrix)
 }
 
 /// Three numbers.
