@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::{
-    light::{LightEntry, LightRecord},
+    light::{LightEntry, LightRecord, Twin},
     parameter::Parameter,
     registry::Registry,
     scene::{Scene, record, shines_from_everywhere},
@@ -90,9 +90,10 @@ impl<'a> Lights<'a> {
         Self { types, rows, numbers, uniform }
     }
 
-    /// The lights with extent.
-    pub fn extended(&self) -> impl Iterator<Item = &LightRow> {
-        self.rows.iter().filter(|row| self.types[row.light_type].declaration.extent)
+    /// True if some light has extent.
+    #[must_use]
+    pub fn has_extent(&self) -> bool {
+        self.types.iter().any(|entry| entry.declaration.extent)
     }
 
     /// The fields that lights of these types may need, in an order that leaves few gaps.
@@ -122,7 +123,7 @@ impl<'a> Lights<'a> {
     #[must_use]
     pub fn parameter_field(&self, light_type: usize, name: &str) -> String {
         let taken = ["position", "light_type", "direction", "intensity", "colour"].contains(&name);
-        let holders = self.types.iter().filter(|t| t.parameters.iter().any(|p| p.name == name)).count();
+        let holders = self.types.iter().filter(|t| t.fields().iter().any(|p| p.name == name)).count();
         match taken || holders > 1 {
             true => format!("{}_{name}", self.types[light_type].declaration.id),
             false => name.to_owned(),
@@ -165,15 +166,15 @@ impl LightRow {
     }
 }
 
-/// The call of the function of a light type in WGSL; `light` is in scope.
+/// The call of a function of a light type in WGSL; `light` and the other parameters are in scope.
 #[must_use]
-pub fn call(lights: &Lights, light_type: usize) -> String {
+pub fn call(lights: &Lights, light_type: usize, twin: &Twin) -> String {
     let entry = lights.types[light_type];
     let field = |p: &Parameter| format!("light.{}", lights.parameter_field(light_type, p.name));
     let values: Vec<_> = entry.fields().iter().map(field).collect();
-    let id = entry.declaration.id;
-    match values.as_slice() {
-        [] => format!("incident_{id}(light, p)"),
-        all => format!("incident_{id}(light, {}({}), p)", entry.parameter_struct(), all.join(", ")),
-    }
+    let own = match values.as_slice() {
+        [] => String::new(),
+        all => format!("{}({}), ", entry.parameter_struct(), all.join(", ")),
+    };
+    format!("{}(light, {own}p{})", twin.of(entry), twin.more[1])
 }

@@ -7,12 +7,12 @@ use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use glam::{Mat4, Vec3};
 
 use super::{
-    ExportError, Request, light_path,
+    ExportError, Request,
     lights::Lights,
     names::Names,
     object_path,
     refusals::Refusals,
-    shader::{Host, Shader, compose},
+    shader::{Host, LIGHT_SAMPLES, Shader, compose},
 };
 use crate::{
     optics::{
@@ -31,10 +31,6 @@ use crate::{
     shading::{ShadingEntry, Stage},
     shape::MeshKey,
 };
-
-/// Why a light with extent is no part of a shader that takes no samples; `{}` is its type.
-const EXTENT: &str = "the {} light has extent, which this form cannot show; the forms executable and mitsuba can, and a \
-                      light without extent in its place would do";
 
 /// A scene taken apart.
 pub struct Lit<'a> {
@@ -97,6 +93,8 @@ pub struct Material {
     pub parameters: Vec<u8>,
     /// The bytes of `AlbedoCurve`; empty for shaders that read none.
     pub curve: Vec<u8>,
+    /// The bytes of `material_lobes`; empty for shaders that read none.
+    pub lobes: Vec<u8>,
     /// The bytes of `ShadingParameters`; empty for shaders that read none.
     pub shading: Vec<u8>,
 }
@@ -172,10 +170,6 @@ impl<'a> Lit<'a> {
             objects: Vec::new(),
         };
         let mut refused = Refusals::default();
-        for row in lit.lights.extended() {
-            let id = lit.lights.types[row.light_type].declaration.id;
-            refused.add(light_path(scene, row.index), EXTENT.replace("{}", id));
-        }
         let mut known = Known::default();
         for (index, object) in scene.objects.iter().enumerate().filter(|(i, o)| o.visible && wanted(*i)) {
             match lit.add(index, object, host, &mut known) {
@@ -263,8 +257,14 @@ impl<'a> Lit<'a> {
         } else {
             Vec::new()
         };
+        let lobes = if shader.reads_lobes {
+            let rows = model.instantiate(&values, encoding).lobes().rows();
+            rows.iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
+        } else {
+            Vec::new()
+        };
         let own = if shader.reads_shading { pack(shading.parameters, &values, encoding) } else { Vec::new() };
-        Material { program, values, parameters, curve, shading: own }
+        Material { program, values, parameters, curve, lobes, shading: own }
     }
 
     /// What differs from the picture in the lab, if anything: sentences.
@@ -273,7 +273,14 @@ impl<'a> Lit<'a> {
         let edited =
             self.request.registry.sources().get(WRAPPER.path).is_some_and(|text| text != WRAPPER.text);
         let note = "The edited wrapper.wgsl is no part of the export, which has entry points of its own.";
-        edited.then(|| note.to_owned()).into_iter().collect()
+        let mut notes: Vec<_> = edited.then(|| note.to_owned()).into_iter().collect();
+        if self.lights.has_extent() {
+            notes.push(format!(
+                "Light with extent is taken by {LIGHT_SAMPLES} samples, of which some noise stays; the lights themselves are not to \
+                 be seen."
+            ));
+        }
+        notes
     }
 
     /// The factor of the exposure.

@@ -14,16 +14,10 @@ use lights_camera_models::{
     },
     files::Before,
     registry::Registry,
-    scene::{Object, Scene, save},
+    scene::{Light, Object, Scene, save},
 };
 
 use crate::support::{Run, check_wording, command_in, lcm_in, names};
-
-/// The forms that have light with extent, and its types there. An environment is a studio by default.
-const HAS_EXTENT: &[(&str, &[&str])] = &[
-    ("executable", &["rectangle", "disc", "sphere", "cylinder", "sun", "environment"]),
-    ("mitsuba", &["rectangle", "disc", "sphere", "cylinder"]),
-];
 
 /// Runs an export in a folder.
 fn export(folder: &Path, arguments: &[&str]) -> Run {
@@ -302,36 +296,40 @@ fn what_cannot_be_exported_is_refused_part_by_part_and_leaves_nothing() {
     assert_eq!(below(folder.path()), ["bad.json", "room.json"]);
 }
 
-/// Light with extent is a part of an export, or the export is refused with the name of the light and the reason.
+/// What is text says so; programs carry the whole scene.
 #[test]
 fn no_form_loses_light_with_extent() {
     let registry = Registry::builtin();
     for entry in registry.lights().iter().filter(|entry| entry.declaration.extent) {
         let id = entry.declaration.id;
-        let mut scene = Scene::default();
-        scene.reflection_model = "lambert".to_owned();
+        let mut scene = Scene { reflection_model: "lambert".to_owned(), ..Scene::default() };
         scene.lights[0].set_type(entry, &registry, scene.scene_size);
         scene.lights[0].name = Some("Key".to_owned());
-        for form in FORMS {
-            let request = Request {
-                scene: &scene,
-                registry: &registry,
-                stem: "room",
-                size: (64, 48),
-                object: 0,
-                point: None,
-            };
-            let has = HAS_EXTENT.iter().any(|(known, types)| *known == form.id && types.contains(&id));
-            match (form.make)(&request, &Progress::NONE) {
-                Ok(_) => assert!(has, "{} has {id}", form.id),
-                Err(error) => {
-                    let said = error.to_string();
-                    assert!(!has, "{} {id}: {said}", form.id);
-                    let expected = format!("lights[0] (\"Key\"): the {id} light has extent");
-                    assert!(said.contains(&expected), "{} {id}: {said}", form.id);
-                    check_wording(&said);
+        let made = |form: &Form, scene: &Scene| {
+            let (stem, size) = ("room", (64, 48));
+            let request = Request { scene, registry: &registry, stem, size, object: 0, point: None };
+            (form.make)(&request, &Progress::NONE)
+        };
+        for form in FORMS.iter().filter(|form| form.id != "executable") {
+            let export = made(form, &scene).unwrap_or_else(|error| panic!("{} {id}: {error}", form.id));
+            let text: String = export.files.iter().map(|file| String::from_utf8_lossy(&file.bytes)).collect();
+            let marks = match form.id {
+                "mitsuba" => ["type=\"area\"", "type=\"envmap\""].map(str::to_owned),
+                "bevy" | "wgsl" | "glsl" | "hlsl" | "msl" | "spirv" => {
+                    [format!("sample_{id}"), format!("seen_{id}")]
                 }
-            }
+                _ => continue,
+            };
+            assert!(marks.iter().any(|mark| text.contains(mark)), "{} loses {id}", form.id);
+        }
+        // Mitsuba has one light from all around.
+        scene.lights.push(Light { light_type: "ambient".to_owned(), ..Light::default() });
+        let both = made(form("mitsuba").expect("listed"), &scene);
+        assert_eq!(both.is_err(), id == "environment");
+        if let Err(error) = both {
+            let expected = "lights[1]: Mitsuba has room for one light from all around, and lights[0] (\"Key\") is the first";
+            assert!(error.to_string().contains(expected), "{error}");
+            check_wording(&error.to_string());
         }
     }
 }

@@ -5,11 +5,14 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
 };
 
 use lights_camera_models::{
     custom,
     export::{Export, ExportError, Progress, Request, html},
+    optics::TermSelection,
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{
         Scene,
@@ -75,7 +78,7 @@ fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
     }
     let light = scene.lights[0].clone();
     let mut all = Vec::new();
-    for entry in registry.lights().iter().filter(|entry| !entry.declaration.extent) {
+    for entry in registry.lights() {
         let mut light = light.clone();
         light.set_type(entry, &registry, scene.scene_size);
         scene.lights = vec![light.clone()];
@@ -83,7 +86,11 @@ fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
         page(&scene).unwrap_or_else(|e| panic!("{}: {e}", entry.declaration.id));
     }
     scene.lights = all;
-    page(&scene).expect("all lights at once");
+    // All models under all lights at once are more than a page holds.
+    for some in scene.objects.clone().chunks(12) {
+        scene.objects = some.to_vec();
+        page(&scene).expect("all lights at once");
+    }
 }
 
 #[test]
@@ -274,6 +281,53 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
     }
     assert_eq!(seen, 2 * cases.len());
+}
+
+/// The page takes the first samples of those that the program takes, so that even the noise is the same. The light itself is
+/// left out of the picture: pages do not show it.
+#[test]
+fn pages_have_light_with_extent() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.json");
+    let text = json!({
+        "scene_size": { "height": 10, "width": 10, "depth": 10 },
+        "observer": { "position": [5, 5, 9.9], "direction": [0, 0, -1], "field_of_view": 60 },
+        "reflection_model": "microfacet", "shading_model": "phong",
+        "lights": [
+            { "type": "rectangle", "position": [7, 8, 9], "direction": [-1, -1, -2], "intensity": 20, "visible": "false" },
+            { "type": "point", "position": [1, 9, 9], "intensity": 20 },
+            { "type": "environment", "source": "studio", "visible": "false" }
+        ],
+        "objects": [{ "type": "sphere", "position": [5, 5, 5], "size": 4, "material": { "alpha_x": 0.3, "alpha_y": 0.3 } }]
+    });
+    fs::write(&file, text.to_string()).expect("written");
+    let registry = Registry::builtin();
+    let read = scene(&file);
+    let rendered = |count: u32, scene: &Scene| {
+        let settings = Settings { width: WIDTH, height: HEIGHT, samples: 1, terms: TermSelection::All };
+        let samples = LightSamples { first: 0, count };
+        let picture = reference::render_samples(scene, &registry, &settings, samples, &AtomicBool::default());
+        picture.to_rgb8(&scene.display)
+    };
+    let expected = rendered(64, &read);
+    let page_file = folder.path().join("page.html");
+    fs::write(&page_file, page(&read).expect("a page")).expect("written");
+    for renderer in ["webgpu", "webgl"] {
+        browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+        let (shown, _) = browser.look();
+        let off = difference(&shown, &expected);
+        println!("{renderer}: {off:?}");
+        assert!(off.mean < MEAN && off.beyond < BEYOND, "{renderer}: {off:?}");
+    }
+    // The wrong twins: without the light, and with other samples.
+    let mut dark = read.clone();
+    dark.lights.remove(0);
+    for wrong in [rendered(64, &dark), rendered(8, &read)] {
+        let off = difference(&wrong, &expected);
+        assert!(off.beyond > BEYOND, "{off:?}");
+    }
 }
 
 #[test]

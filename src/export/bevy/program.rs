@@ -14,6 +14,7 @@ use crate::{
     optics::{
         albedo::NODES,
         colour::{BACKGROUND, Encoding},
+        lobes::MAX_LOBES,
         tone::ToneMapping,
     },
     parameter::Parameter,
@@ -254,6 +255,9 @@ struct {name} {{
             "    #[uniform(4)]\n    lamp_numbers: [Vec4; {}],\n",
             lit.lights.numbers.len().div_ceil(4)
         );
+    }
+    if program.shader.reads_lobes {
+        let _ = write!(out, "    #[uniform(7)]\n    lobes: [Vec4; {MAX_LOBES}],\n");
     }
     let attributes = if program.faces() { "&WITH_POLYGONS" } else { "&ATTRIBUTES" };
     let _ = write!(
@@ -686,6 +690,16 @@ fn new_material(out: &mut String, lit: &Lit, program: &Program, material: &Mater
     }
     if program.shader.reads_lamps {
         out.push_str("        lamp_numbers: LAMP_NUMBERS,\n");
+    }
+    if program.shader.reads_lobes {
+        out.push_str("        // The directions from which it reflects most light: they guide samples.\n        lobes: [\n");
+        for row in material.lobes.chunks(16) {
+            let (words, _) = row.as_chunks::<4>();
+            let [kind, first, second, share] =
+                [0, 1, 2, 3].map(|i| words.get(i).copied().map_or(0.0, f32::from_le_bytes));
+            let _ = writeln!(out, "            Vec4::new({kind:?}, {first:?}, {second:?}, {share:?}),");
+        }
+        out.push_str("        ],\n");
     }
     out.push_str("    });\n");
 }

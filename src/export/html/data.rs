@@ -12,7 +12,10 @@ use super::{
     texts::Texts,
 };
 use crate::{
-    export::{ExportError, Progress, Request, lit::Lit, object_path, shaders::alone, view::called},
+    export::{
+        ExportError, Progress, Request, lit::Lit, object_path, shader::LIGHT_SAMPLES, shaders::alone,
+        view::called,
+    },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, ParameterKind, Value, json as value, layout, stride},
     reflection::{Ambient, ModelEntry, OnPages, Term},
@@ -186,6 +189,8 @@ fn view(
                 "mesh": mesh,
                 "matrix": drawn.room_from_object(request).to_cols_array(),
                 "values": values,
+                // As exported: knobs change the material, and any lobes give the right mean.
+                "lobes": (!material.lobes.is_empty()).then(|| shared.blocks.add(&material.lobes)),
                 "curve": (!material.curve.is_empty()).then(|| shared.blocks.add(&material.curve)),
             })
         })
@@ -201,6 +206,7 @@ fn view(
             "direction": observer.direction.to_array(),
             "fieldOfView": observer.field_of_view,
         },
+        "lightSamples": lit.lights.has_extent().then_some(LIGHT_SAMPLES),
         "exposure": scene.display.exposure,
         "encoding": scene.display.encoding.id(),
         "background": lit.background().map(|v| srgb_encode(v.clamp(0.0, 1.0))).to_array(),

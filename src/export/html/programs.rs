@@ -20,7 +20,8 @@ const ALBEDO: &str = include_str!("albedo.wgsl");
 const ALBEDO_ENTRY_POINTS: [(&str, ShaderStage); 2] =
     [("albedo_vertex", ShaderStage::Vertex), ("albedo_fragment", ShaderStage::Fragment)];
 /// Uniforms that differ between objects; the page writes them. The others are the same for all.
-const OF_OBJECTS: [&str; 5] = ["parameters", "albedo_curve", "shading_values", "view", "placement"];
+const OF_OBJECTS: [&str; 6] =
+    ["parameters", "albedo_curve", "material_lobes", "shading_values", "view", "placement"];
 
 /// A shader and its uniforms.
 ///

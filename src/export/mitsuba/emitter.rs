@@ -3,12 +3,13 @@
 use std::f32::consts::PI;
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::xml::{Xml, number, to_world, triple};
 use crate::{
     export::File,
     light::{LightEntry, LightRecord, extent::sides},
-    optics::radiometry::cone,
+    optics::{colour::Encoding, radiometry::cone},
     parameter::Values,
     scene::observer::orientation,
 };
@@ -42,14 +43,15 @@ const COUNTERPARTS: &[(&str, Counterpart)] = &[
     ("disc", disc),
     ("sphere", sphere),
     ("cylinder", cylinder),
-    ("sun", |_| {
-        Err("the sun light has extent, which Mitsuba can show as a picture of pixels only".to_owned())
-    }),
+    ("sun", sun),
     ("environment", environment),
 ];
 
 /// The distance between the two sides of a light that shines to both, metres: in one plane, each would hide the other.
 const APART: f32 = 1e-3;
+
+/// The distance of the sun, metres.
+const FAR: f32 = 1e5;
 
 /// The widest cone, degrees: the picture in which Mitsuba looks up the light of a cone has no end at 90°.
 const WIDEST: f32 = 85.0;
@@ -77,10 +79,9 @@ impl Lamp<'_> {
         self.entry.parameter(name).map_or(0, |p| self.values.choice(p))
     }
 
-    /// A shape that shines; by itself it is black.
+    /// A shape that shines with the luminance of the light.
     fn shining(&self, shape: Xml) -> Xml {
-        let black = Xml::plugin("bsdf", "diffuse").rgb("reflectance", Vec3::ZERO);
-        shape.with(black).with(Xml::plugin("emitter", "area").rgb("radiance", PI * self.power()))
+        shining(shape, PI * self.power())
     }
 
     /// A flat shape between −1 and 1 in x and y, with half of each side in the room; one for each side that shines.
@@ -99,12 +100,18 @@ impl Lamp<'_> {
     }
 }
 
+/// A shape that shines; by itself it is black.
+fn shining(shape: Xml, radiance: Vec3) -> Xml {
+    let black = Xml::plugin("bsdf", "diffuse").rgb("reflectance", Vec3::ZERO);
+    shape.with(black).with(Xml::plugin("emitter", "area").rgb("radiance", radiance))
+}
+
 fn alone(xml: Xml) -> Result<Emitter, String> {
     Ok(Emitter { xml: vec![xml], file: None, around: false })
 }
 
-fn all_around(radiance: Vec3) -> Result<Emitter, String> {
-    Ok(Emitter { around: true, ..alone(Xml::plugin("emitter", "constant").rgb("radiance", radiance))? })
+fn all_around(xml: Xml) -> Result<Emitter, String> {
+    Ok(Emitter { around: true, ..alone(xml)? })
 }
 
 /// `<point name="…" x="…" y="…" z="…"/>`, or a vector.
@@ -148,19 +155,60 @@ fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
     alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
 }
 
-/// Its luminance L is a factor of π f_r cos θ, as that of all lights with extent.
+/// A disc so far away that it fills the same angle everywhere in the room. E lux are the luminance E/(π sin²(δ/2)).
+fn sun(lamp: &Lamp) -> Result<Emitter, String> {
+    let LightRecord { direction, .. } = lamp.record;
+    let radius = 0.5 * lamp.parameter("diameter").to_radians();
+    let [x, y] = sides(direction, Vec2::Y).map(|side| FAR * radius.tan() * side);
+    let matrix = Mat4::from_translation(-FAR * direction) * Mat4::from_mat3(Mat3::from_cols(x, y, direction));
+    let disk = Xml::plugin("shape", "disk").with(to_world(matrix));
+    alone(shining(disk, lamp.power() / radius.sin().powi(2)))
+}
+
+/// Light from all around: the same everywhere, or a picture of it.
 fn environment(lamp: &Lamp) -> Result<Emitter, String> {
-    if lamp.choice("source") != 0 {
-        return Err("the environment light has extent, and Mitsuba has a counterpart only where its source is uniform; \
-                    of others it shows a picture of pixels"
-            .to_owned());
+    if lamp.choice("source") == 0 {
+        return all_around(Xml::plugin("emitter", "constant").rgb("radiance", PI * lamp.power()));
     }
-    all_around(PI * lamp.power())
+    let path = format!("textures/environment_{}.pfm", lamp.number);
+    let map = Xml::plugin("emitter", "envmap").set("string", "filename", &path);
+    let light = (lamp.entry.instantiate)(lamp.values, Encoding::default());
+    let radiance = |d: Vec3| PI * lamp.record.colour * light.seen(&lamp.record, Vec3::ZERO, d).radiance;
+    Ok(Emitter { file: Some(File::new(path, panorama(&radiance))), ..all_around(map)? })
+}
+
+/// A picture of all directions as Mitsuba looks them up: columns go about the vertical from −z by +x, the first begins there; the
+/// middles of the first and the last row are straight above and below. Each pixel is a mean, so that edges are soft and not steps.
+fn panorama(radiance: &(impl Fn(Vec3) -> Vec3 + Sync)) -> Vec<u8> {
+    /// Pixels.
+    const WIDTH: usize = 1024;
+    const HEIGHT: usize = WIDTH / 2 + 1;
+    /// Points across a pixel.
+    const FINE: usize = 3;
+    let part = |i: usize| (i as f32 + 0.5) / FINE as f32;
+    let pixel = |row: usize, column: usize| {
+        let mut sum = Vec3::ZERO;
+        for (i, j) in (0..FINE).flat_map(|i| (0..FINE).map(move |j| (i, j))) {
+            let down = ((row as f32 + part(i) - 0.5) / (HEIGHT - 1) as f32).clamp(0.0, 1.0);
+            let (sin_theta, cos_theta) = (PI * down).sin_cos();
+            let (sin_phi, cos_phi) = (2.0 * PI * (column as f32 + part(j)) / WIDTH as f32).sin_cos();
+            sum += radiance(Vec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi));
+        }
+        sum / (FINE * FINE) as f32
+    };
+    // The format begins with the lowest row.
+    let rows = (0..HEIGHT).into_par_iter().rev().map(|row| {
+        let numbers = (0..WIDTH).flat_map(|column| pixel(row, column).to_array());
+        numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>()
+    });
+    let mut bytes = format!("PF\n{WIDTH} {HEIGHT}\n-1.0\n").into_bytes();
+    bytes.extend(rows.collect::<Vec<_>>().concat());
+    bytes
 }
 
 /// A surface with the albedo E answers to the radiance L from everywhere with E L, and to our ambient light I with E I.
 fn ambient(lamp: &Lamp) -> Result<Emitter, String> {
-    all_around(lamp.power())
+    all_around(Xml::plugin("emitter", "constant").rgb("radiance", lamp.power()))
 }
 
 /// Mitsuba's cone fades linearly with the angle, ours by a cubic of its cosine. So that one has no soft edge, and our

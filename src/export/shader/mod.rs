@@ -14,7 +14,8 @@ use super::{
     lights::{LightField, Lights, call, stride},
 };
 use crate::{
-    optics::{colour::Encoding, tone::ToneMapping},
+    light::Twin,
+    optics::{colour::Encoding, lobes::MAX_LOBES, tone::ToneMapping},
     reflection::{Ambient, ModelEntry},
     registry::{
         Registry,
@@ -23,7 +24,9 @@ use crate::{
     shader::{
         Source,
         check::reason,
-        compose::{ALBEDO, Composer, LIGHTS, LOOP, OPTICS, SHADING, Sources, parameter_struct},
+        compose::{
+            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, parameter_struct,
+        },
     },
     shading::{self, ShadingEntry, Stage},
 };
@@ -63,9 +66,14 @@ pub struct Shader {
     pub reads_shading: bool,
     /// True if it reads `lamp_numbers`, the numbers of the lights' files.
     pub reads_lamps: bool,
+    /// True if it reads `material_lobes`, the lobes of the material.
+    pub reads_lobes: bool,
     /// True if an edited light loop reads more of `illumination` than the lights.
     pub reads_header: bool,
 }
+
+/// The samples of light with extent that a shader takes for each pixel, or for each vertex or polygon.
+pub const LIGHT_SAMPLES: u32 = 64;
 
 /// The index of the section of the light loop, before those of the light types.
 const LIGHT_LOOP: usize = 3;
@@ -93,7 +101,7 @@ pub fn compose(
     let faces = shading.declaration.stage == Stage::Polygon;
     let (own, standing) = (model.declaration, shading.declaration);
     let mut sections = vec![
-        Section { heading: String::new(), items: items(&wrapper::text(host, faces)) },
+        Section { heading: String::new(), items: items(&wrapper::text(host, faces, lights.has_extent())) },
         Section { heading: String::new(), items: items(&inputs(lights, model, shading, host)) },
         Section {
             heading: credit(standing.name, "shading", standing.source, standing.summary),
@@ -101,7 +109,7 @@ pub fn compose(
         },
         Section {
             heading: "The light that leaves a point: the sum over the lights.".to_owned(),
-            items: items(&(light_loop(sources, lights)? + &incident(lights))),
+            items: items(&(light_loop(sources, lights)? + &dispatch(lights))),
         },
     ];
     for entry in &lights.types {
@@ -130,6 +138,11 @@ pub fn compose(
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
     }
     vocabulary.extend(items(&named_curves(model)));
+    if lights.has_extent() {
+        // GLSL for WebGL 2 has no function that reverses bits.
+        let sampling = text(sources, &SAMPLING)?.replace("reverseBits(", "bits_reversed(");
+        vocabulary.extend(items(&(sampling + BITS_REVERSED)));
+    }
     if let Host::Alone { .. } = host {
         vocabulary.extend(items(include_str!("tone.wgsl")));
     }
@@ -213,15 +226,24 @@ fn code(line: &str) -> Option<(usize, usize)> {
 
 /// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
 fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
-    let mut text = text(sources, &LOOP)?;
-    let simpler = if sources.text(&LOOP) == LOOP.text { SIMPLER } else { &[] };
+    let extent = lights.has_extent();
+    let (mut joined, mut simpler) = (String::new(), SIMPLER);
+    for source in [LOOP, EXTENDED].iter().take(if extent { 2 } else { 1 }) {
+        joined.push_str(&text(sources, source)?);
+        if sources.text(source) != source.text {
+            simpler = &[];
+        }
+    }
+    if !extent {
+        joined = joined.replace(" + extended(position, v, frame)", "");
+    }
     for (general, special) in simpler.iter().chain(KNOWN) {
-        text = text.replace(general, special);
+        joined = joined.replace(general, special);
     }
     if !lights.uniform {
-        text = text.replace(EITHER, DIRECTED);
+        joined = joined.replace(EITHER, DIRECTED);
     }
-    Ok(text)
+    Ok(joined)
 }
 
 /// Parts of the built-in light loop, and what they are without a choice of terms.
@@ -234,14 +256,18 @@ const SIMPLER: &[(&str, &str)] = &[
 ",
         "    for (var i = 0u; i < LIGHT_COUNT; i++) {\n",
     ),
+    ("    let selection = illumination.terms;\n", ""),
     ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
 ];
 /// What is known of the scene, for any light loop.
 const KNOWN: &[(&str, &str)] = &[
-    (" + extended(position, v, frame)", ""),
     ("min(illumination.count, MAX_LIGHTS)", "LIGHT_COUNT"),
     ("illumination.count", "LIGHT_COUNT"),
     ("illumination.terms", "TERM_ALL"),
+    ("max(illumination.sample_count, 1u)", "LIGHT_SAMPLES"),
+    ("illumination.sample_count", "LIGHT_SAMPLES"),
+    ("illumination.first_sample + ", ""),
+    ("illumination.first_sample", "0u"),
 ];
 /// The part of the light loop that tells uniform light from other light.
 const EITHER: &str = "        var terms: Terms;
@@ -254,22 +280,53 @@ const EITHER: &str = "        var terms: Terms;
 /// The same where there is no uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
 
-/// The function that hands a light to its type.
-fn incident(lights: &Lights) -> String {
-    let head = "// The light that arrives at a point of the room from one light.\nfn incident(light: Light, p: vec3<f32>) -> Incident {\n";
-    let body = match lights.types.len() {
-        0 => "    return Incident(vec3(0.0), vec3(0.0), 0u);\n".to_owned(),
-        1 => format!("    return {};\n", call(lights, 0)),
-        count => {
-            let mut body = "    switch light.light_type {\n".to_owned();
-            for t in 0..count - 1 {
-                let _ = writeln!(body, "        case {t}u: {{ return {}; }}", call(lights, t));
-            }
-            let _ = writeln!(body, "        default: {{ return {}; }}\n    }}", call(lights, count - 1));
-            body
+/// A number with its bits in the opposite order.
+const BITS_REVERSED: &str = "fn bits_reversed(number: u32) -> u32 {
+    var x = (number >> 16u) | (number << 16u);
+    x = ((x & 0xff00ff00u) >> 8u) | ((x & 0x00ff00ffu) << 8u);
+    x = ((x & 0xf0f0f0f0u) >> 4u) | ((x & 0x0f0f0f0fu) << 4u);
+    x = ((x & 0xccccccccu) >> 2u) | ((x & 0x33333333u) << 2u);
+    return ((x & 0xaaaaaaaau) >> 1u) | ((x & 0x55555555u) << 1u);
+}
+";
+
+/// The functions that hand a light to its type.
+fn dispatch(lights: &Lights) -> String {
+    let mut text = "// The light that arrives at a point of the room from one light.\n".to_owned();
+    for twin in Twin::all(false) {
+        function(&mut text, lights, twin, twin.name, false);
+    }
+    if lights.has_extent() {
+        for twin in Twin::all(true) {
+            function(&mut text, lights, twin, &format!("{}_light", twin.name), true);
         }
+        let all = lights.types.iter().enumerate().filter(|(_, entry)| entry.declaration.extent);
+        let all: Vec<_> = all.map(|(t, _)| format!("light_type == {t}u")).collect();
+        let _ =
+            writeln!(text, "fn has_extent(light_type: u32) -> bool {{\n    return {};\n}}", all.join(" || "));
+    }
+    text
+}
+
+/// A function that hands lights with or without extent to their types; others are dark there.
+fn function(text: &mut String, lights: &Lights, twin: &Twin, name: &str, extent: bool) {
+    let [taken, _] = twin.more;
+    let _ = writeln!(text, "fn {name}(light: Light, p: vec3<f32>{taken}) -> {} {{", twin.result);
+    let all = lights.types.iter().enumerate().filter(|(_, entry)| entry.declaration.extent == extent);
+    let mut calls: Vec<_> = all.map(|(t, _)| (t, call(lights, t, twin))).collect();
+    let rest = match calls.len() == lights.types.len() {
+        true => calls.pop().map_or_else(|| twin.dark.to_owned(), |(_, last)| last),
+        false => twin.dark.to_owned(),
     };
-    format!("{head}{body}}}\n")
+    if calls.is_empty() {
+        let _ = writeln!(text, "    return {rest};\n}}");
+        return;
+    }
+    text.push_str("    switch light.light_type {\n");
+    for (t, call) in calls {
+        let _ = writeln!(text, "        case {t}u: {{ return {call}; }}");
+    }
+    let _ = writeln!(text, "        default: {{ return {rest}; }}\n    }}\n}}");
 }
 
 /// The inputs of the shader: their types, their bindings, and the functions that read them.
@@ -329,6 +386,22 @@ fn shading_parameters() -> {name} {{
 "
         );
     }
+    if lights.has_extent() {
+        let _ = write!(
+            text,
+            "// The samples of light with extent. They are the same in every picture, and so is their noise.
+const LIGHT_SAMPLES: u32 = {LIGHT_SAMPLES}u;
+// The directions from which the material reflects most light. They guide the samples: any others give the same mean, with
+// another noise.
+@group({group}) @binding(7) var<uniform> material_lobes: array<vec4<f32>, {MAX_LOBES}>;
+fn lobe_row(i: u32) -> vec4<f32> {{
+    return material_lobes[i];
+}}
+// The seed of the samples: that of the pixel; 0 for all vertices, so that interpolation is smooth.
+var<private> sample_seed: u32;
+"
+        );
+    }
     if !lights.numbers.is_empty() {
         let _ = write!(
             text,
@@ -371,6 +444,7 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
     let has = |name: &str| all.iter().flatten().any(|item| item.name == name);
     let (reads_curve, reads_shading, reads_lamps) =
         (has("albedo_curve"), has("shading_values"), has("lamp_numbers"));
+    let reads_lobes = has("material_lobes");
     let mut text = wrapper::prelude(host).to_owned();
     // Inputs first.
     for section in [1, 0].into_iter().chain(2..all.len()) {
@@ -390,7 +464,7 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
         }
     }
     let reads_header = illumination.is_some_and(|text| text.matches(':').count() > 1);
-    Shader { text, light_fields, reads_curve, reads_shading, reads_lamps, reads_header }
+    Shader { text, light_fields, reads_curve, reads_shading, reads_lamps, reads_lobes, reads_header }
 }
 
 /// A line for a comment, cut at spaces so that it stays within the width of the files.

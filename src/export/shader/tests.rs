@@ -19,7 +19,12 @@ const ALONE: Host = Host::Alone { tone: ToneMapping::None, encoding: Encoding::S
 #[test]
 fn every_model_is_valid_by_itself_in_every_shading_model() {
     let registry = Registry::builtin();
-    for types in [&["point"][..], &["point", "spot", "photometric", "directional", "ambient"]] {
+    for types in [
+        &["point"][..],
+        &["point", "spot", "photometric", "directional", "ambient"],
+        &["rectangle"],
+        &["environment", "point", "rectangle", "disc", "sphere", "cylinder", "sun", "ambient"],
+    ] {
         let scene = with_lights(types, &registry);
         let lights = Lights::of(&scene, &registry);
         for model in registry.models() {
@@ -64,6 +69,36 @@ fn parts_that_a_scene_does_not_need_are_left_out() {
     let text =
         compose(&Lights::of(&scene, &registry), &registry, lambert, gouraud, ALONE).expect("composed").text;
     assert!(text.contains("ambient_response") && text.contains("light_type"), "{text}");
+}
+
+/// Light with extent is sampled, each type is asked for its own lights only, and nothing of it is left without it.
+#[test]
+fn light_with_extent_is_sampled_where_there_is_some() {
+    let registry = Registry::builtin();
+    let (model, shading) =
+        (registry.model("lambert").expect("is"), registry.shading_model("phong").expect("is"));
+    let of = |types: &[&str]| {
+        let scene = with_lights(types, &registry);
+        compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect("composed")
+    };
+    let without = of(&["point"]);
+    for part in ["extended", "sample_seed", "LIGHT_SAMPLES", "material_lobes"] {
+        assert!(!without.text.contains(part), "{part} in\n{}", without.text);
+    }
+    assert!(!without.reads_lobes);
+    let with = of(&["point", "rectangle"]);
+    for part in [
+        " + extended(position, v, frame)",
+        "LIGHT_SAMPLES: u32 = 64u",
+        "sample_seed = pixel.x",
+        "case 0u: { return incident_point(light, p); }\n        default: { return Incident(vec3(0.0)",
+        "return light_type == 1u;",
+        "case 1u: { return sample_rectangle(light, RectangleParameters(light.width, light.height,",
+        "default: { return NOTHING_SEEN; }",
+    ] {
+        assert!(with.text.contains(part), "{part} not in\n{}", with.text);
+    }
+    assert!(with.reads_lobes && !with.reads_header && !with.text.contains("reverseBits"));
 }
 
 #[test]

@@ -26,8 +26,9 @@ pub(super) fn group(host: Host) -> &'static str {
     }
 }
 
-/// The entry points, and the bindings that they alone need; with `faces`, vertices know their polygon.
-pub(super) fn text(host: Host, faces: bool) -> String {
+/// The entry points, and the bindings that they alone need; with `faces`, vertices know their polygon; with `samples`, pixels have
+/// a seed.
+pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
     let mut text = String::new();
     let (input, placed, eye, clip) = match host {
         Host::Alone { .. } => (
@@ -77,6 +78,13 @@ struct Placement {
     } else {
         ""
     };
+    let seed = if samples {
+        "    let pixel = vec2<u32>(in.clip_position.xy);
+    sample_seed = pixel.x | (pixel.y << 16u);
+"
+    } else {
+        ""
+    };
     let _ = write!(
         text,
         "struct VertexIn {{
@@ -116,7 +124,7 @@ fn vertex(in: VertexIn) -> Stages {{
 }}
 @fragment
 fn fragment(in: Stages) -> @location(0) vec4<f32> {{
-    let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
+{seed}    let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
 {}}}
 ",
         display(host)

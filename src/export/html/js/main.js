@@ -53,7 +53,9 @@ class Page {
         this.resize();
         if (renderer && (await renderer.tryDrawing(this.scene, this.canvas.width, this.canvas.height))) {
           caption.textContent = kind.label;
-          caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel`;
+          const ofLight = this.scene.lightSamples;
+          const noise = ofLight ? `; light with extent by ${ofLight} samples, of which some noise stays` : '';
+          caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
           renderer.lost.then(() => this.renderer === renderer && this.start());
           this.draw();
           return true;

@@ -11,6 +11,8 @@ class Thing {
       placement: new Uniform(bytesOfFloats(data.matrix)),
       parameters: new Uniform(this.packed(this.values)),
       albedo_curve: new Uniform(this.initialCurve),
+      // Knobs do not change them: any lobes give the right picture, with more noise or less.
+      material_lobes: new Uniform(data.lobes === null ? new Uint8Array(0) : scene.blocks[data.lobes]),
       shading_values: new Uniform(this.packedShading()),
     };
   }
@@ -74,6 +76,7 @@ class Scene {
       models: data.models,
       encoding: data.encoding,
       background: data.background,
+      lightSamples: data.lightSamples,
       exposure: data.exposure,
       initialExposure: data.exposure,
       observer: data.observer,
