@@ -27,7 +27,7 @@ use crate::{
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable, words},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reference,
+    reference::{self, Reached, Until},
     reflection::ends::check_that_it_ends,
     registry::Registry,
     render::{
@@ -40,7 +40,7 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Scene, check, comparison::Layout, variant::LETTERS},
+    scene::{Scene, check, comparison::Layout, has_extent, variant::LETTERS},
     text::quoted,
 };
 
@@ -68,6 +68,14 @@ pub(super) struct Arguments {
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
+    /// Samples of each light with extent, and as many of the directions in which objects reflect most, on the CPU: 1 to 1048576;
+    /// by default 256, with --noise 65536
+    #[arg(long, value_name = "N", value_parser = light_samples)]
+    light_samples: Option<u32>,
+    /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
+    /// luminance, in per cent, e.g. 1 or 0.5%
+    #[arg(long, value_name = "PERCENT", value_parser = noise)]
+    noise: Option<f32>,
     /// Use this reflection model for every object
     #[arg(long, value_name = "ID")]
     reflection: Option<String>,
@@ -121,6 +129,18 @@ impl Arguments {
     }
 }
 
+impl Arguments {
+    /// True if something is said of the samples of lights with extent, which the CPU renderer counts.
+    fn counts_samples(&self) -> bool {
+        self.light_samples.is_some() || self.noise.is_some()
+    }
+
+    fn until(&self) -> Until {
+        let default = if self.noise.is_some() { MAX_FOR_NOISE } else { Until::default().samples };
+        Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
+    }
+}
+
 /// The choice of renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Renderer {
@@ -158,6 +178,31 @@ impl FromStr for Size {
 /// Its range is checked where those of all changes are.
 fn exposure(text: &str) -> Result<f32, String> {
     text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
+}
+
+/// The most samples of lights with extent.
+const MAX_LIGHT_SAMPLES: u32 = 1 << 20;
+
+/// The most samples where noise decides, unless others are asked for.
+const MAX_FOR_NOISE: u32 = 1 << 16;
+
+fn light_samples(text: &str) -> Result<u32, String> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|n| (1..=MAX_LIGHT_SAMPLES).contains(n))
+        .ok_or_else(|| format!("it must be a whole number from 1 to {MAX_LIGHT_SAMPLES}"))
+}
+
+/// Noise as a fraction, from per cent.
+fn noise(text: &str) -> Result<f32, String> {
+    let number = text.trim().trim_end_matches('%').trim_end();
+    number
+        .parse()
+        .ok()
+        .filter(|percent: &f32| (0.01..=100.0).contains(percent))
+        .map(|percent| percent / 100.0)
+        .ok_or_else(|| "it must be a number of per cent from 0.01 to 100, e.g. 1 or 0.5%".to_owned())
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {
@@ -219,6 +264,8 @@ struct Job<'a> {
     file: &'a Path,
     size: [u32; 2],
     samples: u32,
+    /// The end of the samples of lights with extent.
+    until: Until,
     with_scene: bool,
     with_caption: bool,
     /// One view was asked for.
@@ -284,7 +331,16 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     // All files are in one folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
-    let mut painter = Painter::new(arguments.renderer, options.trial_program())?;
+    let renderer = match arguments.renderer {
+        Renderer::Auto if arguments.counts_samples() => Renderer::Cpu,
+        Renderer::Gpu if arguments.counts_samples() => {
+            return Err(Failure::Usage(
+                "--light-samples and --noise are for the CPU renderer; the GPU takes 256 samples".to_owned(),
+            ));
+        }
+        renderer => renderer,
+    };
+    let mut painter = Painter::new(renderer, options.trial_program())?;
     // A model that only a GPU can draw needs a driver after all. A scene from standard input cannot be read twice.
     #[cfg(target_os = "linux")]
     if !sources.contains(&Source::Stdin) && plans.iter().any(|plan| painter.takes_gpu(plan, registry)) {
@@ -323,6 +379,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             file,
             size,
             samples: arguments.samples,
+            until: arguments.until(),
             with_scene: !arguments.no_scene,
             with_caption: arguments.caption,
             alone: arguments.view.is_some(),
@@ -528,9 +585,14 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<(Shown, Option<
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
     // A channel does not note what it shows.
     let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
+    let mut converged = None;
     let shown = if let Some(channel) = &job.channel {
         let rgb8 = reference::render_channel(&part.scene, registry, &settings, channel);
         Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
+    } else if has_extent(part.scene.shining(), registry) {
+        let (picture, reached) = reference::render_until(&part.scene, registry, &settings, job.until, &odd);
+        converged = Some(reached);
+        Shown::of_light(picture, &part.scene.display)
     } else if job.plan.needs_light() {
         Shown::of_light(reference::render_noting(&part.scene, registry, &settings, &odd), &part.scene.display)
     } else {
@@ -540,7 +602,16 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<(Shown, Option<
     // An endless function shows only when it runs.
     cpu_can_draw(&part.scene, registry)?;
     let remark = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
-    Ok((shown, remark))
+    Ok((shown, remark.or_else(|| too_noisy(job.until, converged?))))
+}
+
+/// A remark on a picture that is noisier than was asked for.
+fn too_noisy(until: Until, Reached { samples, noise }: Reached) -> Option<String> {
+    let noise = noise.filter(|noise| until.noise.is_some_and(|wanted| *noise > wanted))?;
+    Some(format!(
+        "after {samples} samples the noise is {:.2} %; more --light-samples lower it",
+        100.0 * noise
+    ))
 }
 
 /// The views that the picture of a scene shows.

@@ -286,7 +286,7 @@ mod tests {
 
         fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
             let l = crate::optics::sampling::sphere(u);
-            let Seen { radiance, pdf, .. } = self.seen(light, p, l);
+            let Seen { radiance, pdf, .. } = LightType::seen(self, light, p, l);
             Sample { l, radiance, pdf }
         }
 

@@ -40,6 +40,7 @@ use crate::{
 };
 
 mod channel;
+mod converge;
 mod display;
 mod edits;
 mod extended;
@@ -56,6 +57,7 @@ mod wires;
 
 pub use crate::optics::colour::BACKGROUND;
 use channel::Sight;
+pub use converge::{Reached, Until, render_until};
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
 pub use edits::ignored_edits;

@@ -390,6 +390,14 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
+/// True if some of the lights that shine has extent, so that they are sampled.
+#[must_use]
+pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &Registry) -> bool {
+    shining
+        .into_iter()
+        .any(|light| registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent))
+}
+
 /// True if some of the lights that shine is uniform, so that albedos are needed.
 #[must_use]
 pub fn shines_from_everywhere<'a>(
