@@ -181,12 +181,17 @@ pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'s
         (Value::Integer(v), _) => (parameter.symbol, v.to_string()),
         (Value::Colour(rgb), _) => (parameter.symbol, format!("({}, {}, {})", rgb[0], rgb[1], rgb[2])),
         (Value::Triple(v), _) => (parameter.symbol, numbers(v.map(|v| number(f64::from(v))))),
-        // The name of a distribution needs no letter; “None” alone says nothing.
+        // The name of a distribution needs no letter; “None” and “yes” alone say nothing.
         (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
             let name = options.iter().find(|(o, _)| **o == **id).map_or(&**id, |(_, name)| *name);
             let name = name.split(" (").next().unwrap_or(name);
             let none = name.eq_ignore_ascii_case("none");
-            ("", if none { format!("no {}", parameter.label) } else { name.to_owned() })
+            let text = match name {
+                _ if parameter.is_flag() => format!("{}: {name}", parameter.label),
+                _ if none => format!("no {}", parameter.label),
+                _ => name.to_owned(),
+            };
+            ("", text)
         }
         _ => return None,
     })

@@ -239,6 +239,7 @@ fn parameter(p: &Parameter) -> Json {
             json["min"] = number(*min);
             json["max"] = number(*max);
         }
+        ParameterKind::Choice { .. } if p.is_flag() => json["type"] = "flag".into(),
         ParameterKind::Choice { options, .. } => {
             json["type"] = "choice".into();
             json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();

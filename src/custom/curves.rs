@@ -231,6 +231,7 @@ fn meaning(parameter: &Parameter, written: &Ast, own: &[Parameter]) -> Option<Se
     let literal = |value: &Ast| match value {
         Ast::NumberLit(number) => Some(number.value.to_owned()),
         Ast::StringLit(text) => Some(text.value.to_string()),
+        Ast::BooleanLit(flag) => Some(flag.value.to_string()),
         _ => None,
     };
     let text = match written {

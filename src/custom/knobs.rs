@@ -10,7 +10,7 @@ use super::{
 use crate::{
     parameter::{ABOVE_ZERO, Parameter, ParameterKind},
     text::{
-        json::{Cursor, Fields, Reader as _},
+        json::{Ast, Cursor, Fields, Reader as _},
         quoted,
     },
 };
@@ -33,7 +33,7 @@ const PARAMETER_KEYS: &[&str] = &[
     "used_when",
 ];
 /// The types of parameters.
-const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice"];
+const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice", "flag"];
 /// The default symbol of a parameter: a Greek letter if the name begins with the name of one.
 fn symbol_of(name: &str) -> String {
     const GREEK: &[(&str, &str)] = &[
@@ -135,7 +135,7 @@ impl Reader<'_> {
         let Some(kind) = kind else { return };
         let other = self.registry.models().iter().filter(|m| m.declaration.id != self.id).find_map(|m| {
             let p = m.parameter(name)?;
-            (std::mem::discriminant(&p.kind) != std::mem::discriminant(kind)).then_some((m, p))
+            (p.kind.name() != kind.name()).then_some((m, p))
         });
         if let Some((model, parameter)) = other {
             let rule = format!(
@@ -154,6 +154,7 @@ impl Reader<'_> {
             None => match (shared, fields.get("choices"), fields.get("default")) {
                 (Some(shared), ..) => shared.name(),
                 (None, Some(_), _) => "choice",
+                (None, None, Some(Cursor { value: Ast::BooleanLit(_), .. })) => "flag",
                 (None, None, Some(default)) if default.list().is_some() => {
                     self.lacking(fields, "type", "a list may be a \"colour\" or a \"triple\"");
                     return None;
@@ -178,6 +179,7 @@ impl Reader<'_> {
             "integer" => self.integer_kind(fields, shared),
             "colour" => self.colour_kind(fields, shared),
             "triple" => self.triple_kind(fields, shared),
+            "flag" => Some(self.flag_kind(fields, shared)),
             _ => self.choice_kind(fields, shared),
         }
     }
@@ -359,6 +361,11 @@ impl Reader<'_> {
         self.within(fields, ParameterKind::Triple { min, max, default })
     }
 
+    fn flag_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> ParameterKind {
+        let usual = matches!(shared, Some(ParameterKind::Choice { default: 1, .. }));
+        ParameterKind::flag(self.flag(fields, "default", usual, "it must be true or false"))
+    }
+
     fn choice_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
         let (mut options, usual) = match shared {
             Some(ParameterKind::Choice { options, default }) => (options.to_vec(), options[*default].0),
@@ -390,6 +397,8 @@ impl Reader<'_> {
         let mut add = |reader: &mut Self, at: usize, id: &str, name: &str| {
             let predicate = if let Err(rule) = identifier(id) {
                 format!("has {}, but a choice {rule}", quoted(id))
+            } else if id.parse::<bool>().is_ok() {
+                format!("has {}, but true and false are the values of the type \"flag\"", quoted(id))
             } else if options.iter().any(|(known, _)| *known == id) {
                 format!("has {} twice", quoted(id))
             } else {

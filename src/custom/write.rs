@@ -263,6 +263,7 @@ fn declare(out: &mut String, p: &Parameter) {
             format!("\"min\": {min}, {max}\"slider_max\": {slider_max}, ")
         }
         ParameterKind::Colour { .. } | ParameterKind::File { .. } => String::new(),
+        ParameterKind::Choice { .. } if p.is_flag() => String::new(),
         ParameterKind::Choice { options, .. } => {
             let options: Vec<_> = options
                 .iter()

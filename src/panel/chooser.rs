@@ -32,7 +32,7 @@ fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     let of = |parameter: &'static Parameter| {
         let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
         let choices = match parameter.kind {
-            ParameterKind::Choice { options, .. } => options,
+            ParameterKind::Choice { options, .. } if !parameter.is_flag() => options,
             _ => &[],
         };
         std::iter::once(own).chain(choices.iter().map(|(id, name)| (format!("{name} {id}"), *name)))

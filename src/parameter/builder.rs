@@ -63,6 +63,18 @@ impl Parameter {
         Self::new(name, ParameterKind::Choice { options, default })
     }
 
+    /// Yes or no: `true` or `false` in scene files.
+    ///
+    /// ```
+    /// use lights_camera_models::parameter::{Parameter, Value};
+    /// const TWO_SIDED: Parameter = Parameter::flag("two_sided", true);
+    /// assert_eq!(TWO_SIDED.parse("false"), Ok(Value::flag(false)));
+    /// ```
+    #[must_use]
+    pub const fn flag(name: &'static str, default: bool) -> Self {
+        Self::new(name, ParameterKind::flag(default))
+    }
+
     /// A file of numbers, for light types and object types; the default is the name of a file that is shipped with the format.
     #[must_use]
     pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
@@ -101,7 +113,7 @@ mod tests {
 
     #[test]
     fn every_type_is_declared_with_its_default() {
-        const ALL: [(Parameter, Value); 6] = [
+        const ALL: [(Parameter, Value); 8] = [
             (Parameter::number("a", 0.0..=2.0, 1.5), Value::Number(1.5)),
             (Parameter::integer("b", 1..=16, 4), Value::Integer(4)),
             (Parameter::integer_from("c", 0, 512, 32), Value::Integer(32)),
@@ -111,6 +123,8 @@ mod tests {
                 Parameter::choice("f", &[("g", "G"), ("h", "H")], 1),
                 Value::Choice(std::borrow::Cow::Borrowed("h")),
             ),
+            (Parameter::flag("i", false), Value::flag(false)),
+            (Parameter::flag("j", true), Value::flag(true)),
         ];
         for (p, value) in ALL {
             assert_eq!(p.default_value(), value, "{}", p.name);

@@ -77,7 +77,7 @@ pub enum ParameterKind {
         /// The value if the scene gives none.
         default: [f32; 3],
     },
-    /// One of several named choices.
+    /// One of several named choices. A [flag](Self::flag) is one whose choices are `false` and `true`.
     Choice {
         /// The choices: name in files, name in the window.
         options: &'static [(&'static str, &'static str)],
@@ -94,6 +94,19 @@ pub enum ParameterKind {
 }
 
 impl ParameterKind {
+    /// Yes or no: a JSON boolean in scene files, a checkbox in the window.
+    #[must_use]
+    pub const fn flag(default: bool) -> Self {
+        Self::Choice { options: &[("false", "no"), ("true", "yes")], default: default as usize }
+    }
+
+    /// True if its choices are those of a [flag](Self::flag).
+    #[must_use]
+    pub fn is_flag(&self) -> bool {
+        // The names in the window may be others.
+        matches!(self, Self::Choice { options: [("false", _), ("true", _)], .. })
+    }
+
     /// Its word in messages and in the declarations of custom models.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -102,6 +115,7 @@ impl ParameterKind {
             Self::Integer { .. } => "integer",
             Self::Colour { .. } => "colour",
             Self::Triple { .. } => "triple",
+            Self::Choice { .. } if self.is_flag() => "flag",
             Self::Choice { .. } => "choice",
             Self::File { .. } => "file",
         }
@@ -109,11 +123,17 @@ impl ParameterKind {
 }
 
 impl Parameter {
+    /// True if it is a [flag](ParameterKind::flag).
+    #[must_use]
+    pub fn is_flag(&self) -> bool {
+        self.kind.is_flag()
+    }
+
     /// The difference that keeps two declarations from being one parameter of materials, in this one and in the other: the
     /// type or the unit. Ranges and defaults may differ.
     #[must_use]
     pub fn clash(&self, other: &Self) -> Option<(String, String)> {
-        if std::mem::discriminant(&self.kind) != std::mem::discriminant(&other.kind) {
+        if self.kind.name() != other.kind.name() {
             return Some((with_article(self.kind.name()), with_article(other.kind.name())));
         }
         let unit =
@@ -181,6 +201,7 @@ impl Parameter {
             ParameterKind::Triple { min, max, .. } => {
                 format!("three numbers between {min} and {max}, [red, green, blue], or one for all")
             }
+            ParameterKind::Choice { .. } if self.is_flag() => "true or false".to_owned(),
             ParameterKind::Choice { options, .. } => {
                 let names: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
                 format!("one of {}", names.join(", "))

@@ -90,7 +90,7 @@ impl Parameter {
             return Ok(());
         }
         let hint = match (&self.kind, value) {
-            (ParameterKind::Choice { options, .. }, Value::Choice(id)) => did_you_mean(
+            (ParameterKind::Choice { options, .. }, Value::Choice(id)) if !self.is_flag() => did_you_mean(
                 id,
                 options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
             ),
@@ -103,9 +103,13 @@ impl Parameter {
     }
 
     /// Its [rule](Self::rule) as a clause with its name and unit: "the slope deviation must be between 0 and 35
-    /// degrees".
+    /// degrees"; that of a flag has the name in files: "two_sided must be true or false".
     #[must_use]
     pub fn clause(&self) -> String {
+        // Its label may be no noun: "two-sided".
+        if self.is_flag() {
+            return format!("{} must be {}", self.name, self.rule());
+        }
         let unit = match (self.unit, &self.kind) {
             ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
             ("°", _) => " degrees".to_owned(),
@@ -163,5 +167,25 @@ mod tests {
         let fresnel = registry.material_parameter("fresnel").expect("declared");
         let said = fresnel.parse("conducter").expect_err("refused").to_string();
         assert!(said.contains("did you mean \"conductor\"?"), "{said}");
+    }
+
+    #[test]
+    fn a_flag_is_true_or_false() {
+        const FLAG: Parameter = Parameter::flag("two_sided", true).label("two-sided");
+        for on in [true, false] {
+            assert_eq!(FLAG.parse(&format!(" {on} ")), Ok(Value::flag(on)));
+            assert_eq!(Value::flag(on).truth(), Some(on));
+        }
+        for (text, rule) in [
+            ("yes", "is yes, but two_sided must be true or false"),
+            ("True", "is True, but two_sided must be true or false"),
+            ("1", "is 1, but two_sided must be true or false"),
+            ("", "is empty, but two_sided must be true or false"),
+        ] {
+            assert_eq!(FLAG.parse(text).expect_err("refused").to_string(), rule);
+        }
+        let other = Parameter::choice("two_sided", &[("no", "No"), ("yes", "Yes")], 0);
+        assert!(!other.is_flag());
+        assert_eq!(FLAG.clash(&other), Some(("a flag".to_owned(), "a choice".to_owned())));
     }
 }

@@ -113,6 +113,7 @@ macro_rules! parameters {
     (@type triple) => { $crate::glam::Vec3 };
     (@type number) => { f32 };
     (@type choice) => { u32 };
+    (@type flag) => { bool };
     (@get colour $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get triple $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get number $values:ident $encoding:ident $declaration:expr) => { $values.number(&$declaration) };
@@ -120,10 +121,12 @@ macro_rules! parameters {
         $values.table(&$declaration).unwrap_or_default()
     };
     (@get choice $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) };
+    (@get flag $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) == 1 };
     (@words colour $value:expr) => { $value.to_array() };
     (@words triple $value:expr) => { $value.to_array() };
     (@words number $value:expr) => { [$value; 3] };
     (@words choice $value:expr) => { [$value as f32; 3] };
+    (@words flag $value:expr) => { [f32::from($value); 3] };
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::{borrow::Cow, collections::BTreeMap, fmt, ops::RangeInclusive};
 
 use bevy::reflect::Reflect;
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::{
     declaration::{Parameter, ParameterKind},
@@ -27,13 +27,28 @@ pub enum Value {
     Colour([u8; 3]),
     /// A number for each of red, green and blue.
     Triple([f32; 3]),
-    /// The name of a choice.
-    Choice(Cow<'static, str>),
+    /// The name of a choice. Those of a flag, `true` and `false`, are written as booleans.
+    Choice(#[serde(serialize_with = "choice")] Cow<'static, str>),
     /// A file.
     File(NamedFile),
 }
 
 impl Value {
+    /// The value of a [flag](super::ParameterKind::flag).
+    #[must_use]
+    pub const fn flag(on: bool) -> Self {
+        Self::Choice(Cow::Borrowed(if on { "true" } else { "false" }))
+    }
+
+    /// True or false if it is the value of a flag. No other choice has these names.
+    #[must_use]
+    pub fn truth(&self) -> Option<bool> {
+        match self {
+            Self::Choice(id) => id.parse().ok(),
+            _ => None,
+        }
+    }
+
     /// Distance from another one of its type; infinite where there is none.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
@@ -45,6 +60,14 @@ impl Value {
             }
             _ => f64::INFINITY,
         }
+    }
+}
+
+/// A choice as scene files write it.
+fn choice<S: Serializer>(id: &str, serializer: S) -> Result<S::Ok, S::Error> {
+    match id.parse() {
+        Ok(flag) => serializer.serialize_bool(flag),
+        Err(_) => serializer.serialize_str(id),
     }
 }
 
@@ -165,7 +188,7 @@ pub fn json(value: &Value) -> serde_json::Value {
         Value::Integer(v) => (*v).into(),
         Value::Colour(rgb) => serde_json::json!(rgb),
         Value::Triple(v) => v.iter().map(|c| crate::text::number(*c)).collect(),
-        Value::Choice(v) => v.as_ref().into(),
+        Value::Choice(v) => value.truth().map_or_else(|| v.as_ref().into(), Into::into),
         Value::File(v) => v.name().into(),
     }
 }

@@ -49,6 +49,9 @@ pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) 
         .filter(|(id, _)| condition.choices.contains(id))
         .map(|(_, name)| quoted(name))
         .collect();
+    if other.is_flag() {
+        return Some(format!("Not used while “{}” is {chosen}", other.label));
+    }
     if users.len() > FEW || parameter.used_when != Some(condition) {
         return Some(format!("Not used while the {} is {chosen}", other.label));
     }
@@ -249,6 +252,11 @@ mod tests {
             let list = [choice("one"), choice("two").used_when(condition.0, condition.1), BASE_COLOUR];
             problem(&list, &list[1]).unwrap_or_default()
         };
+        let flag = [Parameter::flag("lit", false).label("lit"), BASE_COLOUR.used_when("lit", &["true"])];
+        let reason = |on| {
+            unused(&flag, &flag[1], &Values([("lit".into(), Value::flag(on))].into())).unwrap_or_default()
+        };
+        assert_eq!((reason(true).as_str(), reason(false).as_str()), ("", "Not used while “lit” is no"));
         assert_eq!(problem_of(("one", &["a"])), "");
         assert!(problem_of(("three", &["a"])).contains("there is no \"three\""));
         assert!(problem_of(("base_colour", &["a"])).contains("has another type"));

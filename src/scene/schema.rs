@@ -357,6 +357,7 @@ fn parameter(p: &Parameter) -> Json {
             let one = json!({ "type": "number", "minimum": number(*min), "maximum": number(*max) });
             json!({ "oneOf": [one, { "type": "array", "items": one, "minItems": 3, "maxItems": 3 }] })
         }
+        ParameterKind::Choice { .. } if p.is_flag() => json!({ "type": "boolean" }),
         ParameterKind::Choice { options, .. } => {
             let mut field = json!({ "type": "string" });
             choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));

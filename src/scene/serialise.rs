@@ -113,9 +113,12 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         use serde_json::Value as Json;
         let json = Json::deserialize(deserializer)?;
-        let is_text = matches!(self.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
+        let is_flag = self.is_flag();
+        let is_text =
+            !is_flag && matches!(self.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
         let written = match &json {
             Json::String(text) if is_text => Some(text.clone()),
+            Json::Bool(_) if is_flag => Some(json.to_string()),
             Json::Number(_) if !is_text => Some(json.to_string()),
             Json::Array(list) if !is_text && list.iter().all(Json::is_number) => Some(json.to_string()),
             _ => None,

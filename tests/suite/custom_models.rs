@@ -141,11 +141,11 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
     for (fields, expected) in [
         (
             r#""type": "nummer""#,
-            r#"type is "nummer", but a type must be "number", "integer", "colour", "triple" or "choice"; did you mean "number"?"#,
+            r#"type is "nummer", but a type must be "number", "integer", "colour", "triple", "choice" or "flag"; did you mean "number"?"#,
         ),
         (
             r#""type": "color""#,
-            r#"type is "color", but a type must be "number", "integer", "colour", "triple" or "choice"; did you mean "colour"?"#,
+            r#"type is "color", but a type must be "number", "integer", "colour", "triple", "choice" or "flag"; did you mean "colour"?"#,
         ),
         (r#""default": [1, 2, 3]"#, r#"type is missing; a list may be a "colour" or a "triple""#),
         (r#""min": "0""#, r#"min is "0", but it must be a number"#),
@@ -187,6 +187,12 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             r#""choices": ["one", "two"], "default": "on""#,
             r#"default is "on", but the default must be "one" or "two"; did you mean "one"?"#,
         ),
+        (
+            r#""choices": ["maybe", "true"]"#,
+            r#"choices has "true", but true and false are the values of the type "flag""#,
+        ),
+        (r#""type": "flag", "default": "true""#, r#"default is "true", but it must be true or false"#),
+        (r#""default": true, "max": 1"#, "max is given, but a flag has none"),
         (r#""colour": 1"#, "colour is not a key of a parameter"),
     ] {
         check(
@@ -256,6 +262,17 @@ fn what_is_left_out_has_a_sensible_value() {
     assert!(matches!(steps.kind, ParameterKind::Integer { min: 1, max: None, default: 1, .. }), "{steps:?}");
     assert_eq!(kind.kind, ParameterKind::Choice { options: &[("a", "The first")], default: 0 });
     assert_eq!(width.rule(), "greater than 0 and at most 4");
+}
+
+#[test]
+fn a_flag_is_declared_by_its_type_or_its_default() {
+    let text = matt(
+        r#"{ "parameters": [{ "name": "on", "default": true }, { "name": "off", "type": "flag" }, { "name": "colourful", "used_when": { "on": ["true"] } }] }"#,
+    );
+    let model = custom::read(&path("lamp"), &text, &Registry::builtin()).expect("valid").entry;
+    let [on, off, _] = model.parameters else { panic!("{:?}", model.parameters) };
+    assert_eq!((&on.kind, &off.kind), (&ParameterKind::flag(true), &ParameterKind::flag(false)));
+    assert_eq!((on.wgsl_type(), on.rule().as_str()), ("u32", "true or false"));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! A model, a light type and an object type from outside the crate, registered through the public calls, work
 //! everywhere.
 
+use std::path::Path;
+
 use glam::Vec3;
 use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
@@ -17,6 +19,7 @@ use lights_camera_models::{
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
         Light, Scene, check,
+        formats::{Csv, SceneFormat as _, Target},
         load::{self, Defaults},
         save, schema,
     },
@@ -25,6 +28,7 @@ use lights_camera_models::{
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
 };
 
+use serde::de::DeserializeSeed as _;
 use serde_json::{Value as Json, json};
 
 use crate::{
@@ -78,6 +82,8 @@ const PROFILE: Parameter =
     Parameter::choice("profile", &[("smooth", "Smooth"), ("steps", "In steps")], 0).help("How it grows.");
 const STEPS: Parameter =
     Parameter::integer("steps", 1..=16, 3).help("How many steps.").used_when("profile", &["steps"]);
+const UPSIDE_DOWN: Parameter =
+    Parameter::flag("upside_down", false).label("upside down").help("Stronger at the bottom instead.");
 
 parameters! {
     /// A light that is stronger at the top of the room, with a parameter of every type.
@@ -87,6 +93,7 @@ parameters! {
         haze: triple = HAZE,
         profile: choice = PROFILE,
         steps: number = STEPS,
+        upside_down: flag = UPSIDE_DOWN,
     }
 }
 
@@ -99,6 +106,7 @@ impl LightType for Skylight {
             "fn incident_sky_light(light: Light, m: SkyLightParameters, p: vec3<f32>) -> Incident {
                  var share = p.y / m.ceiling;
                  if m.profile == 1u { share = ceil(share * m.steps) / m.steps; }
+                 if m.upside_down == 1u { share = abs(1.0 - share); }
                  let colour = share * m.zenith + m.haze;
                  return Incident(vec3(0.0, 1.0, 0.0), light.intensity * colour, 0u);
              }\n",
@@ -111,6 +119,7 @@ impl LightType for Skylight {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let share = p.y / self.ceiling;
         let share = if self.profile == 1 { (share * self.steps).ceil() / self.steps } else { share };
+        let share = if self.upside_down { (1.0 - share).abs() } else { share };
         Incident::From { l: Vec3::Y, intensity: light.intensity * (share * self.zenith + self.haze) }
     }
 }
@@ -286,6 +295,7 @@ fn every_type_of_parameter_of_a_light_reaches_both_renderers() {
         ("haze", Value::Triple([0.05, 0.6, 0.3])),
         ("profile", Value::Choice("steps".into())),
         ("steps", Value::Integer(9)),
+        ("upside_down", Value::flag(true)),
     ];
     let mut shown = on_gpu(&mut renderer, &scene);
     for (name, value) in values {
@@ -301,7 +311,14 @@ fn every_type_of_parameter_of_a_light_reaches_both_renderers() {
     let zenith = Encoding::Srgb.decode([250, 40, 120]);
     assert_eq!(
         lights,
-        [Skylight { ceiling: 7.0, zenith, haze: Vec3::new(0.05, 0.6, 0.3), profile: 1, steps: 9.0 }]
+        [Skylight {
+            ceiling: 7.0,
+            zenith,
+            haze: Vec3::new(0.05, 0.6, 0.3),
+            profile: 1,
+            steps: 9.0,
+            upside_down: true
+        }]
     );
 }
 
@@ -334,6 +351,7 @@ fn parameters_of_a_light_are_read_checked_written_and_in_the_schema() {
     scene.lights[1].parameters.set("haze", Value::Triple([0.5; 3]));
     scene.lights[1].parameters.set("steps", Value::Integer(2));
     scene.lights[1].parameters.set("profile", Value::Choice("steps".into()));
+    scene.lights[1].parameters.set("upside_down", Value::flag(true));
     let text = save::to_json(&scene, None, &registry);
     let read = |text: &str| load::from_text(text, "scene.json", &registry, Defaults::Refuse);
     assert_eq!(read(&text).map(|loaded| loaded.scene.lights).ok(), Some(scene.lights));
@@ -342,16 +360,81 @@ fn parameters_of_a_light_are_read_checked_written_and_in_the_schema() {
         ("\"haze\": [0.5, 0.5, 0.5]", "\"haze\": [0.5, 0.5, 1.5]", "between 0 and 1"),
         ("\"steps\": 2", "\"steps\": 2.5", "a whole number between 1 and 16"),
         ("\"profile\": \"steps\"", "\"profile\": \"step\"", "did you mean \"steps\"?"),
+        (
+            "\"upside_down\": true",
+            "\"upside_down\": \"true\"",
+            "lights[1].upside_down is \"true\", but upside_down must be true or false, without quotes",
+        ),
+        (
+            "\"upside_down\": true",
+            "\"upside_down\": \"yes\"",
+            "lights[1].upside_down is \"yes\", but upside_down must be true or false",
+        ),
+        (
+            "\"upside_down\": true",
+            "\"upside_down\": 1",
+            "lights[1].upside_down is 1, but upside_down must be true or false",
+        ),
         ("\"steps\": 2", "\"cone_angle\": 2", "is given, but a sky_light light has no cone_angle"),
     ] {
         assert!(text.contains(right), "{right} in {text}");
         let Err(problem) = read(&text.replace(right, wrong)) else { panic!("{wrong} is legal") };
-        assert!(problem.to_string().contains(message), "{problem}");
+        let said = problem.to_string();
+        assert!(said.contains(message), "{said}");
+        assert_eq!(said.contains("without quotes"), wrong.ends_with("\"true\""), "{said}");
     }
     let schema = schema::text(&registry);
-    for name in ["ceiling", "zenith", "haze", "profile", "steps"] {
+    for name in ["ceiling", "zenith", "haze", "profile", "steps", "upside_down"] {
         assert!(schema.contains(&format!("\"{name}\": {{")), "{name}");
     }
+}
+
+#[test]
+fn a_flag_is_a_boolean_in_files() {
+    let registry = registry();
+    let with = |value: Value| {
+        let mut scene = scene();
+        scene.lights[1].parameters.set("upside_down", value);
+        scene
+    };
+    let schema = jsonschema::draft202012::new(&schema::schema(&registry)).expect("a valid schema");
+    for on in [false, true] {
+        let scene = with(Value::flag(on));
+        let text = save::to_json(&scene, None, &registry);
+        let mut json: Json = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(json["lights"][1]["upside_down"], Json::Bool(on));
+        assert!(schema.is_valid(&json));
+        let target = Target::new(Path::new(""), None);
+        let table = Csv.writer().expect("it writes").write(&scene, &target, &registry).expect("written");
+        let table = String::from_utf8(table).expect("text");
+        let back = load::from_text(&table, "room.csv", &registry, Defaults::Refuse).expect("legal");
+        assert_eq!(back.scene.lights, scene.lights, "{table}");
+        assert_eq!((&UPSIDE_DOWN).deserialize(Json::Bool(on)).expect("legal"), Value::flag(on));
+        json["lights"][1]["upside_down"] = on.to_string().into();
+        assert!(!schema.is_valid(&json), "the wrong twin: text");
+        assert!((&UPSIDE_DOWN).deserialize(Json::from(on.to_string())).is_err());
+    }
+    let wrong = check::scene(&with(Value::Choice("maybe".into())), &registry);
+    assert_eq!(
+        wrong.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        ["lights[1].upside_down is \"maybe\", but upside_down must be true or false"]
+    );
+}
+
+#[test]
+fn a_flag_has_a_checkbox() {
+    let mut bench = Bench::with_registry(Session::new(scene()), registry());
+    bench.apply(Action::Select(Selection::Light(1)));
+    let flag = |b: &Bench| b.session.document.lights[1].parameters.get(&UPSIDE_DOWN);
+    let seen = bench.find("upside down").expect("a checkbox").rect;
+    bench.hover(seen.center());
+    assert!(bench.says("Stronger at the bottom instead."));
+    for on in [true, false] {
+        bench.click("upside down");
+        assert_eq!(flag(&bench), Value::flag(on));
+    }
+    bench.apply(Action::Undo);
+    assert_eq!(flag(&bench), Value::flag(true));
 }
 
 #[test]

@@ -256,6 +256,8 @@ fn parameters_have_names_ranges_and_defaults_that_work() {
     model_refused::<NoChoice>(&["it has no choices"]);
     model!(TwiceChoice, MODEL, { sort: choice = Parameter::choice("sort", &[("a", "A"), ("a", "B")], 0) });
     model_refused::<TwiceChoice>(&["the choice \"a\" is empty or there twice"]);
+    model!(Truth, MODEL, { sort: choice = Parameter::choice("sort", &[("a", "A"), ("true", "B")], 0) });
+    model_refused::<Truth>(&["the choice \"true\" is a value of flags"]);
     model!(Twice, MODEL, { a: number = Parameter::number("w", 0.0..=1.0, 0.5), b: number = Parameter::number("w", 0.0..=1.0, 0.5) });
     model_refused::<Twice>(&["parameter `w`: is declared twice"]);
     model!(Named, MODEL, { bands: number = Parameter::number("bandCount", 0.0..=1.0, 0.5) });

@@ -335,6 +335,7 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
 pub(super) fn kind_of_parameter(kind: &ParameterKind) -> Option<Kind> {
     match kind {
         ParameterKind::Number { .. } | ParameterKind::Integer { .. } => Some(Kind::Number),
+        ParameterKind::Choice { .. } if kind.is_flag() => Some(Kind::Truth),
         ParameterKind::Choice { .. } | ParameterKind::File { .. } => Some(Kind::Text),
         ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => None,
     }

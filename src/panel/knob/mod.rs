@@ -13,6 +13,7 @@ mod choice;
 mod colour;
 mod field;
 mod file;
+mod flag;
 mod line;
 mod number;
 mod picker;
@@ -25,6 +26,7 @@ pub use choice::{choice_knob, choice_with_help, list_knob};
 pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};
 pub use file::file_knob;
+pub use flag::flag_knob;
 pub use line::Caption;
 pub(super) use line::symbol_column;
 pub use number::{number_knob, number_knob_beside, unit_choice};
@@ -97,6 +99,9 @@ pub fn parameter_knob(
             triple_knob(ui, salt, &caption, *v, *default, &limits)
                 .map(Value::Triple)
                 .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Choice { .. }, value) if parameter.is_flag() => {
+            flag_knob(ui, salt, &caption, value.truth()?).map(Value::flag)
         }
         (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {
             let chosen = options.iter().position(|(o, _)| *o == id.as_ref()).unwrap_or(0);

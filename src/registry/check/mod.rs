@@ -100,6 +100,10 @@ fn kind(p: &Parameter) -> Check {
                 ensure(!id.is_empty() && known.insert(id), || {
                     format!("the choice \"{id}\" is empty or there twice; each needs a name of its own")
                 })?;
+                // Files write these without quotes.
+                ensure(p.is_flag() || id.parse::<bool>().is_err(), || {
+                    format!("the choice \"{id}\" is a value of flags; use another name, or `Parameter::flag`")
+                })?;
             }
             ensure(*default < options.len(), || {
                 format!(
@@ -186,9 +190,7 @@ fn shared(
     let end = layout(all).last().map_or(0, |f| f.2 + 12);
     ensure(end <= BLOCK_BYTES, || format!("its parameters take {end} bytes, at most {BLOCK_BYTES} fit"))?;
     for p in all {
-        let differs = |other: &&Parameter| {
-            other.name == p.name && std::mem::discriminant(&other.kind) != std::mem::discriminant(&p.kind)
-        };
+        let differs = |other: &&Parameter| other.name == p.name && other.kind.name() != p.kind.name();
         let other = others.clone().find_map(|(id, all)| Some((id, all.iter().find(differs)?)));
         if let Some((id, other)) = other {
             return Err(format!(

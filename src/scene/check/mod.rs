@@ -482,7 +482,7 @@ fn written(value: &Value) -> String {
         Value::Integer(v) => v.to_string(),
         Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
-        Value::Choice(v) => quoted(v),
+        Value::Choice(v) => value.truth().map_or_else(|| quoted(v), |flag| flag.to_string()),
         Value::File(v) => quoted(v.name()),
     }
 }

@@ -23,6 +23,7 @@ impl Reader<'_> {
             ParameterKind::Integer { .. } => self.integer(value, &rule).map(Value::Integer),
             ParameterKind::Colour { .. } => self.colour(value, &rule).map(Value::Colour),
             ParameterKind::Triple { .. } => self.triple(value, &rule).map(Value::Triple),
+            ParameterKind::Choice { .. } if parameter.is_flag() => self.truth(value, &rule).map(Value::flag),
             ParameterKind::Choice { options, .. } => {
                 let id = self.string(value, &rule)?;
                 let known = options.iter().map(|(id, _)| *id).find(|known| *known == id);
@@ -125,6 +126,16 @@ impl Reader<'_> {
             self.wrong(value, &rule);
         }
         integer
+    }
+
+    /// True or false.
+    fn truth(&mut self, value: Cursor, rule: &str) -> Option<bool> {
+        if let Ast::BooleanLit(flag) = value.value {
+            return Some(flag.value);
+        }
+        let quoted = value.text().is_some_and(|text| text.trim().parse::<bool>().is_ok());
+        self.wrong(value, &format!("{rule}{}", if quoted { ", without quotes" } else { "" }));
+        None
     }
 
     /// Three numbers; NaN if they could not be read.

@@ -89,6 +89,12 @@ const CONTROLS = {
     const select = element('select', { 'aria-label': p.label, onchange: (event) => set(event.target.value) }, ...options);
     return { beside: null, below: [select] };
   },
+  flag(p, value, set) {
+    const check = element('input', {
+      type: 'checkbox', checked: value, 'aria-label': p.label, onchange: (event) => set(event.target.checked),
+    });
+    return { beside: check, below: [] };
+  },
 };
 
 // A knob; `reason` says why it is disabled, if it is.

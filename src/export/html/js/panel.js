@@ -102,10 +102,11 @@ class Panel {
     for (let i = 0; i < parameters.length && here.usedWhen; i++) {
       const other = parameters.find((q) => q.name === here.usedWhen.parameter);
       if (!other) return null;
-      const value = this.selected.value(other);
+      const value = String(this.selected.value(other));
       if (!here.usedWhen.choices.includes(value)) {
         const [, name] = other.options.find(([id]) => id === value);
-        return `Not used while the ${other.label} is ${name}`;
+        const what = other.kind === 'flag' ? `“${other.label}”` : `the ${other.label}`;
+        return `Not used while ${what} is ${name}`;
       }
       here = other;
     }
@@ -133,7 +134,7 @@ class Panel {
         selected.values[p.name] = value;
         this.changed(selected);
         // Choices decide which other parameters are used.
-        if (p.kind === 'choice') this.showKnobs();
+        if (p.options) this.showKnobs();
       }),
     );
     const focused = document.activeElement?.closest?.('.knob')?.dataset.name;

@@ -29,8 +29,8 @@ function packed(parameters, size, values, encoding) {
   const view = new DataView(bytes.buffer);
   for (const p of parameters) {
     const value = values[p.name] ?? p.default;
-    if (p.kind === 'choice') {
-      view.setUint32(p.at, p.options.findIndex(([id]) => id === value), true);
+    if (p.options) {
+      view.setUint32(p.at, p.options.findIndex(([id]) => id === String(value)), true);
     } else if (p.kind === 'colour' || p.kind === 'triple') {
       const numbers = p.kind === 'colour' ? decoded(value, encoding) : value;
       numbers.forEach((number, i) => view.setFloat32(p.at + 4 * i, number, true));

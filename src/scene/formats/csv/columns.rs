@@ -132,7 +132,8 @@ impl All {
         for p in parameters {
             let keys: Vec<_> = before.iter().copied().chain([p.name]).collect();
             let is_list = matches!(p.kind, ParameterKind::Colour { .. } | ParameterKind::Triple { .. });
-            let is_text = matches!(p.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
+            let is_text =
+                !p.is_flag() && matches!(p.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
             self.add(part, keys, is_list, is_text);
         }
     }
