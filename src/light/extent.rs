@@ -90,13 +90,11 @@ pub type Points = [Vec2; BLOCK];
 
 /// True if it shines to the back as well.
 pub(super) const TWO_SIDED: Parameter =
-    Parameter::choice("two_sided", &[("false", "no"), ("true", "yes")], 0)
-        .label("two-sided")
-        .help("It shines from its back as well.");
+    Parameter::flag("two_sided", false).label("two-sided").help("It shines from its back as well.");
 
 /// True if it is to be seen.
-pub(super) const VISIBLE: Parameter = Parameter::choice("visible", &[("false", "no"), ("true", "yes")], 1)
-    .help("It is to be seen in the picture; it lights objects in any case.");
+pub(super) const VISIBLE: Parameter =
+    Parameter::flag("visible", true).help("It is to be seen in the picture; it lights objects in any case.");
 
 /// The turn about the direction.
 pub(super) const ROLL: Parameter = Parameter {

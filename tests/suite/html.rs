@@ -296,9 +296,9 @@ fn pages_have_light_with_extent() {
         "observer": { "position": [5, 5, 9.9], "direction": [0, 0, -1], "field_of_view": 60 },
         "reflection_model": "microfacet", "shading_model": "phong",
         "lights": [
-            { "type": "rectangle", "position": [7, 8, 9], "direction": [-1, -1, -2], "intensity": 20, "visible": "false" },
+            { "type": "rectangle", "position": [7, 8, 9], "direction": [-1, -1, -2], "intensity": 20, "visible": false },
             { "type": "point", "position": [1, 9, 9], "intensity": 20 },
-            { "type": "environment", "source": "studio", "visible": "false" }
+            { "type": "environment", "source": "studio", "visible": false }
         ],
         "objects": [{ "type": "sphere", "position": [5, 5, 5], "size": 4, "material": { "alpha_x": 0.3, "alpha_y": 0.3 } }]
     });
