@@ -195,7 +195,7 @@ mod tests {
     fn light(light_type: &str, intensity: f32) -> Light {
         Light {
             light_type: light_type.to_owned(),
-            position: Some(Vec3::new(1.0, 1.5, 2.0)),
+            position: Some(Scene::default().objects[0].position + Vec3::new(1.0, 1.5, 2.0)),
             direction: Some(Vec3::new(-1.0, -1.5, -2.0)),
             intensity,
             ..Scene::default().lights[0].clone()

@@ -21,6 +21,8 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "06_gamma",
     "07_fresnel_and_metals",
     "08_energy_and_the_white_furnace",
+    "09_a_highlight_has_the_shape_of_the_lamp",
+    "10_a_material_under_the_sky",
 ];
 
 /// All of them, in the order of lists.

@@ -39,7 +39,7 @@ impl Sphere {
 impl LightType for Sphere {
     const DECLARATION: Declaration = Declaration::new("sphere", "Sphere light", wgsl!("light/sphere.wgsl"))
         .summary("A globe lamp: a sphere that is equally bright everywhere.")
-        .glyph("◯")
+        .glyph("○")
         .at_position()
         .luminance(10.0, 100.0)
         .equation("I(p) = L");

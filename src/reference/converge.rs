@@ -139,10 +139,10 @@ mod tests {
         let scene = lit(&registry);
         let odd = AtomicBool::default();
         let until = |noise| Until { samples: 4096, noise: Some(noise) };
-        let (coarse, first) = render_until(&scene, &registry, &SMALL, until(0.02), &odd);
-        let (_, second) = render_until(&scene, &registry, &SMALL, until(0.004), &odd);
+        let (coarse, first) = render_until(&scene, &registry, &SMALL, until(0.004), &odd);
+        let (_, second) = render_until(&scene, &registry, &SMALL, until(0.001), &odd);
         let noise = first.noise.expect("several blocks");
-        assert!(noise <= 0.02 && second.noise.is_some_and(|noise| noise <= 0.004));
+        assert!(noise <= 0.004 && second.noise.is_some_and(|noise| noise <= 0.001));
         assert!(first.samples < second.samples && second.samples < 4096, "{first:?} {second:?}");
         // The real error, against many samples: no larger than three times what is said, rather less.
         let exact = render_samples(&scene, &registry, &SMALL, LightSamples::of(4096), &odd);

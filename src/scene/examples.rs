@@ -29,7 +29,7 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 23] = texts![
+const TEXTS: [(&str, &str); 26] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
@@ -43,6 +43,9 @@ const TEXTS: [(&str, &str); 23] = texts![
     "fresnel_effect.json",
     "gold_three_lights.json",
     "white_furnace.json",
+    "softbox_and_lamps.json",
+    "studio.json",
+    "under_the_sky.json",
     "model_matrix.json",
     "many_lights.json",
     "compare_gouraud_phong.json",

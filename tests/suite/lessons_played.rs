@@ -256,6 +256,21 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
         Deed::Set(&[("/objects/4/material/k_d", || json!(0.5)), ("/objects/4/material/k_s", || json!(0.4))]),
         Deed::Set(&[("/objects/4/material/k_d", || json!(0.5))]),
     ),
+    (
+        "09",
+        "Roughness blurs the image",
+        Deed::Set(&[
+            ("/objects/0/material/alpha_x", || json!(0.03)),
+            ("/objects/0/material/alpha_y", || json!(0.03)),
+        ]),
+        Deed::Set(&[("/objects/0/material/alpha_x", || json!(0.03))]),
+    ),
+    (
+        "10",
+        "Back to a clear sky",
+        Deed::Set(&[("/lights/0/sky_type", || json!("12"))]),
+        Deed::Set(&[("/lights/0/sky_type", || json!("11"))]),
+    ),
 ];
 
 #[test]
@@ -283,11 +298,11 @@ fn every_task_of_every_lesson_can_be_solved_and_a_mistake_does_not_solve_it() {
 }
 
 #[test]
-fn the_eight_lessons_are_of_a_length_for_one_sitting() {
+fn the_lessons_are_of_a_length_for_one_sitting() {
     // Each lesson says how long it takes, and none takes a lecture.
     for lesson in LESSONS.iter() {
         assert!(lesson.minutes.is_some_and(|minutes| (5..=20).contains(&minutes)), "{}", lesson.id);
         assert!(lesson.summary.ends_with('.') && (5..=9).contains(&lesson.steps.len()), "{}", lesson.id);
     }
-    assert_eq!(LESSONS.len(), 8);
+    assert_eq!(LESSONS.len(), 10);
 }
