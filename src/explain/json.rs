@@ -188,7 +188,7 @@ fn lines(lines: &[Line]) -> Json {
 }
 
 impl Integral {
-    fn to_json(&self, model: &Model) -> Json {
+    fn json(self, model: &Model) -> Json {
         let brightest = |brightest: &Brightest| {
             let geometry = &brightest.geometry;
             json!({
@@ -244,7 +244,7 @@ impl Lit {
             "colour": triple(self.colour),
             "arriving": one.then(|| triple(self.arriving)),
             "response": terms(&self.response),
-            "integral": self.integral.as_ref().map(|integral| integral.to_json(model)),
+            "integral": self.integral.map(|integral| integral.json(model)),
             "lines": lines(&self.rounded_lines(model, FULL)),
             "contribution": triple(self.contribution),
         })

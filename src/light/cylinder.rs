@@ -52,7 +52,7 @@ impl Cylinder {
         let to_point = p - light.position;
         let across = to_point - to_point.dot(light.direction) * light.direction;
         let away = across.length();
-        if !(away > self.radius) {
+        if away.is_nan() || away <= self.radius {
             return None;
         }
         let out = across / away;
@@ -93,13 +93,14 @@ impl LightType for Cylinder {
         let squared = x * x + y * y;
         let passes = view.away * y;
         let rest = self.radius * self.radius * squared - passes * passes;
-        if !(rest >= 0.0) || x >= 0.0 {
+        if rest.is_nan() || rest < 0.0 || x >= 0.0 {
             return Seen::NOTHING;
         }
         let distance = (-view.away * x - rest.sqrt()) / squared;
         let at = l * distance;
         let from_middle = view.to_point + at;
-        if !(from_middle.dot(light.direction).abs() <= 0.5 * self.length) {
+        let along = from_middle.dot(light.direction).abs();
+        if along.is_nan() || along > 0.5 * self.length {
             return Seen::NOTHING;
         }
         let normal = (from_middle - from_middle.dot(light.direction) * light.direction) / self.radius;

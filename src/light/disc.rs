@@ -62,7 +62,7 @@ impl LightType for Disc {
         let middle = light.position - p;
         let distance = middle.dot(light.direction) / -facing;
         let beside = l * distance - middle;
-        if !(distance > 0.0) || beside.length_squared() > self.radius * self.radius {
+        if distance.is_nan() || distance <= 0.0 || beside.length_squared() > self.radius * self.radius {
             return Seen::NOTHING;
         }
         let pdf = area_pdf(l * distance, light.direction, self.area());

@@ -86,7 +86,11 @@ impl LightType for Rectangle {
         let beside = l * distance - middle;
         let [x, y] = extent::sides(light.direction, self.turn);
         let half = self.half();
-        if !(distance > 0.0) || beside.dot(x).abs() > half.x || beside.dot(y).abs() > half.y {
+        if distance.is_nan()
+            || distance <= 0.0
+            || beside.dot(x).abs() > half.x
+            || beside.dot(y).abs() > half.y
+        {
             return Seen::NOTHING;
         }
         let pdf = self.from(light, p).pdf(l * distance);

@@ -26,7 +26,7 @@ impl Sphere {
     fn from(&self, light: &LightRecord, p: Vec3) -> Option<(Vec3, f32, f32, f32)> {
         let middle = light.position - p;
         let distance = middle.length();
-        if !(distance > self.radius) {
+        if distance.is_nan() || distance <= self.radius {
             return None;
         }
         let sine = self.radius / distance;

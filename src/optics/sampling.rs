@@ -11,7 +11,7 @@ use super::geometry::Frame;
 #[must_use]
 pub fn arc_cosine(cosine: f32) -> f32 {
     const BY_POWER: [f32; 8] = [
-        1.570_796_3,
+        std::f32::consts::FRAC_PI_2,
         -0.214_598_8,
         0.088_978_99,
         -0.050_174_3,
@@ -111,7 +111,7 @@ impl SphericalRectangle {
         let (g0, g1, g2, g3) = (corner(n0, n1), corner(n1, n2), corner(n2, n3), corner(n3, n0));
         let k = 2.0 * PI - g2 - g3;
         let solid_angle = g0 + g1 - k;
-        let by_area = !(solid_angle > SMALLEST) || -depth < 1e-6;
+        let by_area = solid_angle.is_nan() || solid_angle <= SMALLEST || -depth < 1e-6;
         Self {
             x,
             y,
