@@ -9,7 +9,12 @@ use std::sync::Arc;
 use glam::Vec4;
 use jsonc_parser::{ast::ObjectProp, common::Ranged as _};
 
-use super::{declaration::Reader, intern, text};
+use super::{
+    declaration::Reader,
+    intern,
+    lobes::{SaidLobes, declared_alone},
+    text,
+};
 use crate::{
     optics::{
         Frame, Terms,
@@ -51,6 +56,8 @@ pub(super) struct Reads {
     /// The built-in model whose lobe and curves are read, with the parameters of the custom model by name.
     pub lobe: Option<ModelEntry>,
     pub own: Arc<[Curve]>,
+    /// Where the model reflects most, which the light loop reads.
+    pub lobes: Arc<SaidLobes>,
 }
 
 impl Reads {
@@ -75,12 +82,7 @@ impl Reads {
     ) -> (LobeAlbedo, Vec<Vec4>) {
         // A model of curves alone has no lobe; its row holds that which reflects everything.
         let (lobe, mut all) = self.lobe.as_ref().map_or_else(Default::default, |model| {
-            // Undeclared parameters must not affect its look.
-            let mut own = Values::default();
-            for p in parameters {
-                own.set(p.name, values.get(p));
-            }
-            let surface = model.instantiate(&own, encoding);
+            let surface = model.instantiate(&declared_alone(parameters, values), encoding);
             (surface.lobe().unwrap_or_default(), model.curves_of(&*surface))
         });
         all.extend(self.own.iter().flat_map(|curve| curve.values(values, encoding)));

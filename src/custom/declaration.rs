@@ -6,6 +6,7 @@ use jsonc_parser::{ParseOptions, common::Ranged as _};
 use super::{
     curves::Curve,
     intern,
+    lobes::SaidLobes,
     text::{Mistake, comment, humanised},
 };
 use crate::{
@@ -33,6 +34,7 @@ const MODEL_KEYS: &[&str] = &[
     "laws",
     "anisotropic",
     "lobe",
+    "lobes",
     "curves",
     "parameters",
     "groups",
@@ -64,6 +66,8 @@ pub(super) struct Said {
     pub anisotropic: bool,
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
+    /// Where it reflects most.
+    pub lobes: SaidLobes,
     /// Further curves, of other built-in models.
     pub curves: Vec<Curve>,
     pub parameters: &'static [Parameter],
@@ -192,6 +196,7 @@ impl Reader<'_> {
             parameters,
             groups: self.groups(&fields, parameters),
             lobe,
+            lobes: self.lobes(&fields, parameters),
             curves: self.curves(&fields, parameters, taken),
             end,
         })

@@ -20,7 +20,7 @@
 //! frame: Frame, m: Parameters) -> vec3<f32>` the model answers uniform light by a formula, without it by its
 //! directional albedo.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use crate::files::Shown as _;
 use crate::{
@@ -37,6 +37,7 @@ pub mod file;
 pub mod folder;
 mod intern;
 mod knobs;
+mod lobes;
 mod surface;
 mod text;
 mod write;
@@ -159,7 +160,7 @@ fn declared(
         wgsl: Source { path: intern::text(&source_path(id)), text: stand_in(ambient) },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
-    let reads = Reads { lobe, own: said.curves.into() };
+    let reads = Reads { lobe, own: said.curves.into(), lobes: Arc::new(said.lobes) };
     let entry = surface::stand_in(declaration, said.parameters, &reads).grouped(said.groups);
     Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, reads))
 }

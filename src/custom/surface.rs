@@ -14,6 +14,7 @@ use crate::{
         Frame, Terms,
         albedo::{self, AlbedoCurve, LobeAlbedo},
         colour::Encoding,
+        lobes::Lobes,
     },
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
     reflection::{
@@ -185,6 +186,7 @@ pub(super) fn entry(
                     row(declaration, parameters, values, encoding, *lobe, curves)
                 }),
                 read,
+                lobes: reads.lobes.lobes(parameters, values, encoding),
                 curve: OnceLock::new(),
             })
         })
@@ -284,6 +286,8 @@ struct Interpreted {
     row: Vec<u32>,
     /// The lobe and the further curves that the shader reads.
     read: Option<(LobeAlbedo, Vec<Vec4>)>,
+    /// The directions from which the model reflects most.
+    lobes: Lobes,
     curve: OnceLock<Option<AlbedoCurve>>,
 }
 
@@ -348,6 +352,10 @@ impl Surface for Interpreted {
 
     fn lobe(&self) -> Option<LobeAlbedo> {
         self.read.as_ref().map(|(lobe, _)| *lobe)
+    }
+
+    fn lobes(&self) -> Lobes {
+        self.lobes
     }
 
     fn curves(&self) -> Vec<Vec4> {

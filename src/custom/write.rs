@@ -189,8 +189,15 @@ pub fn duplicate(
         let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
     }
     // Of models from files: the declaration does not keep the text of their settings.
-    if let Some(curves) = comment(source).ok().and_then(|c| written(c.json, "curves")) {
-        let _ = writeln!(out, "    \"curves\": {curves},");
+    let in_file = comment(source).ok();
+    for key in ["lobes", "curves"] {
+        if let Some(text) = in_file.as_ref().and_then(|c| written(c.json, key)) {
+            let _ = writeln!(out, "    \"{key}\": {text},");
+        }
+    }
+    if Registry::builtin().model(d.id).is_some() {
+        out.push_str("    // Light with extent is sampled as for this model.\n");
+        let _ = writeln!(out, "    \"lobes\": \"{}\",", d.id);
     }
     out.push_str("    \"parameters\": [\n");
     let built_in = Registry::builtin();

@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::sampling;
+use super::{equivalence::alpha_of_exponent, sampling};
 
 /// The most lobes of a model.
 pub const MAX_LOBES: usize = 3;
@@ -14,6 +14,10 @@ pub const MAX_LOBES: usize = 3;
 /// The smallest width of a GGX lobe, and the largest exponent, that are sampled.
 const NARROWEST: f32 = 1e-3;
 const STEEPEST: f32 = 1e6;
+
+/// The cosine of light to facet at which shares of lobes compare reflectances: lobes are the same for all views, so it lies between
+/// the normal and grazing angles, at which surfaces become mirrors.
+pub const OBLIQUE: f32 = 0.25;
 
 /// A distribution of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +58,26 @@ impl Lobe {
         Self::Ggx { alpha_x: alpha, alpha_y: alpha }
     }
 
-    /// A GGX lobe about as wide as that of half vectors by the power of a cosine: `α² = 2/(n + 2)` (B. Walter et al. 2007).
+    /// A GGX lobe with the widths along tangent and bitangent.
     #[must_use]
-    pub fn of_half_vectors(exponent: f32) -> Self {
-        Self::ggx((2.0 / (exponent.max(0.0) + 2.0)).sqrt())
+    pub fn wide(alpha: Vec2) -> Self {
+        Self::Ggx { alpha_x: alpha.x, alpha_y: alpha.y }
+    }
+
+    /// A GGX lobe about as wide as the part of the generalised distribution (GTR) that has most of its light: for γ below 2, whose
+    /// tails are longer, it is wider, above it is narrower.
+    #[must_use]
+    pub fn of_gtr(alpha: Vec2, gamma: f32) -> Self {
+        let same = |alpha: f32| {
+            if gamma < 2.0 { alpha.powf(0.3 + 0.35 * gamma) } else { alpha / (gamma - 1.0).sqrt() }
+        };
+        Self::wide(alpha.map(same))
+    }
+
+    /// A GGX lobe about as wide as that of half vectors by a power of the cosine, with exponents along tangent and bitangent.
+    #[must_use]
+    pub fn of_half_vectors(along: f32, across: f32) -> Self {
+        Self::wide(Vec2::new(along, across).map(alpha_of_exponent))
     }
 
     /// As shaders have it: its kind, its numbers.
@@ -156,13 +176,20 @@ impl Lobes {
         Self::new(&[(Lobe::Cosine, 1.0)])
     }
 
-    /// One diffuse and one specular lobe with the reflectances of both. Neither gets less than a tenth of the samples, so that
-    /// no direction is missed where the other is dark.
+    /// One diffuse and one specular lobe with the reflectances of both; of mirrors that depend on the angle, that at
+    /// [`OBLIQUE`].
     #[must_use]
-    pub fn diffuse_and(specular: Lobe, diffuse: f32, reflectance: f32) -> Self {
-        let share = if diffuse + reflectance > 0.0 { reflectance / (diffuse + reflectance) } else { 0.5 };
-        let share = share.clamp(0.1, 0.9);
-        Self::new(&[(Lobe::Cosine, 1.0 - share), (specular, share)])
+    pub fn diffuse_and(specular: Lobe, diffuse: Vec3, reflectance: Vec3) -> Self {
+        Self::coated((specular, 0.0), specular, diffuse, reflectance)
+    }
+
+    /// The same below a coat, with its lobe and reflectance. Body and base get at least an eighth of the samples, so that no
+    /// direction is missed where the others are dark or the angle is another.
+    #[must_use]
+    pub fn coated(coat: (Lobe, f32), base: Lobe, diffuse: Vec3, reflectance: Vec3) -> Self {
+        let (diffuse, reflectance) = (diffuse.element_sum() / 3.0, reflectance.element_sum() / 3.0);
+        let least = (0.125 * (diffuse + reflectance + coat.1)).max(1e-6);
+        Self::new(&[(Lobe::Cosine, diffuse.max(least)), (base, reflectance.max(least)), coat])
     }
 
     /// The lobes with their shares, of which the sum is 1.
@@ -357,7 +384,7 @@ mod tests {
     #[test]
     fn no_direction_is_missed_where_one_part_is_dark() {
         for (diffuse, specular) in [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)] {
-            let lobes = Lobes::diffuse_and(Lobe::ggx(0.1), diffuse, specular);
+            let lobes = Lobes::diffuse_and(Lobe::ggx(0.1), Vec3::splat(diffuse), Vec3::splat(specular));
             assert!(lobes.all()[..2].iter().all(|(_, share)| *share > 0.09));
         }
     }

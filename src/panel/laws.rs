@@ -7,7 +7,10 @@ use super::{
     state::{Action, LawCheck, ModelCommand, Session, Severity},
     theme::{self, Palette},
 };
-use crate::{reflection::law_report::LawReport, registry::Registry};
+use crate::{
+    reflection::law_report::{LawReport, Sampling},
+    registry::Registry,
+};
 
 /// The button, with what there is to say of a check that runs or is out of date; from the right to the left.
 pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
@@ -65,6 +68,10 @@ fn laws(ui: &mut Ui, report: &LawReport) {
         let how = format!("{}: {}", law.measure, law.size);
         line(ui, severity, &format!("{}: {verdict}", law.law), &how, &law.at);
     }
+    let sampling = &report.sampling;
+    let how = format!("{}: {}", Sampling::measure(), sampling.error);
+    let severity = (!sampling.fits).then_some(Severity::Info);
+    line(ui, severity, &format!("lobes for sampling: {}", sampling.verdict()), &how, &sampling.at);
     if !report.is_finite() {
         let what = format!("NaN or infinite: {} of {} responses", report.not_finite, report.responses);
         line(ui, Some(Severity::Error), &what, "", &report.first_not_finite);

@@ -9,7 +9,7 @@ use crate::{
         Frame, Terms,
         fresnel::schlick,
         geometry::half_slope,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
     },
     parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
     parameters,
@@ -108,16 +108,6 @@ impl ReflectionModel for AshikhminShirley {
         wgsl: wgsl!("reflection/ashikhmin_shirley.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        let width = |exponent: f32| (2.0 / (exponent + 2.0)).sqrt();
-        let lobe = Lobe::Ggx { alpha_x: width(self.exponent_u), alpha_y: width(self.exponent_v) };
-        Lobes::diffuse_and(
-            lobe,
-            self.base_colour.max_element(),
-            self.k_s * self.specular_colour.max_element(),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         if cos_l <= 0.0 || cos_v <= 0.0 {
@@ -146,6 +136,12 @@ impl ReflectionModel for AshikhminShirley {
             diffuse: 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s),
             specular: lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d),
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let r_s = self.k_s * self.specular_colour;
+        let highlight = Lobe::of_half_vectors(self.exponent_u, self.exponent_v);
+        Lobes::diffuse_and(highlight, (1.0 - r_s) * self.base_colour, schlick(r_s, lobes::OBLIQUE))
     }
 
     fn readouts(&self) -> Vec<Readout> {

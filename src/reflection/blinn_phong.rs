@@ -70,14 +70,6 @@ impl ReflectionModel for BlinnPhong {
         wgsl: wgsl!("reflection/blinn_phong.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::diffuse_and(
-            Lobe::of_half_vectors(self.alpha),
-            self.k_d * self.base_colour.max_element(),
-            self.k_s * self.specular_colour.max_element(),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);
         let specular = if cos_i > 0.0 {
@@ -90,6 +82,14 @@ impl ReflectionModel for BlinnPhong {
             diffuse: self.k_d * cos_i.max(0.0) * self.base_colour,
             specular,
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        // The highlight is as bright whatever its width: a narrow one has little light, and needs no narrower lobe.
+        let exponent = self.alpha.min(200.0);
+        let highlight = Lobe::of_half_vectors(exponent, exponent);
+        let reflected = self.k_s * 8.0 / (exponent + 8.0) * self.specular_colour;
+        Lobes::diffuse_and(highlight, (self.k_a + self.k_d) * self.base_colour, reflected)
     }
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {

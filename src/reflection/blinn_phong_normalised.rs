@@ -74,14 +74,6 @@ impl ReflectionModel for BlinnPhongNormalised {
         wgsl: wgsl!("reflection/blinn_phong_normalised.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::diffuse_and(
-            Lobe::of_half_vectors(self.alpha),
-            self.base_colour.max_element(),
-            self.k_s * self.specular_colour.max_element(),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);
         if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
@@ -96,6 +88,12 @@ impl ReflectionModel for BlinnPhongNormalised {
             diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
             specular: mirrored * (norm * lobe * cos_i),
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let mirrored = self.k_s * self.specular_colour;
+        let highlight = Lobe::of_half_vectors(self.alpha, self.alpha);
+        Lobes::diffuse_and(highlight, (1.0 - mirrored) * self.base_colour, mirrored)
     }
 
     fn readouts(&self) -> Vec<Readout> {

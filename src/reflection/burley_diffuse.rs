@@ -63,10 +63,6 @@ impl ReflectionModel for BurleyDiffuse {
         wgsl: wgsl!("reflection/burley_diffuse.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         if cos_l <= 0.0 || cos_v <= 0.0 {
@@ -74,5 +70,9 @@ impl ReflectionModel for BurleyDiffuse {
         }
         let factor = burley(cos_l, cos_v, l.dot(half_vector(l, v)), self.roughness);
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 }

@@ -12,7 +12,7 @@ use crate::{
         distribution::beckmann,
         fresnel::{conductor_rgb, normal_reflectance_rgb},
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
     parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -140,14 +140,6 @@ impl ReflectionModel for CookTorrance {
         wgsl: wgsl!("reflection/cook_torrance.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::diffuse_and(
-            Lobe::ggx(self.slope),
-            (1.0 - self.specular_weight) * self.base_colour.max_element(),
-            self.specular_weight,
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
@@ -166,6 +158,11 @@ impl ReflectionModel for CookTorrance {
             diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
             specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let (s, reflected) = (self.specular_weight, conductor_rgb(self.ior, self.extinction, lobes::OBLIQUE));
+        Lobes::diffuse_and(Lobe::ggx(self.slope), (1.0 - s) * self.base_colour, s * reflected)
     }
 
     fn readouts(&self) -> Vec<Readout> {

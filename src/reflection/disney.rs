@@ -14,7 +14,7 @@ use crate::{
         distribution::{MINIMUM_ALPHA, ggx, gtr},
         fresnel::{schlick, schlick_weight},
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking::{separable, smith_ggx},
     },
     parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
@@ -183,6 +183,11 @@ impl Disney {
         let aspect = (1.0 - 0.9 * self.anisotropic).sqrt();
         Vec2::new(alpha / aspect, alpha * aspect).max(Vec2::splat(MINIMUM_ALPHA))
     }
+
+    /// `w`.
+    fn coat_width(&self) -> f32 {
+        0.1 + (0.001 - 0.1) * self.clearcoat_gloss
+    }
 }
 
 /// The factor of the subsurface term on `C_b/π`.
@@ -290,18 +295,6 @@ impl ReflectionModel for Disney {
         wgsl: wgsl!("reflection/disney.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        let alpha = self.alpha();
-        let lobe = Lobe::Ggx { alpha_x: alpha.x, alpha_y: alpha.y };
-        let (diffuse, coat) = ((1.0 - self.metallic) * self.base_colour.max_element(), 0.25 * self.clearcoat);
-        // The coat has long tails, which are not missed by a wider lobe.
-        Lobes::new(&[
-            (Lobe::Cosine, diffuse.max(0.1)),
-            (lobe, self.metallic.max(0.3)),
-            (Lobe::ggx(0.15), coat),
-        ])
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
         let (cos_l, cos_v) = (l.z, v.z);
@@ -326,13 +319,25 @@ impl ReflectionModel for Disney {
         let alpha = self.alpha();
         let f0 = self.f0();
         let main = lobe(ggx(h, alpha), alpha) * (f0 + (Vec3::ONE - f0) * fresnel);
-        let width = 0.1 + (0.001 - 0.1) * self.clearcoat_gloss;
-        let coat = lobe(gtr(h, Vec2::splat(width), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
+        let coat =
+            lobe(gtr(h, Vec2::splat(self.coat_width()), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
         Terms {
             ambient: Vec3::ZERO,
             diffuse: PI * cos_l * (1.0 - self.metallic) * body,
             specular: PI * cos_l * (main + 0.25 * self.clearcoat * coat),
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let alpha = self.alpha();
+        let weight = schlick_weight(lobes::OBLIQUE);
+        let base = schlick(self.f0(), lobes::OBLIQUE);
+        let coat = (
+            Lobe::of_gtr(Vec2::splat(self.coat_width()), 1.0),
+            0.25 * self.clearcoat * (0.04 + 0.96 * weight),
+        );
+        let body = (1.0 - self.metallic) * (self.base_colour + self.sheen * Vec3::ONE);
+        Lobes::coated(coat, Lobe::wide(alpha), body, base)
     }
 
     fn readouts(&self) -> Vec<Readout> {

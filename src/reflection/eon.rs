@@ -80,10 +80,6 @@ impl ReflectionModel for Eon {
         wgsl: wgsl!("reflection/eon.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         if cos_l <= 0.0 || cos_v <= 0.0 {
@@ -91,5 +87,9 @@ impl ReflectionModel for Eon {
         }
         let factor = eon(cos_l, cos_v, l.dot(v), self.roughness, self.base_colour);
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 }

@@ -44,12 +44,12 @@ impl ReflectionModel for Lambert {
         wgsl: wgsl!("reflection/lambert.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         Terms { diffuse: frame.n.dot(l).max(0.0) * self.base_colour, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {

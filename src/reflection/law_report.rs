@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     ModelEntry,
-    laws::{Case, Effort, Extreme, Findings},
+    laws::{Case, Effort, Extreme, Findings, SAMPLES, SAMPLING_TOLERANCE},
 };
 
 /// The findings about a model.
@@ -23,6 +23,38 @@ pub struct LawReport {
     pub first_not_finite: Vec<String>,
     /// The laws.
     pub laws: Vec<LawVerdict>,
+    /// How well the model's lobes sample it.
+    pub sampling: Sampling,
+}
+
+/// How well the lobes of a model sample it, for light with extent. No law: with any lobes pictures become right, with bad ones
+/// later.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sampling {
+    /// True if the error is small.
+    pub fits: bool,
+    /// The largest relative error of a directional albedo by samples.
+    pub error: String,
+    /// The place of that error, as that of a law.
+    pub at: Vec<String>,
+}
+
+impl Sampling {
+    /// What it was judged by.
+    #[must_use]
+    pub fn measure() -> String {
+        format!("largest relative error of a directional albedo by {SAMPLES} samples")
+    }
+
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        if self.fits {
+            "they fit"
+        } else {
+            "they miss highlights; under light with extent, noise takes long to fade"
+        }
+    }
 }
 
 /// The findings about a law.
@@ -86,6 +118,11 @@ impl LawReport {
                 .zip(evidence)
                 .map(|(law, found)| verdict(law, found))
                 .collect(),
+            sampling: Sampling {
+                fits: findings.sampling.size <= SAMPLING_TOLERANCE,
+                error: number(findings.sampling.size),
+                at: place(model, findings.sampling.case.as_ref()),
+            },
         }
     }
 
@@ -121,6 +158,9 @@ impl fmt::Display for LawReport {
             writeln!(f, "{}: {}", law.law, self.verdict(law))?;
             writeln!(f, "  {}: {}{}", law.measure, law.size, places(&law.at))?;
         }
+        writeln!(f, "lobes for sampling: {}", self.sampling.verdict())?;
+        let Sampling { error, at, .. } = &self.sampling;
+        writeln!(f, "  {}: {error}{}", Sampling::measure(), places(at))?;
         let verdict = if self.is_finite() { "everywhere" } else { "NOT everywhere" };
         writeln!(f, "finite: {verdict}")?;
         writeln!(
@@ -177,5 +217,17 @@ mod tests {
         assert_eq!(text.matches("cannot be judged: some values are NaN or infinite").count(), 2, "{text}");
         assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
         assert_eq!(LawReport::new(lambert, &findings).broken(), ["energy conserving"]);
+    }
+
+    #[test]
+    fn lobes_that_miss_highlights_are_said_and_break_no_law() {
+        let registry = Registry::builtin();
+        let lambert = registry.model("lambert").expect("built in");
+        let mut findings = Findings::default();
+        assert!(LawReport::new(lambert, &findings).to_string().contains("lobes for sampling: they fit\n"));
+        findings.sampling.size = 0.5;
+        let report = LawReport::new(lambert, &findings);
+        assert!(report.to_string().contains("lobes for sampling: they miss highlights"), "{report}");
+        assert!(report.broken().is_empty());
     }
 }

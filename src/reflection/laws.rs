@@ -4,11 +4,19 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{Laws, ModelEntry, brdf_of};
 use crate::{
-    optics::{Frame, Terms},
+    optics::{
+        Frame, Terms,
+        albedo::directional_in_batches,
+        colour::Encoding,
+        geometry::direction,
+        lobes::Lobes,
+        sampling::{cone, power_heuristic},
+        sequence::Sequence,
+    },
     parameter::{Parameter, ParameterKind, Value, Values},
 };
 
@@ -18,6 +26,12 @@ pub const RECIPROCITY_TOLERANCE: f32 = 2e-3;
 pub const LARGEST_ALBEDO: f32 = 1.01;
 /// The lowest response below 0 attributed to rounding.
 pub const NEGATIVE_TOLERANCE: f32 = 1e-6;
+/// Samples by the lobes of a model, and as many of the light, that must give the directional albedo.
+pub const SAMPLES: u32 = 1 << 14;
+/// Their largest error, relative to an albedo of at least [`DARKEST`].
+pub const SAMPLING_TOLERANCE: f32 = 1e-2;
+/// The error of darker albedos is measured against this one.
+pub const DARKEST: f32 = 0.02;
 /// Steps of the quadrature of an albedo along tangent and bitangent.
 pub const COARSE: usize = 48;
 /// The same where the coarse one finds nearly 1 or more, so its error matters.
@@ -160,6 +174,30 @@ pub fn smallest(terms: &Terms) -> f32 {
     terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
 }
 
+/// Directions to the light with weights, such that the weighted sum of the responses is about the directional albedo for a
+/// view in the local frame: sampled as an environment that shines evenly is, by `count` directions of a way of sampling
+/// with its density, and as many of all directions above the surface, weighted by the power heuristic.
+#[must_use]
+pub fn sampled_directions(
+    sample: impl Fn(Vec2) -> Vec3,
+    pdf: impl Fn(Vec3) -> f32,
+    count: u32,
+) -> Vec<(Vec3, f32)> {
+    let even = 1.0 / TAU;
+    let [by_lobes, by_light] = [Sequence::new(0, 0), Sequence::new(0, 1)];
+    let own = (0..count).map(|i| {
+        let l = sample(by_lobes.point(i));
+        let density = if l.z > 0.0 { pdf(l) } else { 0.0 };
+        (l, density, power_heuristic(density, even))
+    });
+    let others = (0..count).map(|i| {
+        let l = cone(by_light.point(i), 1.0);
+        (l, even, power_heuristic(even, pdf(l)))
+    });
+    let all = own.chain(others).filter(|(_, density, _)| *density > 0.0);
+    all.map(|(l, density, weight)| (l, weight / (density * PI * count as f32))).collect()
+}
+
 /// True if a response has neither NaN nor infinity.
 #[must_use]
 pub fn is_finite(terms: &Terms) -> bool {
@@ -256,6 +294,8 @@ pub struct Findings {
     pub albedo: Extreme,
     /// The smallest number in a response.
     pub smallest: Extreme,
+    /// The largest error of a directional albedo by samples of the model's lobes, see [`sampling_errors`].
+    pub sampling: Extreme,
     /// The number of responses.
     pub responses: usize,
     /// The number of those with NaN or infinity.
@@ -296,10 +336,44 @@ pub fn examine<E>(
             3..40 if set % 2 == 1 => random.corner(model),
             _ => random.values(model),
         };
+        // A few sets are enough: lobes that fit the parameters fit their ends, too.
+        if set < 3 {
+            let lobes = model.instantiate(&values, Encoding::Srgb).lobes();
+            for (v, error) in sampling_errors(&lobes, |pairs| ask(&values, pairs))? {
+                let case = || Case { values: values.clone(), l: None, v };
+                findings.sampling.note(error, error > findings.sampling.size, case);
+            }
+        }
         compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;
         integrate(&values, &mut random, &mut findings, &mut ask)?;
     }
     Ok(findings)
+}
+
+/// How far directional albedos by [`SAMPLES`] of some lobes are from those by quadrature, from several views. Any lobes give the
+/// albedo in the end, so a large error means that they miss the directions from which the model reflects most. Not
+/// compared with samples by the cosine alone, which are no better for narrow highlights.
+///
+/// # Errors
+/// Those of `ask`.
+pub fn sampling_errors<E>(
+    lobes: &Lobes,
+    mut ask: impl FnMut(&[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
+) -> Result<Vec<(Vec3, f32)>, E> {
+    let views = [direction(10.0, 0.0), direction(45.0, 60.0), direction(75.0, 200.0)];
+    let exact = directional_in_batches(&views, &mut ask)?;
+    let mut errors = Vec::with_capacity(views.len());
+    for (v, exact) in views.into_iter().zip(exact) {
+        let directions = sampled_directions(|u| lobes.sample(u, v), |l| lobes.pdf(l, v), SAMPLES);
+        let pairs: Vec<_> = directions.iter().map(|(l, _)| (*l, v)).collect();
+        let found = albedo(&directions, ask(&pairs)?);
+        let exact = exact.max_element() as f32;
+        let error = (found - exact).abs() / exact.max(DARKEST);
+        if error.is_finite() {
+            errors.push((v, error));
+        }
+    }
+    Ok(errors)
 }
 
 /// Responses in any directions, and with light and view exchanged.
@@ -374,4 +448,50 @@ fn integrate<E>(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+    use crate::{optics::lobes::Lobe, registry::Registry};
+
+    #[test]
+    fn samples_give_the_albedo_and_those_of_another_density_do_not() {
+        let lambert = |directions: &[(Vec3, f32)]| {
+            let answers =
+                directions.iter().map(|(l, _)| Terms { diffuse: Vec3::splat(l.z), ..Terms::default() });
+            albedo(directions, answers)
+        };
+        let v = direction(45.0, 60.0);
+        let narrow = Lobes::new(&[(Lobe::Cosine, 0.5), (Lobe::ggx(0.1), 0.5)]);
+        for lobes in [Lobes::cosine(), Lobes::default(), narrow] {
+            let found = sampled_directions(|u| lobes.sample(u, v), |l| lobes.pdf(l, v), SAMPLES);
+            assert!((lambert(&found) - 1.0).abs() < SAMPLING_TOLERANCE, "{lobes:?}");
+            // The wrong twin.
+            let other = Lobes::new(&[(Lobe::Power { exponent: 20.0 }, 1.0)]);
+            let found = sampled_directions(|u| lobes.sample(u, v), |l| other.pdf(l, v), SAMPLES);
+            assert!((lambert(&found) - 1.0).abs() > 3.0 * SAMPLING_TOLERANCE, "{lobes:?}");
+        }
+    }
+
+    #[test]
+    fn lobes_that_miss_a_highlight_are_found() {
+        let registry = Registry::builtin();
+        let model = registry.model("metallic_roughness").expect("built in");
+        let mut values = Values::default();
+        values.set("roughness", Value::Number(0.05));
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        let worst = |lobes: Lobes| {
+            let answer = |(l, v): &(Vec3, Vec3)| surface.response(*l, *v, &Frame::LOCAL);
+            let answers = |pairs: &[_]| Ok::<_, Infallible>(pairs.iter().map(answer).collect());
+            let Ok(errors) = sampling_errors(&lobes, answers);
+            errors.into_iter().map(|(_, error)| error).fold(0.0, f32::max)
+        };
+        assert!(worst(surface.lobes()) < SAMPLING_TOLERANCE);
+        for lobes in [Lobes::cosine(), Lobes::default()] {
+            assert!(worst(lobes) > SAMPLING_TOLERANCE, "{lobes:?}");
+        }
+    }
 }

@@ -54,15 +54,15 @@ impl ReflectionModel for LommelSeeliger {
         wgsl: wgsl!("reflection/lommel_seeliger.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
         if cos_i <= 0.0 || cos_o <= 0.0 {
             return Terms::default();
         }
         Terms { diffuse: self.base_colour * (0.5 * cos_i / (cos_i + cos_o)), ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 }

@@ -12,7 +12,7 @@ use crate::{
         distribution::{MINIMUM_ALPHA, ggx},
         fresnel::schlick,
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking::{height_correlated, smith_ggx},
     },
     parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
@@ -121,16 +121,6 @@ impl ReflectionModel for MetallicRoughness {
         wgsl: wgsl!("reflection/metallic_roughness.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        // At grazing angles even the least reflective surface shines.
-        let shine = self.metallic.max(0.3);
-        Lobes::diffuse_and(
-            Lobe::ggx(self.roughness * self.roughness),
-            (1.0 - self.metallic) * self.base_colour.max_element(),
-            shine,
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
@@ -152,6 +142,11 @@ impl ReflectionModel for MetallicRoughness {
             diffuse: (Vec3::ONE - f) * ((1.0 - self.metallic) * cos_l) * self.base_colour,
             specular: PI * d * (visibility * cos_l) * f,
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let reflected = schlick(self.f0(), lobes::OBLIQUE);
+        Lobes::diffuse_and(Lobe::ggx(self.alpha()), (1.0 - self.metallic) * self.base_colour, reflected)
     }
 
     fn readouts(&self) -> Vec<Readout> {

@@ -13,7 +13,7 @@ use crate::{
         diffuse, distribution,
         fresnel::{conductor_rgb, dielectric_rgb, normal_reflectance_rgb, schlick},
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking,
     },
     parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -533,11 +533,6 @@ impl ReflectionModel for Microfacet {
         wgsl: wgsl!("reflection/microfacet.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        let diffuse = if self.diffuse == 0 { 0.0 } else { 0.5 };
-        Lobes::diffuse_and(Lobe::Ggx { alpha_x: self.alpha_x, alpha_y: self.alpha_y }, diffuse, 0.5)
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
         if l.z <= 0.0 || v.z <= 0.0 {
@@ -564,6 +559,15 @@ impl ReflectionModel for Microfacet {
         let entering = (Vec3::ONE - self.f(l.z)) * (Vec3::ONE - self.f(v.z));
         let diffuse = self.base_colour * entering * (self.body(l, v, cos_d) * l.z);
         Terms { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let gamma = if self.distribution == 3 { self.gamma } else { 2.0 };
+        let bare = self.diffuse == 0 || self.fresnel == 0;
+        let body = if bare { Vec3::ZERO } else { self.base_colour };
+        // Light of several bounces leaves in all directions.
+        let bounced = if self.multiple_scattering == 1 { 1.0 - self.lobe.average() } else { 0.0 };
+        Lobes::diffuse_and(Lobe::of_gtr(self.alpha(), gamma), body + bounced, self.f(lobes::OBLIQUE))
     }
 
     const LOBE: bool = true;

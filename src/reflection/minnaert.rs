@@ -79,10 +79,6 @@ impl ReflectionModel for Minnaert {
         wgsl: wgsl!("reflection/minnaert.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
         if cos_i <= 0.0 || cos_o <= 0.0 {
@@ -92,5 +88,9 @@ impl ReflectionModel for Minnaert {
         let raised = (cos_i.max(RIM) * cos_o.max(RIM)).powf(k - 1.0);
         let diffuse = self.base_colour * (0.5 * (k + 1.0) * cos_i * raised);
         Terms { diffuse, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 }

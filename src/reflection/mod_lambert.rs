@@ -65,13 +65,13 @@ impl ReflectionModel for ModLambert {
         wgsl: wgsl!("reflection/mod_lambert.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);
         Terms { diffuse: wrapped.max(0.0).powf(self.wrap_exponent) * self.base_colour, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {

@@ -72,14 +72,6 @@ impl ReflectionModel for ModifiedPhong {
         wgsl: wgsl!("reflection/modified_phong.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::diffuse_and(
-            Lobe::Power { exponent: self.alpha },
-            self.base_colour.max_element(),
-            self.k_s * self.specular_colour.max_element(),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);
         if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
@@ -92,6 +84,15 @@ impl ReflectionModel for ModifiedPhong {
             diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
             specular: mirrored * (0.5 * (self.alpha + 2.0) * lobe * cos_i),
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let mirrored = self.k_s * self.specular_colour;
+        Lobes::diffuse_and(
+            Lobe::Power { exponent: self.alpha },
+            (1.0 - mirrored) * self.base_colour,
+            mirrored,
+        )
     }
 
     fn readouts(&self) -> Vec<Readout> {

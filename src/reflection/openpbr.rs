@@ -15,7 +15,7 @@ use crate::{
         film::thin_film,
         fresnel::{dielectric, schlick},
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking::{separable, smith_ggx},
     },
     parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, SPECULAR_COLOUR, Value},
@@ -817,18 +817,6 @@ impl ReflectionModel for OpenPbr {
     }
 
     // The body is diffuse, everything else specular.
-    fn lobes(&self) -> Lobes {
-        let lobe = |alpha: Vec2| Lobe::Ggx { alpha_x: alpha.x, alpha_y: alpha.y };
-        let (base, coat) = (self.prepared.base, self.prepared.coat);
-        let diffuse =
-            (1.0 - self.metallic) * self.base_weight * self.base_colour.max_element() + self.fuzz_weight;
-        Lobes::new(&[
-            (Lobe::Cosine, diffuse.max(0.1)),
-            (lobe(base), self.metallic.max(0.3)),
-            (lobe(coat), 0.3 * self.coat_weight),
-        ])
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
         if l.z.min(v.z) <= 0.0 {
@@ -873,6 +861,19 @@ impl ReflectionModel for OpenPbr {
             specular = specular * below + self.fuzz_weight * lobe * l.z * self.fuzz_colour;
         }
         Terms { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let p = &self.prepared;
+        let coat = self.coat_weight * dielectric(self.coat_ior, lobes::OBLIQUE);
+        let body = (1.0 - self.metallic) * p.f0 + self.fuzz_weight * self.fuzz_colour;
+        let base = self.fresnel(lobes::OBLIQUE);
+        Lobes::coated(
+            (Lobe::wide(p.coat), coat),
+            Lobe::wide(p.base),
+            (1.0 - coat) * body,
+            (1.0 - coat) * base,
+        )
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {

@@ -116,10 +116,6 @@ impl ReflectionModel for OrenNayar {
         wgsl: wgsl!("reflection/oren_nayar.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         if cos_l <= 0.0 || cos_v <= 0.0 {
@@ -131,5 +127,9 @@ impl ReflectionModel for OrenNayar {
             _ => Vec3::splat(oren_nayar_qualitative(cos_l, cos_v, l.dot(v), sigma)),
         };
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
     }
 }

@@ -110,6 +110,13 @@ fn strauss_masking(elevation: f32) -> f32 {
     elevation * (2.0 * e + elevation) * q * q / (K_G * K_G - e * e)
 }
 
+impl Strauss {
+    /// `h`.
+    fn exponent(&self) -> f32 {
+        3.0 / (1.0 - self.smoothness).max(3.0 / SHARPEST)
+    }
+}
+
 impl ReflectionModel for Strauss {
     const DECLARATION: Declaration = Declaration {
         id: "strauss",
@@ -149,15 +156,6 @@ impl ReflectionModel for Strauss {
         wgsl: wgsl!("reflection/strauss.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        let exponent = 3.0 / (1.0 - self.smoothness).max(1e-4);
-        Lobes::diffuse_and(
-            Lobe::of_half_vectors(exponent),
-            (1.0 - self.metallic * self.smoothness) * self.base_colour.max_element(),
-            self.smoothness.max(0.2),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
         if cos_i <= 0.0 || cos_o <= 0.0 {
@@ -170,14 +168,23 @@ impl ReflectionModel for Strauss {
         let f = strauss_fresnel(up_l);
         let mirrored =
             (straight + (straight + K_J) * f * strauss_masking(up_l) * strauss_masking(up_v)).min(1.0);
-        let exponent = 3.0 / (1.0 - s).max(3.0 / SHARPEST);
-        let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), exponent);
+        let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), self.exponent());
         let tint = Vec3::ONE + m * (1.0 - f) * (self.base_colour - 1.0);
         Terms {
             ambient: Vec3::ZERO,
             diffuse: self.base_colour * (diffuse * (1.0 - m * s) * cos_i),
             specular: tint * (mirrored * lobe),
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let (s, passed) = (self.smoothness, 1.0 - self.transparency);
+        let straight = s * s * s;
+        let diffuse = (1.0 - straight) * passed * (1.0 - self.metallic * s) * self.base_colour;
+        // The highlight is as bright whatever its width: a narrow one has little light, and needs no narrower lobe.
+        let exponent = self.exponent().min(50.0);
+        let reflected = (straight * passed + K_J) * 2.0 / (exponent + 2.0);
+        Lobes::diffuse_and(Lobe::Power { exponent }, diffuse, Vec3::splat(reflected))
     }
 
     /// Metals only: the specular share follows from the smoothness, not from the material.

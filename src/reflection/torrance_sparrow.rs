@@ -11,7 +11,7 @@ use crate::{
         Frame, Terms,
         fresnel::{conductor_rgb, normal_reflectance_rgb},
         geometry::half_vector,
-        lobes::{Lobe, Lobes},
+        lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
     parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
@@ -111,15 +111,6 @@ impl ReflectionModel for TorranceSparrow {
         wgsl: wgsl!("reflection/torrance_sparrow.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        let width = self.facet_spread.to_radians();
-        Lobes::diffuse_and(
-            Lobe::ggx(width * std::f32::consts::SQRT_2),
-            (1.0 - self.specular_weight) * self.base_colour.max_element(),
-            self.specular_weight,
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
@@ -138,6 +129,15 @@ impl ReflectionModel for TorranceSparrow {
             diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
             specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let (s, reflected) = (self.specular_weight, conductor_rgb(self.ior, self.extinction, lobes::OBLIQUE));
+        Lobes::diffuse_and(
+            Lobe::ggx(self.facet_spread.to_radians()),
+            (1.0 - s) * self.base_colour,
+            s * reflected,
+        )
     }
 
     fn readouts(&self) -> Vec<Readout> {

@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
 use crate::{
@@ -98,14 +98,6 @@ impl ReflectionModel for Ward {
         wgsl: wgsl!("reflection/ward.wgsl"),
     };
 
-    fn lobes(&self) -> Lobes {
-        Lobes::diffuse_and(
-            Lobe::Ggx { alpha_x: self.alpha_x, alpha_y: self.alpha_y },
-            self.base_colour.max_element(),
-            self.k_s * self.specular_colour.max_element(),
-        )
-    }
-
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
         if cos_l <= 0.0 || cos_v <= 0.0 {
@@ -124,5 +116,10 @@ impl ReflectionModel for Ward {
             diffuse: (1.0 - self.k_s) * cos_l * self.base_colour,
             specular: self.k_s * lobe * cosines * self.specular_colour,
         }
+    }
+
+    fn lobes(&self) -> Lobes {
+        let highlight = Lobe::wide(Vec2::new(self.alpha_x, self.alpha_y));
+        Lobes::diffuse_and(highlight, (1.0 - self.k_s) * self.base_colour, self.k_s * self.specular_colour)
     }
 }

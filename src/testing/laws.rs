@@ -1,7 +1,7 @@
 //! The laws of reflection models, over random directions and parameters: kept if the model declares them, and found
 //! violated otherwise.
 
-use std::f32::consts::FRAC_PI_2;
+use std::{convert::Infallible, f32::consts::FRAC_PI_2};
 
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ use crate::{
         ModelEntry, Surface, brdf,
         laws::{
             self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE,
-            Random, is_finite, least, reciprocity_error, smallest,
+            Random, SAMPLING_TOLERANCE, is_finite, least, reciprocity_error, smallest,
         },
     },
 };
@@ -27,7 +27,7 @@ const PAIRS: usize = 200;
 /// # Errors
 /// The first that does not hold.
 pub fn all(model: &ModelEntry) -> Outcome {
-    [finite, non_negative, reciprocal, energy_conserving].iter().try_for_each(|law| law(model))
+    [finite, non_negative, reciprocal, energy_conserving, sampled].iter().try_for_each(|law| law(model))
 }
 
 /// A model with its defaults, with its smallest numbers and with random parameters, in the frame of a random normal.
@@ -139,6 +139,27 @@ pub fn reciprocal(model: &ModelEntry) -> Outcome {
 pub fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
     let directions = laws::albedo_directions(v, frame, rows);
     laws::albedo(&directions, directions.iter().map(|(l, _)| surface.response(*l, v, frame)))
+}
+
+/// Samples by the model's lobes give the directional albedo of quadrature.
+///
+/// # Errors
+/// If they are further from it than [`SAMPLING_TOLERANCE`].
+pub fn sampled(model: &ModelEntry) -> Outcome {
+    let mut random = Random(5);
+    let sets = [Values::default(), least(model)].into_iter().chain((0..4).map(|_| random.values(model)));
+    for values in sets {
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        let answer = |(l, v): &(Vec3, Vec3)| surface.response(*l, *v, &Frame::LOCAL);
+        let answers = |pairs: &[_]| Ok::<_, Infallible>(pairs.iter().map(answer).collect());
+        let Ok(errors) = laws::sampling_errors(&surface.lobes(), answers);
+        if let Some((v, error)) = errors.into_iter().find(|(_, error)| *error > SAMPLING_TOLERANCE) {
+            return Err(format!(
+                "its lobes miss where it reflects most: an albedo by samples is off by {error} for {values:?} v {v}; write `lobes`"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// No light is made where that is declared, and somewhere it is where not.

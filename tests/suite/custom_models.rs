@@ -9,6 +9,7 @@ use lights_camera_models::{
     optics::{
         Frame, TermSelection,
         colour::{BACKGROUND, Encoding},
+        lobes::{Lobe, Lobes},
     },
     parameter::{BASE_COLOUR, ParameterKind, Value, Values},
     reference,
@@ -103,6 +104,45 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         (
             "{ \"lobe\": \"phong\" }",
             "lobe is \"phong\", but the model whose lobe is compensated must be \"microfacet\"",
+        ),
+        ("{ \"lobes\": 1 }", "lobes is 1, but it must be a list such as [\"cosine\", {"),
+        ("{ \"lobes\": [] }", "lobes is [], but it must be a list such as"),
+        ("{ \"lobes\": \"fong\" }", "lobes is \"fong\", but the model whose lobes fit must be \"lambert\", "),
+        (
+            "{ \"lobes\": [\"cosine\", \"cosine\", \"cosine\", \"cosine\"] }",
+            "lobes is [\"cosine\", \"cosine\", \"cosine\", \"cosine\"], but at most 3 lobes fit",
+        ),
+        (
+            "{ \"lobes\": [\"ggx\"] }",
+            "lobes[0] is \"ggx\", but a lobe without a width must be \"cosine\"; others need one: { \"shape\": \"ggx\", \"alpha\": 0.3 }",
+        ),
+        (
+            "{ \"lobes\": [{ \"alpha\": 1 }] }",
+            "lobes[0].shape is missing; it is \"cosine\", \"ggx\" or \"power\"",
+        ),
+        (
+            "{ \"lobes\": [{ \"shape\": \"gx\" }] }",
+            "lobes[0].shape is \"gx\", but the shape of a lobe must be \"cosine\", \"ggx\" or \"power\"; did you mean \"ggx\"?",
+        ),
+        (
+            "{ \"lobes\": [{ \"shape\": \"ggx\" }] }",
+            "lobes[0]: a lobe of the shape ggx needs one of \"alpha\", \"roughness\" or \"exponent\"",
+        ),
+        (
+            "{ \"lobes\": [{ \"shape\": \"ggx\", \"alpha\": 1, \"roughness\": 1 }] }",
+            "lobes[0]: a lobe of the shape ggx needs one of",
+        ),
+        (
+            "{ \"lobes\": [{ \"shape\": \"cosine\", \"alpha\": 1 }] }",
+            "lobes[0].alpha is given, but a lobe of the shape cosine has none",
+        ),
+        (
+            "{ \"lobes\": [{ \"shape\": \"power\", \"exponent\": -1 }] }",
+            "lobes[0].exponent is -1, but it must be a number, at least 0",
+        ),
+        (
+            "{ \"parameters\": [\"alpha\", \"base_colour\"], \"lobes\": [{ \"shape\": \"power\", \"exponent\": \"base_colour\" }] }",
+            "lobes[0].exponent is \"base_colour\", but it must be a number, at least 0, or one of the parameters \"alpha\"",
         ),
         ("{ \"parameters\": {} }", "parameters is {}, but it must be a list"),
         (
@@ -205,6 +245,46 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         said("{\n\"nam\": 1,\n\"laws\": [1],\n\"parameters\": [\"x\", { \"name\": \"y\", \"min\": 3 }]\n}");
     let lines: Vec<_> = said.lines().map(|l| l.split(':').nth(1).unwrap_or_default()).collect();
     assert_eq!(lines, ["2", "3", "4", "4"], "{said}");
+}
+
+#[test]
+fn lobes_follow_the_parameters_of_the_model() {
+    let lobes = |declaration: &str, values: &Values| {
+        let registry = with("shiny", &matt(declaration));
+        registry.model("shiny").unwrap().instantiate(values, Encoding::Srgb).lobes()
+    };
+    let mut values = Values::default();
+    values.set("k_s", Value::Number(0.25));
+    values.set("roughness", Value::Number(0.5));
+    values.set("specular_colour", Value::Colour([255, 0, 0]));
+    values.set("alpha", Value::Integer(14));
+    let parameters = "\"parameters\": [\"k_s\", \"roughness\", \"specular_colour\", \"alpha\"]";
+    let said = |lobes_said: &str| lobes(&format!("{{ {parameters}, \"lobes\": {lobes_said} }}"), &values);
+    assert_eq!(lobes("{}", &values), Lobes::default());
+    assert_eq!(said("[\"cosine\"]"), Lobes::cosine());
+    assert_eq!(
+        said("[\"cosine\", { \"shape\": \"ggx\", \"roughness\": \"roughness\", \"weight\": \"k_s\" }]"),
+        Lobes::new(&[(Lobe::Cosine, 1.0), (Lobe::ggx(0.25), 0.25)])
+    );
+    assert_eq!(
+        said(
+            "[{ \"shape\": \"ggx\", \"alpha\": [0.5, \"k_s\"] }, { \"shape\": \"power\", \"exponent\": \"alpha\", \"weight\": \"specular_colour\" }]"
+        ),
+        Lobes::new(&[
+            (Lobe::Ggx { alpha_x: 0.5, alpha_y: 0.25 }, 1.0),
+            (Lobe::Power { exponent: 14.0 }, 1.0 / 3.0)
+        ])
+    );
+    assert_eq!(
+        said("[{ \"shape\": \"ggx\", \"exponent\": \"alpha\" }]"),
+        Lobes::new(&[(Lobe::ggx((2.0f32 / 16.0).sqrt()), 1.0)])
+    );
+    // Those of a built-in model, by the declared parameters alone.
+    let phong = Registry::builtin();
+    let phong = |values: &Values| phong.model("phong").unwrap().instantiate(values, Encoding::Srgb).lobes();
+    assert_eq!(said("\"phong\""), phong(&values));
+    assert_eq!(lobes("{ \"lobes\": \"phong\" }", &values), phong(&Values::default()));
+    assert_ne!(phong(&values), phong(&Values::default()));
 }
 
 #[test]
@@ -395,6 +475,8 @@ fn every_built_in_model_as_a_file_has_the_same_knobs_and_the_same_numbers() {
             assert_eq!(original, copied, "{id} {values:?}");
             // The CPU interprets the file; the original is written in Rust.
             let surface = copy.entry.instantiate(&values, Encoding::Srgb);
+            let lobes = model.instantiate(&values, Encoding::Srgb).lobes();
+            assert_eq!(surface.lobes(), lobes, "{id} {values:?}");
             for ((l, v), gpu) in pairs.iter().zip(&copied) {
                 let cpu = surface.response(*l, *v, &Frame::LOCAL);
                 for (g, c) in

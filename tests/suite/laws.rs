@@ -38,6 +38,11 @@ fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
 }
 
 #[test]
+fn samples_by_the_lobes_of_a_model_give_its_albedo() {
+    hold(testing::laws::sampled);
+}
+
+#[test]
 fn the_quadrature_of_the_albedo_is_right() {
     // Lambert reflects its base colour, whatever the direction; half of it fails.
     let registry = Registry::builtin();
