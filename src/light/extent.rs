@@ -71,7 +71,7 @@ pub(super) fn shines(facing: f32, two_sided: bool) -> bool {
     facing > 0.0 || two_sided && facing < 0.0
 }
 
-/// The points of a sequence that a block of samples holds.
+/// The most points of a sequence that a block of samples holds.
 pub const BLOCK: usize = 8;
 
 /// Directions of a model's lobes, and what arrives from them.
@@ -84,9 +84,6 @@ pub struct Directions {
     /// The radiance that arrives from all lights with extent, their colours included, each times the weight of the lobes.
     pub light: [Vec3; BLOCK],
 }
-
-/// The points of one light that a block of samples takes.
-pub type Points = [Vec2; BLOCK];
 
 /// True if it shines to the back as well.
 pub(super) const TWO_SIDED: Parameter =

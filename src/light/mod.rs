@@ -38,7 +38,7 @@ pub use cylinder::Cylinder;
 pub use directional::Directional;
 pub use disc::Disc;
 pub use environment::Environment;
-use extent::{BLOCK, Cone, Directions, Points, Sample, Seen};
+use extent::{BLOCK, Cone, Directions, Sample, Seen};
 pub use factor::Factor;
 pub use photometric::Photometric;
 pub use point::Point;
@@ -170,6 +170,13 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         Sample::default()
     }
 
+    /// The same for several points: [`sample`](Self::sample) for each. A type may calculate once what all of them need.
+    fn samples(&self, light: &LightRecord, p: Vec3, points: &[Vec2], to: &mut [Sample]) {
+        for (to, u) in to.iter_mut().zip(points) {
+            *to = self.sample(light, p, *u);
+        }
+    }
+
     /// What a light with extent is in a direction from `p`. Inside a light, on it and behind it: nothing, or finite numbers.
     fn seen(&self, _light: &LightRecord, _p: Vec3, _l: Vec3) -> Seen {
         Seen::NOTHING
@@ -249,9 +256,13 @@ pub trait Emitters: Send + Sync {
     /// Of lights with extent: adds what arrives at `p` from each of some directions of lobes, weighted.
     fn meet(&self, p: Vec3, directions: &mut Directions);
 
-    /// Of a light with extent: directions to it from `p` for some points of the unit square; the radiance has the colour of the
-    /// light.
-    fn send(&self, light: usize, p: Vec3, points: &Points) -> [Sample; BLOCK];
+    /// Of a light with extent: false if all of it lies below the surface at `p` with the normal `n`, as far as its
+    /// [`bounds`](LightType::bounds) tell.
+    fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool;
+
+    /// Of a light with extent: directions to it from `p` for at most [`BLOCK`] points of the unit square; the radiance has the
+    /// colour of the light.
+    fn send(&self, light: usize, p: Vec3, points: &[Vec2]) -> [Sample; BLOCK];
 }
 
 impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
@@ -291,12 +302,19 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
         }
     }
 
-    fn send(&self, light: usize, p: Vec3, points: &Points) -> [Sample; BLOCK] {
-        let Some((emitter, light)) = self.get(light) else { return [Sample::default(); BLOCK] };
-        points.map(|u| {
-            let sample = LightType::sample(emitter, light, p, u);
-            Sample { radiance: sample.radiance * light.colour, ..sample }
-        })
+    fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool {
+        let bounds = self.get(light).and_then(|(emitter, light)| LightType::bounds(emitter, light, p));
+        // An angle is no smaller than its sine.
+        bounds.is_none_or(|cone| cone.axis.dot(n) >= -cone.half_angle)
+    }
+
+    fn send(&self, light: usize, p: Vec3, points: &[Vec2]) -> [Sample; BLOCK] {
+        let mut sent = [Sample::default(); BLOCK];
+        if let Some((emitter, light)) = self.get(light) {
+            emitter.samples(light, p, points, &mut sent);
+            sent.iter_mut().for_each(|sample| sample.radiance *= light.colour);
+        }
+        sent
     }
 }
 

@@ -45,6 +45,16 @@ impl Rectangle {
     fn from(&self, light: &LightRecord, p: Vec3) -> SphericalRectangle {
         SphericalRectangle::new(light.position - p, extent::sides(light.direction, self.turn), self.half())
     }
+
+    /// A direction to it where it is seen so.
+    fn towards(&self, light: &LightRecord, seen: &SphericalRectangle, u: Vec2) -> Sample {
+        let at = seen.sample(u);
+        let l = at.normalize_or_zero();
+        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
+            return Sample::default();
+        }
+        Sample { l, radiance: Vec3::splat(light.intensity), pdf: seen.pdf(at) }
+    }
 }
 
 impl LightType for Rectangle {
@@ -67,13 +77,14 @@ impl LightType for Rectangle {
     }
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
+        self.towards(light, &self.from(light, p), u)
+    }
+
+    fn samples(&self, light: &LightRecord, p: Vec3, points: &[Vec2], to: &mut [Sample]) {
         let seen = self.from(light, p);
-        let at = seen.sample(u);
-        let l = at.normalize_or_zero();
-        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
-            return Sample::default();
+        for (to, u) in to.iter_mut().zip(points) {
+            *to = self.towards(light, &seen, *u);
         }
-        Sample { l, radiance: Vec3::splat(light.intensity), pdf: seen.pdf(at) }
     }
 
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {

@@ -1,7 +1,7 @@
 //! Light with extent at a point: the integral of a model's answer over the directions that lights fill, by samples of the
 //! lights and of the model's lobes, each weighted by the power heuristic (E. Veach, L. Guibas 1995).
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
     light::{
@@ -77,8 +77,11 @@ pub(crate) struct Brightest {
     pub(crate) response: Terms,
 }
 
-/// A direction and what arrives from there, over its density.
+/// Directions and what arrives from each, over its density.
 type Take<'a> = dyn FnMut(&[Arriving]) + 'a;
+
+/// The most directions that a model answers to at once.
+const AT_ONCE: usize = 4 * BLOCK;
 
 impl Extended {
     /// Adds lights of one type.
@@ -102,12 +105,9 @@ impl Extended {
     ) -> Vec3 {
         let mut sum = Vec3::ZERO;
         let at = At::new(surface.lobes(), p, v, frame, seed);
-        let LightSamples { first, count } = self.samples;
         let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
-        for start in (0..count).step_by(BLOCK) {
-            self.block(&at, first.wrapping_add(start), (count - start).min(BLOCK as u32) as usize, &mut take);
-        }
-        sum / count.max(1) as f32
+        self.arrive(&at, self.samples, &mut take);
+        sum / self.samples.count.max(1) as f32
     }
 
     /// The integral over its one light by term, with its standard error from parts of the samples, and what explains it.
@@ -132,10 +132,7 @@ impl Extended {
                     terms = std::array::from_fn(|i| terms[i] + by_term(&answer)[i] * *light);
                 }
             };
-            for start in (0..count).step_by(BLOCK) {
-                let number = first.wrapping_add(start);
-                self.block(at, number, (count - start).min(BLOCK as u32) as usize, &mut take);
-            }
+            self.arrive(at, LightSamples { first, count }, &mut take);
             terms.map(|term| term / count.max(1) as f32)
         };
         let mut brightest: Option<(f32, Brightest)> = None;
@@ -177,14 +174,36 @@ impl Extended {
         [mean, standard_error(all()).x]
     }
 
-    /// Hands out what arrives by some samples.
-    fn block(&self, at: &At, first: u32, count: usize, take: &mut Take) {
-        let mut arriving = [Arriving::default(); BLOCK];
+    /// Hands out what arrives by some samples, over its density: many directions at once, since a model calculates what depends
+    /// on the view alone anew each time.
+    fn arrive(&self, at: &At, samples: LightSamples, take: &mut Take) {
+        let mut waiting = [Arriving::default(); AT_ONCE];
+        let mut count = 0;
+        for start in (0..samples.count).step_by(BLOCK) {
+            let first = samples.first.wrapping_add(start);
+            self.block(at, first, (samples.count - start).min(BLOCK as u32) as usize, &mut |arriving| {
+                waiting[count] = arriving;
+                count += 1;
+                if count == AT_ONCE {
+                    take(&waiting);
+                    count = 0;
+                }
+            });
+        }
+        take(&waiting[..count]);
+    }
+
+    /// Hands out what arrives by a block of samples.
+    fn block(&self, at: &At, first: u32, count: usize, mut take: impl FnMut(Arriving)) {
         let mut directions =
             Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };
         let points = |number: u32| {
             let sequence = Sequence::new(at.seed, number);
-            std::array::from_fn(|i| sequence.point(first.wrapping_add(i as u32)))
+            let mut points = [Vec2::ZERO; BLOCK];
+            for (i, point) in points[..count].iter_mut().enumerate() {
+                *point = sequence.point(first.wrapping_add(i as u32));
+            }
+            points
         };
         for (i, u) in points(0).into_iter().enumerate().take(count) {
             let l = at.lobes.sample(u, at.v);
@@ -197,27 +216,21 @@ impl Extended {
         for (group, _) in &self.groups {
             group.meet(at.p, &mut directions);
         }
-        let mut n = 0;
         for i in 0..count {
             if directions.light[i] != Vec3::ZERO {
-                arriving[n] = Arriving { l: directions.l[i], light: directions.light[i] / directions.pdf[i] };
-                n += 1;
+                take(Arriving { l: directions.l[i], light: directions.light[i] / directions.pdf[i] });
             }
         }
-        take(&arriving[..n]);
         for (group, number) in &self.groups {
-            for light in 0..group.count() {
-                let sent = group.send(light, at.p, &points(number + light as u32 + 1));
-                let mut n = 0;
+            for light in (0..group.count()).filter(|light| group.rises(*light, at.p, at.frame.n)) {
+                let sent = group.send(light, at.p, &points(number + light as u32 + 1)[..count]);
                 for Sample { l, radiance, pdf } in &sent[..count] {
                     let local = at.frame.to_local(*l);
                     if *pdf > 0.0 && local.z > 0.0 && *radiance != Vec3::ZERO {
                         let weight = power_heuristic(*pdf, at.lobes.pdf(local, at.v));
-                        arriving[n] = Arriving { l: *l, light: *radiance * (weight / pdf) };
-                        n += 1;
+                        take(Arriving { l: *l, light: *radiance * (weight / pdf) });
                     }
                 }
-                take(&arriving[..n]);
             }
         }
     }
@@ -256,8 +269,6 @@ impl<'a> At<'a> {
 #[cfg(test)]
 mod tests {
     use std::{collections::HashMap, ops::Range};
-
-    use glam::Vec2;
 
     use super::*;
     use crate::{
@@ -572,5 +583,59 @@ mod tests {
             .map(|(name, own, default, _)| format!("{name}: {own:.4}, by default {default:.4}"))
             .collect();
         assert_eq!(wrong, [""; 0]);
+    }
+
+    /// The lights of the golden values, each alone, with its emitter.
+    fn lights() -> Vec<(String, Box<dyn Emitters>, Box<dyn Emitter>, LightRecord)> {
+        let mut names: Vec<_> = golden().into_iter().map(|(light, ..)| light).collect();
+        names.dedup();
+        let light = |name: String| {
+            let (entry, values, record) = golden_light(&name);
+            let record = LightRecord { colour: Vec3::new(0.5, 1.0, 2.0), ..record };
+            let group = (entry.group)(&[(&values, record)], Encoding::Srgb);
+            (name, group, (entry.instantiate)(&values, Encoding::Srgb), record)
+        };
+        names.into_iter().map(light).collect()
+    }
+
+    #[test]
+    fn several_samples_of_a_light_are_those_that_it_gives_one_by_one() {
+        let sequence = Sequence::new(5, 1);
+        let points: Vec<_> = (0..BLOCK as u32).map(|i| sequence.point(i)).collect();
+        let p = Vec3::new(0.1, -0.2, 0.05);
+        for (name, group, emitter, record) in lights() {
+            for count in [1, 3, BLOCK] {
+                let sent = group.send(0, p, &points[..count]);
+                for (i, sample) in sent.into_iter().enumerate() {
+                    let one = |u| emitter.sample(&record, p, u);
+                    let expected = points[..count].get(i).map_or_else(Sample::default, |u| one(*u));
+                    let expected = Sample { radiance: expected.radiance * record.colour, ..expected };
+                    assert_eq!(sample, expected, "{name}: {i} of {count}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn only_lights_that_lie_below_the_surface_are_left_out() {
+        let (mut left_out, mut lost_by_their_middle) = (0, 0);
+        for (name, group, emitter, record) in lights() {
+            for turn in 0..64 {
+                let n = crate::optics::sampling::sphere(Sequence::new(turn, 0).point(0));
+                let above = |i| {
+                    let Sample { l, pdf, .. } =
+                        emitter.sample(&record, Vec3::ZERO, Sequence::new(turn, 1).point(i));
+                    pdf > 0.0 && l.dot(n) > 0.0
+                };
+                let reaches = (0..256).any(above);
+                let rises = group.rises(0, Vec3::ZERO, n);
+                assert!(rises || !reaches, "{name} for {n}");
+                left_out += usize::from(!rises);
+                // The wrong twin: as if lights were as small as their middles.
+                let middle = emitter.bounds(&record, Vec3::ZERO);
+                lost_by_their_middle += usize::from(reaches && middle.is_some_and(|c| c.axis.dot(n) < 0.0));
+            }
+        }
+        assert!(left_out > 64 && lost_by_their_middle > 0, "{left_out} {lost_by_their_middle}");
     }
 }
