@@ -36,7 +36,11 @@ fn from_light(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, i: u3
 }
 
 fn extended(position: vec3<f32>, view_direction: vec3<f32>, frame: Frame) -> vec3<f32> {
-    let v = lobe_view(to_local(frame, view_direction));
+    var own = frame;
+    if lobes_are_isotropic() {
+        own = frame_from_normal(frame.n);
+    }
+    let v = lobe_view(to_local(own, view_direction));
     let count = min(illumination.count, MAX_LIGHTS);
     let selection = illumination.terms;
     let samples = max(illumination.sample_count, 1u);
@@ -48,9 +52,9 @@ fn extended(position: vec3<f32>, view_direction: vec3<f32>, frame: Frame) -> vec
         let turn = i % turns;
         var chosen: LightSample;
         if turn == count {
-            chosen = from_lobes(position, v, frame, index, count);
+            chosen = from_lobes(position, v, own, index, count);
         } else {
-            chosen = from_light(position, v, frame, index, turn);
+            chosen = from_light(position, v, own, index, turn);
         }
         if any(chosen.radiance != vec3(0.0)) {
             let terms = response(chosen.l, view_direction, frame, parameters);

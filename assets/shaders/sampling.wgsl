@@ -228,6 +228,16 @@ fn lobe_pdf(lobe: vec4<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
     return (lobe.y + 1.0) / (2.0 * PI) * power(cosine, lobe.y);
 }
 
+// True if none is wider along the tangent than across. They are sampled in the frame of the normal alone.
+fn lobes_are_isotropic() -> bool {
+    var same = true;
+    for (var i = 0u; i < LOBES; i++) {
+        let lobe = lobe_row(i);
+        same = same && (lobe.x != 1.0 || lobe.y == lobe.z);
+    }
+    return same;
+}
+
 fn lobes_sample(u: vec2<f32>, v: vec3<f32>) -> vec3<f32> {
     var x = u.x;
     var chosen = vec4(0.0);

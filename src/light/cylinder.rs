@@ -74,7 +74,7 @@ impl LightType for Cylinder {
     .glyph("▮")
     .at_position()
     .with_direction()
-    .luminance(20.0, 200.0)
+    .luminance(10.0, 100.0)
     .equation("I(p) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {

@@ -198,6 +198,13 @@ impl Lobes {
         &self.0
     }
 
+    /// True if none is wider along the tangent than across. They are sampled in the frame of the normal alone, so that a tangent that
+    /// is of no use to the model, and that a renderer may leave out, changes no sample.
+    #[must_use]
+    pub fn are_isotropic(&self) -> bool {
+        self.0.iter().all(|(lobe, _)| !matches!(lobe, Lobe::Ggx { alpha_x, alpha_y } if alpha_x != alpha_y))
+    }
+
     /// As shaders have them: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its share.
     #[must_use]
     pub fn rows(&self) -> [Vec4; MAX_LOBES] {

@@ -10,7 +10,7 @@ use crate::{
         colour::{srgb_decode, srgb_encode},
         tone::exposure_factor,
     },
-    parameter::Values,
+    parameter::{Value, Values},
     reference,
     registry::Registry,
     scene::limits::significant,
@@ -249,6 +249,10 @@ impl<'a> Stand<'a> {
         let settings = reference::Settings { width, height, samples: 1, ..reference::Settings::default() };
         let before = reference::render(&scene, self.registry, &settings);
         scene.lights = vec![Light { intensity: default, luminous_flux: None, ..light.clone() }];
+        // Objects tell, not the light itself behind them.
+        if entry.parameter("visible").is_some() {
+            scene.lights[0].parameters.set("visible", Value::flag(false));
+        }
         let added = reference::render(&scene, self.registry, &settings);
         let limit = self.brightest();
         let (mut factors, mut floors, mut clipped) = (Vec::new(), Vec::new(), 0);

@@ -251,17 +251,18 @@ fn standard_error(values: impl ExactSizeIterator<Item = Vec3> + Clone) -> Vec3 {
 }
 
 /// The point, the viewer and the lobes of the model there.
-struct At<'a> {
+struct At {
     lobes: Lobes,
     p: Vec3,
     /// The direction to the viewer in the local frame.
     v: Vec3,
-    frame: &'a Frame,
+    frame: Frame,
     seed: u32,
 }
 
-impl<'a> At<'a> {
-    fn new(lobes: Lobes, p: Vec3, v: Vec3, frame: &'a Frame, seed: u32) -> Self {
+impl At {
+    fn new(lobes: Lobes, p: Vec3, v: Vec3, frame: &Frame, seed: u32) -> Self {
+        let frame = if lobes.are_isotropic() { Frame::from_normal(frame.n) } else { *frame };
         Self { lobes, p, v: frame.to_local(v), frame, seed }
     }
 }

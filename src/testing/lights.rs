@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::{
-    Outcome,
+    Outcome, extended,
     sample::{any_direction, random, random_value},
 };
 use crate::{
@@ -28,13 +28,16 @@ const DIRECTIONS: usize = 50_000;
 /// # Errors
 /// The first that does not hold.
 pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
+    if light.declaration.extent {
+        return extended::all(light, sources);
+    }
     parity(light, sources)?;
     laws(light)?;
     flux(light)
 }
 
 /// A light of a type somewhere in the default room, with parameters as a scene may have them.
-fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
+pub(super) fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
     let mut values = Values::default();
     for p in light.parameters {
         values.set(p.name, random_value(p, seed));
@@ -53,7 +56,7 @@ fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
 }
 
 /// A point in the default room.
-fn place(seed: &mut u64) -> Vec3 {
+pub(super) fn place(seed: &mut u64) -> Vec3 {
     Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
 }
 
@@ -66,7 +69,7 @@ fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
 }
 
 /// The parameters of a light as its function in WGSL takes them, and the numbers of its files.
-fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
+pub(super) fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
     let mut words = light.words(values, Encoding::Srgb);
     let mut files = Vec::new();
     for (at, table) in light.tables(values) {
@@ -74,6 +77,23 @@ fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
         files.extend(table.numbers.iter().map(|n| n.to_bits()));
     }
     (words, files)
+}
+
+/// The arguments of the function of a light type in WGSL: the light, its own parameters, the point.
+pub(super) fn arguments(record: &LightRecord, own: &[u32], p: Vec3) -> Vec<u32> {
+    let LightRecord { light_type, position, direction, colour, intensity } = *record;
+    let mut arguments = Vec::new();
+    let mut put = |numbers: &[f32]| arguments.extend(numbers.iter().map(|n| n.to_bits()));
+    put(&position.to_array());
+    put(&[f32::from_bits(light_type)]);
+    put(&direction.to_array());
+    put(&[intensity]);
+    put(&colour.to_array());
+    // Where its parameters begin: they are given to it here.
+    put(&[0.0]);
+    arguments.extend(own);
+    arguments.extend(p.to_array().map(f32::to_bits));
+    arguments
 }
 
 /// WGSL that the CPU interprets agrees with the Rust function.
@@ -90,21 +110,9 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
     for _ in 0..4000 {
         let (values, record) = sample(light, &mut seed);
         let p = place(&mut seed);
-        let LightRecord { light_type, position, direction, colour, intensity } = record;
         let (own, files) = words(light, &values);
-        let mut arguments = Vec::new();
-        let mut put = |numbers: &[f32]| arguments.extend(numbers.iter().map(|n| n.to_bits()));
-        put(&position.to_array());
-        put(&[f32::from_bits(light_type)]);
-        put(&direction.to_array());
-        put(&[intensity]);
-        put(&colour.to_array());
-        // Where its parameters begin: they are given to it here.
-        put(&[0.0]);
-        arguments.extend(own);
-        arguments.extend(p.to_array().map(f32::to_bits));
         let mut results = [0; 7];
-        program.run_with(&files, &arguments, &mut results).map_err(|e| e.to_string())?;
+        program.run_with(&files, &arguments(&record, &own, p), &mut results).map_err(|e| e.to_string())?;
         let [x, y, z, red, green, blue, everywhere] = results;
         let vector = |words: [u32; 3]| Vec3::from_array(words.map(f32::from_bits));
         let wgsl = (vector([x, y, z]), vector([red, green, blue]));

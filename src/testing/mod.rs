@@ -16,6 +16,7 @@
 //! functions in [`laws`], [`parity`], [`lights`], [`shadings`] and [`meshes`] do parts of it for entries of a registry.
 
 pub mod equations;
+mod extended;
 pub mod laws;
 pub mod lights;
 pub mod meshes;

@@ -92,8 +92,8 @@ fn a_converged_picture_is_that_of_the_cpu_renderer() {
         let converged = picture(&mut renderer);
         let differ = differing(&converged, &expected);
         assert!(1000 * differ <= (SIZE * SIZE) as usize, "{what}: {differ} pixels differ");
-        // The first differs where noise is: else this would prove nothing.
-        if shading == "phong" {
+        // The first differs where noise is, else this would prove nothing. A globe has hardly any.
+        if (light, shading) == ("rectangle", "phong") {
             assert!(differing(&first, &expected) > 40, "{what}");
         }
     }

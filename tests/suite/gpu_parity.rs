@@ -69,10 +69,18 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
     for (i, model) in registry.models().iter().enumerate() {
         for (j, shading) in registry.shading_models().iter().enumerate() {
             for (k, light) in lights.iter().enumerate() {
+                // Light with extent is hundreds of samples for each pixel: each model meets one type with one shading model, and each
+                // type meets all shading models.
+                if light.declaration.extent && ((i + k) % 6 != 0 || (i / 6 + k) % 4 != j) {
+                    continue;
+                }
                 let shape = &shapes[(i + j + k) % shapes.len()];
                 let mut scene = close_up(shape.declaration.id, light.declaration.id);
                 scene.reflection_model = model.declaration.id.to_owned();
                 scene.shading_model = shading.declaration.id.to_owned();
+                if light.declaration.extent {
+                    scene.lights[0].parameters.set("visible", Value::flag(false));
+                }
                 let picture = cpu(&scene, TermSelection::All);
                 let shown = gpu(&mut renderer, &scene, TermSelection::All);
                 let d = compare(&shown, &picture, background(), 1e-3);
@@ -155,13 +163,15 @@ fn beside_a_ball(light_type: &str, before: bool) -> Scene {
     let light = &mut scene.lights[0];
     light.intensity = 2.0;
     if declaration.has_position {
-        light.position = Some(if before { Vec3::new(4.4, 5.5, 6.9) } else { Vec3::new(6.2, 5.9, 2.0) });
+        light.position = Some(if before { Vec3::new(4.4, 5.5, 6.9) } else { Vec3::new(6.9, 6.0, 2.0) });
     }
     if declaration.has_direction {
         // The sun stands behind the ball, beside its edge; the others shine to the observer.
         light.direction = Some(match (light_type, before) {
             ("sun", true) => Vec3::new(-0.3, -0.2, 1.0),
             ("sun", false) => Vec3::new(0.32, 0.0, 1.0),
+            // Its ends are dark.
+            ("cylinder", _) => Vec3::new(1.0, 0.3, 0.0),
             _ => Vec3::new(0.3, -0.2, 1.0),
         });
     }
@@ -196,9 +206,9 @@ fn lights_with_extent_are_seen_alike_before_objects_and_behind_them() {
             // Wrong twins: the light is not to be seen, or elsewhere.
             let mut elsewhere = scene.clone();
             let light = &mut elsewhere.lights[0];
-            light.position = light.position.map(|p| p + Vec3::X * 0.1);
-            light.direction = light.direction.map(|d| d + Vec3::X * 0.03);
-            light.parameters.set("rotation", Value::Number(3.0));
+            light.position = light.position.map(|p| p + Vec3::X * 0.4);
+            light.direction = light.direction.map(|d| d + Vec3::X * 0.1);
+            light.parameters.set("rotation", Value::Number(30.0));
             for wrong in [&hidden, &elsewhere] {
                 assert!(!agrees(wrong).0, "{id}, before: {before}, unnoticed: {:?}", agrees(wrong).1);
             }

@@ -89,7 +89,7 @@ fn every_constraint_has_its_message() {
         (
             "/lights/0/type",
             json!("pont"),
-            "lights[0].type is \"pont\", but the light type must be \"point\", \"spot\", \"photometric\", \"directional\" or \"ambient\"; did you mean \"point\"?",
+            "lights[0].type is \"pont\", but the light type must be \"point\", \"spot\", \"photometric\", \"directional\", \"ambient\", \"rectangle\", \"disc\", \"sphere\", \"cylinder\", \"sun\" or \"environment\"; did you mean \"point\"?",
         ),
         ("/lights/0/position", json!([1, 2]), "a position must be three numbers: [x, y, z]"),
         (

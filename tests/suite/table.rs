@@ -200,7 +200,7 @@ fn every_mistake_has_its_line_and_column() {
             "room.csv:8:41: row has \"2\" in a column without a name; name it in the heading, or empty the cell",
         ),
         (with("material.k_d", "k_d"), "k_d is not a column; did you mean \"material.k_d\"?"),
-        (with(",size,", ",radius,"), "radius is not a column; did you mean \"size\"?"),
+        (with(",size,", ",sizes,"), "sizes is not a column; did you mean \"size\"?"),
         (
             with(",size,", ",intensity,"),
             "room.csv:2:66: intensity is given twice: there is another column intensity",
