@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 use super::{
     Declaration, LightRecord, LightType,
     extent::{Sample, Seen, VISIBLE, number},
+    panorama::{self, Panorama},
     sky::{self, Sky},
     studio,
 };
@@ -17,13 +18,25 @@ use crate::{
 
 const SOURCE: Parameter = Parameter::choice(
     "source",
-    &[("uniform", "uniform"), ("studio", "studio"), ("sky", "sky")],
+    &[("uniform", "uniform"), ("studio", "studio"), ("sky", "sky"), ("file", "file")],
     1,
 )
-.help("Uniform: the same luminance from everywhere. Studio: three softboxes in a dark room. Sky: the CIE general sky.");
+.help(
+    "Uniform: the same luminance from everywhere. Studio: three softboxes in a dark room. Sky: the CIE general sky. File: a picture \
+     of surroundings.",
+);
 
 const STUDIO: u32 = 1;
 const SKY: u32 = 2;
+const FILE: u32 = 3;
+
+const PATH: Parameter = Parameter {
+    used_when: Some(UsedWhen { parameter: "source", choices: &["file"] }),
+    ..Parameter::file("path", &panorama::FORMAT, "room.hdr").label("picture").help(
+        "A picture of surroundings, twice as wide as it is high, in Radiance's .hdr or OpenEXR's .exr, by its name from the folder of \
+         the scene. Its values are cd/m². −z is in its middle.",
+    )
+};
 
 const ROTATION: Parameter = Parameter {
     name: "rotation",
@@ -32,7 +45,7 @@ const ROTATION: Parameter = Parameter {
     unit: "°",
     help: "Turns it about the vertical, anticlockwise as seen from above.",
     kind: ParameterKind::Number { min: -360.0, max: 360.0, default: 0.0 },
-    used_when: Some(UsedWhen { parameter: "source", choices: &["studio", "sky"] }),
+    used_when: Some(UsedWhen { parameter: "source", choices: &["studio", "sky", "file"] }),
 };
 
 /// A parameter of skies alone.
@@ -83,6 +96,8 @@ parameters! {
     pub struct Environment {
         /// Index of the source.
         source: choice = SOURCE,
+        /// The picture.
+        path: file = PATH,
         /// The turn about the vertical, degrees.
         rotation: number = ROTATION,
         /// Index of the type of the sky.
@@ -127,19 +142,26 @@ impl Environment {
     }
 
     /// The luminance of a direction, and the density at which it is sampled.
-    fn at(&self, d: Vec3) -> (f32, f32) {
-        match self.source {
-            STUDIO => studio::seen(d),
-            SKY => self.sky.seen(d),
+    fn at(&self, d: Vec3) -> (Vec3, f32) {
+        let (luminance, pdf) = match (self.source, self.picture()) {
+            (STUDIO, _) => studio::seen(d),
+            (SKY, _) => self.sky.seen(d),
+            (FILE, Some(picture)) => return (picture.radiance(d), picture.pdf(d)),
             _ => (1.0, 1.0 / (4.0 * PI)),
-        }
+        };
+        (Vec3::splat(luminance), pdf)
+    }
+
+    /// The picture, if it is the source.
+    fn picture(&self) -> Option<Panorama<'_>> {
+        (self.source == FILE).then(|| Panorama::new(&self.path.numbers))?
     }
 }
 
 impl LightType for Environment {
     const DECLARATION: Declaration =
         Declaration::new("environment", "Environment", wgsl!("light/environment.wgsl"))
-            .summary("Light from all around: the same everywhere, a studio, or a sky.")
+            .summary("Light from all around: the same everywhere, a studio, a sky, or a picture.")
             .glyph("◎")
             .factor(1.0, 10.0)
             .with_extent()
@@ -169,17 +191,18 @@ impl LightType for Environment {
     }
 
     fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
-        let d = match self.source {
-            STUDIO => studio::sample(u),
-            SKY => self.sky.sample(u),
+        let d = match (self.source, self.picture()) {
+            (STUDIO, _) => studio::sample(u),
+            (SKY, _) => self.sky.sample(u),
+            (FILE, Some(picture)) => picture.sample(u).0,
             _ => sampling::sphere(u),
         };
         let (luminance, pdf) = self.at(d);
-        Sample { l: self.turned(d), radiance: Vec3::splat(light.intensity * luminance), pdf }
+        Sample { l: self.turned(d), radiance: light.intensity * luminance, pdf }
     }
 
     fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
         let (luminance, pdf) = self.at(self.turned_back(l));
-        Seen { radiance: Vec3::splat(light.intensity * luminance), pdf, distance: f32::INFINITY }
+        Seen { radiance: light.intensity * luminance, pdf, distance: f32::INFINITY }
     }
 }

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 
 use crate::{
     optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
-    parameter::{Parameter, ParameterSet, Table, TypeComponent, Values, words},
+    parameter::{Parameter, ParameterSet, Table, TypeComponent, Value, Values, words},
     shader::Source,
 };
 
@@ -23,6 +23,7 @@ mod environment;
 pub mod extent;
 mod factor;
 pub mod ies;
+pub mod panorama;
 mod photometric;
 mod point;
 mod rectangle;
@@ -418,13 +419,17 @@ impl LightEntry {
         words
     }
 
-    /// The files of a light, each with the place of its parameter among the [`words`](Self::words).
+    /// The files that a light uses, each with the place of its parameter among the [`words`](Self::words).
     #[must_use]
     pub fn tables(&self, values: &Values) -> Vec<(usize, Table)> {
         let mut at = 0;
         let mut tables = Vec::new();
         for p in self.parameters {
-            tables.extend(values.table(p).map(|table| (at, table)));
+            let is_used = p.used_when.is_none_or(|condition| {
+                let other = self.parameter(condition.parameter).map(|other| values.get(other));
+                matches!(other, Some(Value::Choice(id)) if condition.choices.contains(&&*id))
+            });
+            tables.extend(values.table(p).filter(|_| is_used).map(|table| (at, table)));
             at += words(std::slice::from_ref(p), values, Encoding::default()).len();
         }
         tables

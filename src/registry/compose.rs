@@ -20,7 +20,7 @@ use crate::{
         Source,
         compose::{
             ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP,
-            OPTICS, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
+            OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -226,8 +226,8 @@ fn light_number(light: Light, i: u32) -> f32 {
 }
 
 /// The files that every source for drawing needs beside the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 11] =
-    [ALBEDO, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
+pub(crate) const SHARED: [Source; 12] =
+    [ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
 
 /// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -244,8 +244,8 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
         c.push("(lobes)", NO_LOBES);
     }
     push_light(&mut c, light);
-    let tables = light.tables(&Values::default());
-    let numbers = tables.iter().map(|(_, table)| table.numbers.len()).sum::<usize>().max(1);
+    let tables = light.parameters.iter().filter_map(|p| Values::default().table(p));
+    let numbers = tables.map(|table| table.numbers.len()).sum::<usize>().max(1);
     let extent = light.declaration.extent;
     let call = |twin: &Twin| {
         let name = if extent { format!("{}_light", twin.name) } else { twin.name.to_owned() };
@@ -443,7 +443,7 @@ pub fn files(
 ) -> Vec<File> {
     let known = OPTICS
         .iter()
-        .chain([&ALBEDO])
+        .chain([&ALBEDO, &PANORAMA])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
         .chain([

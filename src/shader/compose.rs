@@ -2,7 +2,8 @@
 //! author's file.
 //!
 //! Any file may import another one of the author's: the line `#import "noise.wgsl"`, with a path relative to the
-//! importing file's folder, puts that file before it, once per composed source however often it is imported.
+//! importing file's folder, puts that file before it, once per composed source however often it is imported. Of the
+//! built-in files, [`PANORAMA`] can be imported.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -25,6 +26,8 @@ pub const OPTICS: &[Source] = &[
 ];
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
+/// Pictures of the surroundings, for light types that import it.
+pub const PANORAMA: Source = wgsl!("optics/panorama.wgsl");
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// Directions chosen at random, for light with extent.
@@ -233,7 +236,8 @@ impl<'a> Composer<'a> {
         if !self.done.insert(path.clone()) {
             return;
         }
-        match self.sources.get(&path) {
+        let built_in = (path == PANORAMA.path).then_some(PANORAMA.text);
+        match self.sources.get(&path).or(built_in) {
             Some(text) if self.composed.text.len() + text.len() > super::limits::LIMITS.bytes => self
                 .complain(
                     from,

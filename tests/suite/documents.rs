@@ -7,7 +7,7 @@ use glam::Vec3;
 use lights_camera_models::{
     channel::DebugChannel,
     explain, lesson,
-    light::{MAX_LIGHTS, ies},
+    light::{MAX_LIGHTS, ies, panorama},
     matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Parameter, Value, Values},
@@ -486,6 +486,15 @@ fn scene_limits() -> String {
         (
             "a photometric file",
             format!("{}, {} candela values", mib(ies::FORMAT.max_bytes), ies::MAX_CANDELAS),
+        ),
+        (
+            "a picture of surroundings",
+            format!(
+                "{}, {} × {} pixels",
+                mib(panorama::FORMAT.max_bytes),
+                panorama::MAX_FILE_COLUMNS,
+                panorama::MAX_FILE_COLUMNS / 2
+            ),
         ),
     ];
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))

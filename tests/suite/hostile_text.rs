@@ -13,7 +13,7 @@ use std::{
 use lights_camera_models::{
     custom,
     lesson::{Condition, Lesson},
-    light::ies,
+    light::{ies, panorama},
     panel::{progress, settings},
     recovery::Store,
     registry::Registry,
@@ -254,6 +254,34 @@ fn readers() -> Vec<Reader> {
             read: |bytes| (ies::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
         },
         Reader {
+            name: "head of a picture of surroundings",
+            around: ["#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n".into(), "\n-Y 1 +X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &["#a\n", "EXPOSURE=1\n", "COLORCORR=1 1 1\n", "a=b\n", "1 "],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "size of a picture of surroundings",
+            around: ["#?RADIANCE\n\n-Y 1 ".into(), "+X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &["-Y 1 ", "1 ", "+X 2\n"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "pixels of a picture of surroundings",
+            around: ["#?RADIANCE\n\n-Y 128 +X 256\n".into(), String::new()],
+            pairs: &[],
+            phrases: &["\u{1}\u{1}\u{1}\u{1}", "\u{2}\u{2}\u{4}\0", "aaaa"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "OpenEXR picture",
+            around: ["v/1\u{1}\u{2}\0\0\0".into(), String::new()],
+            pairs: &[],
+            phrases: &["a\0string\0\u{1}\0\0\0a", "channels\0chlist\0\u{1}\0\0\0\0", "a\0"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
             name: "OBJ file",
             around: ["v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n".into(), "\n".into()],
             pairs: &[],
@@ -397,7 +425,11 @@ fn what_is_put_around_hostile_text_is_read() {
             "view block" => "active: A",
             "point block" => "knob: exposure",
             "task" => "probe.pinned",
-            "photometric file" | "OBJ file" | "head of a photometric file" => "",
+            "photometric file"
+            | "OBJ file"
+            | "head of a photometric file"
+            | "head of a picture of surroundings"
+            | "size of a picture of surroundings" => "",
             "condition" => "not ",
             "table" => "object,d,sphere,1,2 2 2\n",
             "list in a scene" => "{\"type\": \"point\", \"position\": [1, 1, 1]}, ",

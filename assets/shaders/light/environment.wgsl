@@ -1,8 +1,11 @@
-// Environment: light from all around, infinitely far away: uniform, a studio of three softboxes, or the CIE general sky
+#import "../optics/panorama.wgsl"
+
+// Environment: light from all around, infinitely far away: uniform, a studio of three softboxes, a picture, or the CIE general sky
 // (CIE S 011 / ISO 15469). The twin of environment.rs, studio.rs and sky.rs in src/light.
 
 const ENVIRONMENT_STUDIO: u32 = 1u;
 const ENVIRONMENT_SKY: u32 = 2u;
+const ENVIRONMENT_FILE: u32 = 3u;
 
 // The luminance of a direction, and the density at which it is sampled.
 struct EnvironmentSeen {
@@ -90,12 +93,16 @@ fn sky_sample(m: EnvironmentParameters, u: vec2<f32>) -> vec3<f32> {
     return vec3(up.x, up.z, up.y);
 }
 
-fn environment_seen(m: EnvironmentParameters, d: vec3<f32>) -> EnvironmentSeen {
+// The radiance of a direction, and in w its density.
+fn environment_seen(m: EnvironmentParameters, d: vec3<f32>) -> vec4<f32> {
+    var seen = EnvironmentSeen(1.0, 1.0 / (4.0 * PI));
     switch m.source {
-        case ENVIRONMENT_STUDIO: { return studio_seen(d); }
-        case ENVIRONMENT_SKY: { return sky_seen(m, d); }
-        default: { return EnvironmentSeen(1.0, 1.0 / (4.0 * PI)); }
+        case ENVIRONMENT_STUDIO: { seen = studio_seen(d); }
+        case ENVIRONMENT_SKY: { seen = sky_seen(m, d); }
+        case ENVIRONMENT_FILE: { return panorama_seen(m.path, d); }
+        default: {}
     }
+    return vec4(vec3(seen.luminance), seen.pdf);
 }
 
 fn sample_environment(light: Light, m: EnvironmentParameters, p: vec3<f32>, u: vec2<f32>) -> LightSample {
@@ -103,15 +110,16 @@ fn sample_environment(light: Light, m: EnvironmentParameters, p: vec3<f32>, u: v
     switch m.source {
         case ENVIRONMENT_STUDIO: { d = studio_sample(u); }
         case ENVIRONMENT_SKY: { d = sky_sample(m, u); }
+        case ENVIRONMENT_FILE: { d = panorama_sample(m.path, u).xyz; }
         default: { d = sample_cone(u, 2.0); }
     }
     let seen = environment_seen(m, d);
     let l = vec3(d.x * m.turn_cosine + d.z * m.turn_sine, d.y, d.z * m.turn_cosine - d.x * m.turn_sine);
-    return LightSample(l, vec3(light.intensity * seen.luminance), seen.pdf);
+    return LightSample(l, light.intensity * seen.rgb, seen.w);
 }
 
 fn seen_environment(light: Light, m: EnvironmentParameters, p: vec3<f32>, l: vec3<f32>) -> LightSeen {
     let d = vec3(l.x * m.turn_cosine - l.z * m.turn_sine, l.y, l.x * m.turn_sine + l.z * m.turn_cosine);
     let seen = environment_seen(m, d);
-    return LightSeen(vec3(light.intensity * seen.luminance), seen.pdf, -1.0);
+    return LightSeen(light.intensity * seen.rgb, seen.w, -1.0);
 }

@@ -18,22 +18,9 @@ fn web_angles(axis: vec3<f32>, rotation: f32, d: vec3<f32>) -> vec2<f32> {
         zero = vec3(-axis.y + axis.z * tilt, axis.x, -axis.x * tilt);
     }
     let across = vec2(dot(d, zero), dot(d, cross(zero, axis)));
-    let gamma = degrees(web_angle(dot(d, axis), length(across)));
-    let c = (degrees(web_angle(across.x, across.y)) - rotation) / 360.0;
+    let gamma = degrees(polar_angle(dot(d, axis), length(across)));
+    let c = (degrees(polar_angle(across.x, across.y)) - rotation) / 360.0;
     return vec2(clamp(gamma, 0.0, 180.0), clamp(360.0 * (c - floor(c)), 0.0, 360.0));
-}
-
-// The angle of a point from the x axis, −π to π; the built-in atan2 may be off by 4096 units in the last place.
-fn web_angle(x: f32, y: f32) -> f32 {
-    let distance = sqrt(x * x + y * y);
-    if distance < 1e-7 {
-        return 0.0;
-    }
-    let a = abs(x) / distance;
-    let b = abs(y) / distance;
-    var angle = select(0.5 * PI - arc_sine(a), arc_sine(b), b < a);
-    angle = select(angle, PI - angle, x < 0.0);
-    return select(angle, -angle, y < 0.0);
 }
 
 // The candelas at γ and C, interpolated linearly in both; none beyond the vertical angles of the file.

@@ -25,6 +25,19 @@ fn arc_sine(x: f32) -> f32 {
     return x * (1.0 + x2 * (1.0 / 6.0 + x2 * (3.0 / 40.0 + x2 * (5.0 / 112.0 + x2 * 35.0 / 1152.0))));
 }
 
+// The angle of a point from the x axis, −π to π; the built-in atan2 may be off by 4096 units in the last place.
+fn polar_angle(x: f32, y: f32) -> f32 {
+    let distance = sqrt(x * x + y * y);
+    if distance < 1e-7 {
+        return 0.0;
+    }
+    let a = abs(x) / distance;
+    let b = abs(y) / distance;
+    var angle = select(0.5 * PI - arc_sine(a), arc_sine(b), b < a);
+    angle = select(angle, PI - angle, x < 0.0);
+    return select(angle, -angle, y < 0.0);
+}
+
 fn sine_of(cosine: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     return sqrt((1.0 - c) * (1.0 + c));

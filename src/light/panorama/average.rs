@@ -1,0 +1,150 @@
+//! The pixels of a file, checked, and averaged down to the picture that renderers see.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec3, Vec3};
+
+use crate::optics::colour::LUMINANCE;
+
+/// The most columns of a picture in a file; half as many rows.
+pub const MAX_FILE_COLUMNS: usize = 8192;
+/// The most columns that renderers see; half as many rows.
+pub const MAX_COLUMNS: usize = 1024;
+/// The largest value of a pixel, cd/m²: the sun has 1.6 × 10⁹.
+pub const MAX_LUMINANCE: f32 = 1e12;
+
+/// Below this integral of the luminance, a picture is dark: shader processors may take smaller numbers for zero.
+const DARK: f64 = 1e-30;
+
+/// Collects the pixels of a file in any order.
+#[derive(Clone, Debug)]
+pub(super) struct Average {
+    /// Columns and rows.
+    size: [usize; 2],
+    /// For each column of the file, the columns in which it counts, and its weights.
+    columns: Vec<[(usize, f64); 2]>,
+    /// The same for rows.
+    rows: Vec<[(usize, f64); 2]>,
+    sums: Vec<DVec3>,
+    /// Values of the file times this are cd/m².
+    scale: DVec3,
+    /// The first illegal value: row, column and message.
+    problem: Option<(usize, usize, String)>,
+}
+
+impl Average {
+    /// The average for a file with that many columns and rows, no pixel of which is known yet.
+    pub(super) fn new(width: usize, height: usize) -> Result<Self, String> {
+        let [most, half] = [MAX_FILE_COLUMNS, MAX_FILE_COLUMNS / 2];
+        if height == 0 || width > most || height > half || width != 2 * height {
+            return Err(format!(
+                "it has {width} × {height} pixels, but an equirectangular picture is twice as wide as high, from 2 × 1 to \
+                 {most} × {half} pixels"
+            ));
+        }
+        let columns = width.min(MAX_COLUMNS);
+        let size = [columns, columns / 2];
+        Ok(Self {
+            size,
+            columns: shares(width, columns, |from, to| (to - from) as f64),
+            rows: shares(height, size[1], |from, to| band(from, to, height * size[1])),
+            sums: vec![DVec3::ZERO; columns * size[1]],
+            scale: DVec3::ONE,
+            problem: None,
+        })
+    }
+
+    /// The same for a file whose values times `scale` are cd/m².
+    pub(super) fn scaled(self, scale: DVec3) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// Counts a pixel of the file; those outside are ignored.
+    pub(super) fn add(&mut self, column: usize, row: usize, colour: [f32; 3]) {
+        let (Some(columns), Some(rows)) = (self.columns.get(column), self.rows.get(row)) else { return };
+        let colour = DVec3::from_array(colour.map(f64::from)) * self.scale;
+        let legal = 0.0..=f64::from(MAX_LUMINANCE);
+        if let Some((value, name)) = colour
+            .to_array()
+            .into_iter()
+            .zip(["red", "green", "blue"])
+            .find(|(value, _)| !legal.contains(value))
+        {
+            if self.problem.as_ref().is_none_or(|(r, c, _)| (row, column) < (*r, *c)) {
+                let message = format!(
+                    "the pixel in column {}, row {} has {name} {:?}; values must be numbers from 0 to {MAX_LUMINANCE:e} cd/m²",
+                    column + 1,
+                    row + 1,
+                    value as f32
+                );
+                self.problem = Some((row, column, message));
+            }
+            return;
+        }
+        for (j, height) in rows {
+            for (i, width) in columns {
+                if height * width > 0.0 {
+                    self.sums[j * self.size[0] + i] += colour * (height * width);
+                }
+            }
+        }
+    }
+
+    /// The numbers for renderers.
+    pub(super) fn numbers(self) -> Result<Vec<f32>, String> {
+        if let Some((.., message)) = self.problem {
+            return Err(message);
+        }
+        let [columns, rows] = self.size;
+        let pixels: Vec<Vec3> = self.sums.iter().map(|sum| sum.as_vec3()).collect();
+        let solid = |row: usize| TAU / columns as f64 * band(row, row + 1, rows);
+        let light =
+            |(i, pixel): (usize, &Vec3)| LUMINANCE.as_dvec3().dot(pixel.as_dvec3()) * solid(i / columns);
+        let mut weights: Vec<f64> = pixels.iter().enumerate().map(light).collect();
+        let mut total: f64 = weights.iter().sum();
+        if total < DARK {
+            total = 0.0;
+            weights = (0..pixels.len()).map(|i| solid(i / columns)).collect();
+        }
+        let of_rows: Vec<f64> = weights.chunks(columns).map(|row| row.iter().sum()).collect();
+        let mut numbers = vec![columns as f32, rows as f32, total as f32];
+        numbers.extend(cumulative(&of_rows));
+        weights.chunks(columns).for_each(|row| numbers.extend(cumulative(row)));
+        numbers.extend(pixels.iter().flat_map(|pixel| pixel.to_array()));
+        Ok(numbers)
+    }
+}
+
+/// For each of `from` equal parts of a whole, those of the `to` ≤ `from` equal parts of it that it lies in, and its share of
+/// them. `measure` is the size of a range in units of 1/(`from` × `to`) of the whole.
+fn shares(from: usize, to: usize, measure: impl Fn(usize, usize) -> f64) -> Vec<[(usize, f64); 2]> {
+    let share = |begin: usize, end: usize, i: usize| {
+        if begin < end { measure(begin, end) / measure(i * from, (i + 1) * from) } else { 0.0 }
+    };
+    let part = |x: usize| {
+        let (begin, end) = (x * to, (x + 1) * to);
+        let i = begin / from;
+        let edge = end.min((i + 1) * from);
+        let next = (i + 1).min(to - 1);
+        [(i, share(begin, edge, i)), (next, share(edge, end, next))]
+    };
+    (0..from).map(part).collect()
+}
+
+/// The solid angle between two polar angles over 2π: the difference of their cosines. The angles are in units of π/`n`.
+fn band(from: usize, to: usize, n: usize) -> f64 {
+    let unit = 0.5 * PI / n as f64;
+    2.0 * ((from + to) as f64 * unit).sin() * ((to - from) as f64 * unit).sin()
+}
+
+/// The share of a sum before each of its summands, and 1 at the end; equal shares if all are zero.
+fn cumulative(summands: &[f64]) -> impl Iterator<Item = f32> {
+    let total: f64 = summands.iter().sum();
+    let mut before = 0.0;
+    let begins = summands.iter().enumerate().map(move |(i, summand)| {
+        let share = if total > 0.0 { before / total } else { i as f64 / summands.len() as f64 };
+        before += summand;
+        share.min(1.0) as f32
+    });
+    begins.chain([1.0])
+}

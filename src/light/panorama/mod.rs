@@ -1,0 +1,115 @@
+//! Panoramas: pictures of the surroundings, which give the light from every direction and pick directions by it.
+//!
+//! Pictures are equirectangular, seen from inside: the top row looks up (+y), the middle along −z, and +x is to the right
+//! of the middle. A pixel is constant over its solid angle; nothing is interpolated, so that the probability density of a
+//! direction is exact.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Vec2, Vec3};
+
+use crate::{optics::colour::luminance, parameter::FileFormat};
+
+mod average;
+mod read;
+
+pub use average::{MAX_COLUMNS, MAX_FILE_COLUMNS, MAX_LUMINANCE};
+
+/// Pictures of surroundings in Radiance's and OpenEXR's formats, told apart by their first bytes. Their values are cd/m²,
+/// linear Rec. 709. Of one, renderers read
+///
+/// 1. the number of columns, of rows, and the integral of the luminance over all directions (0: sample uniformly);
+/// 2. one number more than there are rows: the share of rows above, from 0 to 1;
+/// 3. for each row one number more than there are columns: the share of the pixels to the left, from 0 to 1;
+/// 4. red, green and blue of each pixel, row by row.
+///
+/// The shares are of luminance times solid angle. Pictures with more than [`MAX_COLUMNS`] columns are averaged down to that
+/// many, each pixel counted by its solid angle, so that all numbers are 8.4 MB: graphics cards guarantee a buffer of
+/// 128 MiB for all files of a scene, and both renderers then see the same light.
+pub static FORMAT: FileFormat = FileFormat {
+    name: "an equirectangular Radiance (.hdr) or OpenEXR (.exr) picture",
+    extensions: &["hdr", "exr"],
+    max_bytes: 256 << 20,
+    read: read::read,
+    shipped: &[("room.hdr", include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/room.hdr")))],
+};
+
+/// A picture as [`FORMAT`] gives it.
+#[derive(Clone, Copy, Debug)]
+pub struct Panorama<'a> {
+    columns: usize,
+    rows: usize,
+    /// The integral of the luminance over all directions.
+    total: f32,
+    /// The shares of the rows above.
+    above: &'a [f32],
+    /// The shares of the pixels to the left, row by row.
+    left: &'a [f32],
+    /// Red, green and blue, row by row.
+    pixels: &'a [f32],
+}
+
+impl<'a> Panorama<'a> {
+    /// The picture in the numbers of a file; none if they are not from one.
+    #[must_use]
+    pub fn new(numbers: &'a [f32]) -> Option<Self> {
+        let [columns, rows, total, rest @ ..] = numbers else { return None };
+        let [columns, rows] = [*columns, *rows].map(|count| count as usize);
+        if !(1..=MAX_COLUMNS).contains(&columns) || !(1..=MAX_COLUMNS).contains(&rows) {
+            return None;
+        }
+        let (above, rest) = rest.split_at_checked(rows + 1)?;
+        let (left, pixels) = rest.split_at_checked(rows * (columns + 1))?;
+        let is_whole = pixels.len() == 3 * columns * rows;
+        is_whole.then_some(Self { columns, rows, total: *total, above, left, pixels })
+    }
+
+    /// The light from a unit direction, cd/m².
+    #[must_use]
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
+        let sin = direction.x.hypot(direction.z);
+        // As in the shader: the column in the middle at the poles, and the last one straight behind, whatever the sign of zero.
+        let phi = if sin < 1e-7 { 0.0 } else { (direction.x + 0.0).atan2(-direction.z) };
+        let across = 0.5 + phi / TAU;
+        let down = sin.atan2(direction.y) / PI;
+        let [column, row] = [(across, self.columns), (down, self.rows)]
+            .map(|(place, count)| ((place * count as f32) as usize).min(count - 1));
+        Vec3::from_slice(&self.pixels[3 * (row * self.columns + column)..])
+    }
+
+    /// The probability density of a direction in [`sample`](Self::sample), sr⁻¹: in proportion to its luminance.
+    #[must_use]
+    pub fn pdf(&self, direction: Vec3) -> f32 {
+        self.pdf_of(self.radiance(direction))
+    }
+
+    fn pdf_of(&self, radiance: Vec3) -> f32 {
+        if self.total == 0.0 { 0.5 / TAU } else { luminance(radiance) / self.total }
+    }
+
+    /// A direction for a point of the unit square, with the light from there and the probability density.
+    #[must_use]
+    pub fn sample(&self, u: Vec2) -> (Vec3, Vec3, f32) {
+        let (row, v) = place(self.above, u.y);
+        let (column, s) = place(&self.left[row * (self.columns + 1)..][..=self.columns], u.x);
+        let [up, down] = [row, row + 1].map(|edge| (PI * edge as f32 / self.rows as f32).cos());
+        let cos = up + v * (down - up);
+        let sin = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
+        let phi = TAU * (column as f32 + s) / self.columns as f32;
+        let direction = Vec3::new(-sin * phi.sin(), cos, sin * phi.cos());
+        // A direction at an edge may count to the next pixel by rounding: its own light and density belong together.
+        let radiance = self.radiance(direction);
+        (direction, radiance, self.pdf_of(radiance))
+    }
+}
+
+/// The last bin that begins at `u` or before, and the place of `u` within it.
+fn place(begins: &[f32], u: f32) -> (usize, f32) {
+    // The largest number below 1.
+    let u = u.clamp(0.0, 1.0 - 0.5 * f32::EPSILON);
+    let i = begins.partition_point(|begin| *begin <= u).clamp(1, begins.len() - 1) - 1;
+    (i, ((u - begins[i]) / (begins[i + 1] - begins[i])).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests;
