@@ -539,7 +539,7 @@ mod tests {
         assert_eq!(of(Part::Loop), [("loop.wgsl", true), ("extended.wgsl", false)]);
         assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
         assert_eq!(of(Part::LightType).len(), registry.lights().len());
-        assert_eq!(of(Part::Vocabulary).len(), OPTICS.len() + 1, "and sampling.wgsl");
+        assert_eq!(of(Part::Vocabulary).len(), OPTICS.len() + 2, "and those of light with extent");
         assert_eq!(of(Part::Wrapper), [("display.wgsl", false), ("wrapper.wgsl", false)]);
         for part in [Part::LightRecord, Part::Stages, Part::Channels] {
             assert_eq!(of(part).len(), 1, "{part:?}");

@@ -42,7 +42,7 @@ fn panorama_sample(table: u32, u: vec2<f32>) -> vec4<f32> {
     let around = panorama_turn((column.x + column.y) / f32(columns)) * sine_of(abs(cosine));
     let d = vec3(-around.y, cosine, around.x);
     // A direction at an edge may count to the next pixel by rounding: its own density belongs to it.
-    return vec4(d, panorama_pdf(table, d));
+    return vec4(d, panorama_seen(table, d).w);
 }
 
 // The last of `count` bins that begins at u or before, and the place of u within it.

@@ -413,6 +413,9 @@ fn illumination_number(i: u32) -> f32 {{
 ",
             lights.numbers.len().div_ceil(4)
         );
+    } else if lights.has_extent() {
+        // Surroundings may have a picture.
+        text.push_str("fn illumination_number(i: u32) -> f32 {\n    return 0.0;\n}\n");
     }
     text
 }
