@@ -24,7 +24,7 @@ use crate::{
     light::Incident,
     optics::colour::luminance,
     registry::Registry,
-    scene::{Light, Scene, record},
+    scene::{Light, Scene, emitter},
 };
 
 pub mod colours;
@@ -309,9 +309,7 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
     let encoding = scene.display.encoding;
     // The luminance of what arrives there, if it counts.
     let arriving = |light: &Light| {
-        let entry = registry.light(&light.light_type)?;
-        let record = record(light, registry, encoding);
-        let emitter = (entry.instantiate)(&light.parameters, encoding);
+        let (_, emitter, record) = emitter(light, registry, encoding)?;
         let intensity = match emitter.incident(&record, middle) {
             Incident::From { intensity, .. } => intensity,
             Incident::Uniform { intensity } if channel.is_picture() => intensity,

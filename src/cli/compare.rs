@@ -1,9 +1,6 @@
 //! `lcm compare`: the difference between two views, or two files, as numbers and as a picture.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -15,14 +12,14 @@ use super::{
     views::{Choice, find},
     workshop::{Workshop, drawable},
 };
-use crate::files::{Shown as _, words};
+use crate::files::Shown as _;
 use crate::{
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     export::write::inputs,
     failure::Failure,
     reference::Settings,
     registry::Registry,
-    render::capture::png::{self, About},
+    render::capture::png::About,
     scene::{
         Comparison, Scene,
         comparison::{Compared, Layout},
@@ -365,12 +362,9 @@ fn about(read: &[Input], comparison: Comparison, registry: &Registry) -> About {
     about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"))
 }
 
-fn write(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
+fn write(output: &Path, size: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
     outputs::tidy_beside(output);
-    png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
-        io::ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(&e))),
-    })
+    outputs::write_picture(output, size, rgb8, about)
 }
 
 /// The comparison, and the views that it shows: those of a scene, or view A of each input.

@@ -1,7 +1,6 @@
 //! `lcm explain`: the colour of a pixel with every number behind it.
 
 use std::{
-    io,
     path::{Path, PathBuf},
     str::FromStr,
 };
@@ -21,11 +20,10 @@ use crate::{
         hemisphere::{Hemisphere, Shining},
     },
     failure::Failure,
-    files::{Shown as _, words},
     optics::TermSelection,
     reference::{Settings, ignored_edits},
     registry::Registry,
-    render::capture::png::{self, About},
+    render::capture::png::About,
     scene::{Scene, variant::LETTERS},
     text::listed,
 };
@@ -192,12 +190,8 @@ fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcom
     let found = Hemisphere::new(&shining, surface, spot, explained.settings.terms, SIDE).picture();
     let about =
         About::program().with("Title", "The hemisphere above a point").with("Description", found.about);
-    let [width, height] = found.size;
     outputs::tidy_beside(file);
-    png::write(file, width, height, &found.rgb8, &about).map_err(|error| match error.kind() {
-        io::ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::Write(format!("{} could not be written: {}", file.shown(), words(&error))),
-    })
+    outputs::write_picture(file, found.size, &found.rgb8, &about)
 }
 
 #[cfg(test)]

@@ -2,13 +2,18 @@
 
 use std::{
     ffi::OsString,
+    io,
     path::{Path, PathBuf},
 };
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{Outcome, complain};
-use crate::{failure::Failure, files};
+use crate::{
+    failure::Failure,
+    files::{self, Shown as _, words},
+    render::capture::png::{self, About},
+};
 
 /// The parser of all files and folders that commands write. `-` is none: where standard output is meant, it has a name.
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
@@ -40,6 +45,14 @@ pub(super) fn of_format(output: &Path, format: files::Signature, inputs: &[PathB
 
 fn refused(refused: files::Refused) -> Failure {
     Failure::Write(refused.to_string())
+}
+
+/// Writes a picture whose place was allowed before.
+pub(super) fn write_picture(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
+    png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
+        io::ErrorKind::BrokenPipe => Failure::Closed,
+        _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(&e))),
+    })
 }
 
 /// Tidies the folder of a file to be written, and reports problems that need a person.

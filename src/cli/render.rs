@@ -2,7 +2,6 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    io,
     path::{Path, PathBuf},
     str::FromStr,
     sync::atomic::AtomicBool,
@@ -25,7 +24,7 @@ use crate::{
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
-    files::{Kind, is_descriptor, kind as kind_on_disk, printable, words},
+    files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference::{self, Reached, Until},
     reflection::ends::check_that_it_ends,
@@ -33,7 +32,7 @@ use crate::{
     render::{
         capture::{
             gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
-            png::{self, About},
+            png::About,
         },
         trial::{
             Bench,
@@ -482,11 +481,8 @@ impl Painter {
             None => about,
         };
         let about = if job.with_scene { about } else { about.without_scene() };
-        let (rgb8, [width, height]) = captioned(job, registry, rgb8);
-        png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
-            io::ErrorKind::BrokenPipe => Failure::Closed,
-            _ => Failure::Write(format!("{} could not be written: {}", job.file.shown(), words(&e))),
-        })?;
+        let (rgb8, size) = captioned(job, registry, rgb8);
+        outputs::write_picture(job.file, size, &rgb8, &about)?;
         Ok(remarks)
     }
 

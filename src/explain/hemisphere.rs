@@ -9,7 +9,7 @@ use crate::{
     optics::{Frame, TermSelection, geometry::mirror},
     reflection::Surface,
     registry::Registry,
-    scene::{Light, Scene, record},
+    scene::{Light, Scene, emitter},
 };
 
 mod picture;
@@ -78,12 +78,11 @@ impl Shining {
     #[must_use]
     pub fn new(scene: &Scene, registry: &Registry) -> Self {
         let encoding = scene.display.encoding;
-        let emitter = |light: &Light| {
-            let entry = registry.light(&light.light_type)?;
-            let emitter = (entry.instantiate)(&light.parameters, encoding);
-            Some((emitter, record(light, registry, encoding), entry.declaration.extent))
+        let lamp = |light: &Light| {
+            let (entry, emitter, record) = emitter(light, registry, encoding)?;
+            Some((emitter, record, entry.declaration.extent))
         };
-        Self(scene.shining().filter_map(emitter).collect())
+        Self(scene.shining().filter_map(lamp).collect())
     }
 
     /// The luminance that arrives from lights with extent.

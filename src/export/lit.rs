@@ -258,8 +258,7 @@ impl<'a> Lit<'a> {
             Vec::new()
         };
         let lobes = if shader.reads_lobes {
-            let rows = model.instantiate(&values, encoding).lobes().rows();
-            rows.iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
+            model.instantiate(&values, encoding).lobes().bytes()
         } else {
             Vec::new()
         };

@@ -27,8 +27,8 @@ parameters! {
         length: number = LENGTH,
         /// Its radius, metres.
         radius: number = RADIUS,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     }
 }
 

@@ -20,10 +20,10 @@ parameters! {
     pub struct Disc {
         /// Its radius, metres.
         radius: number = RADIUS,
-        /// 1 if it shines to both sides.
-        two_sided: choice = TWO_SIDED,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it shines to both sides.
+        two_sided: flag = TWO_SIDED,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     }
 }
 
@@ -47,7 +47,7 @@ impl LightType for Disc {
         let on = disc(u) * self.radius;
         let at = light.position + x * on.x + y * on.y - p;
         let l = at.normalize_or_zero();
-        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
+        if !extent::shines(-l.dot(light.direction), self.two_sided) {
             return Sample::default();
         }
         let pdf = area_pdf(at, light.direction, self.area());
@@ -55,16 +55,9 @@ impl LightType for Disc {
     }
 
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
-        let facing = -l.dot(light.direction);
-        if !extent::shines(facing, self.two_sided == 1) {
-            return Seen::NOTHING;
-        }
-        let middle = light.position - p;
-        let distance = middle.dot(light.direction) / -facing;
-        let beside = l * distance - middle;
-        if distance.is_nan() || distance <= 0.0 || beside.length_squared() > self.radius * self.radius {
-            return Seen::NOTHING;
-        }
+        let hit = extent::on_plane(light, p, l, self.two_sided);
+        let within = |beside: Vec3| beside.length_squared() <= self.radius * self.radius;
+        let Some((distance, _)) = hit.filter(|(_, beside)| within(*beside)) else { return Seen::NOTHING };
         let pdf = area_pdf(l * distance, light.direction, self.area());
         Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
     }
@@ -75,6 +68,6 @@ impl LightType for Disc {
 
     fn solid_angle(&self) -> Option<f64> {
         let radius = f64::from(self.radius);
-        Some(extent::flux(std::f64::consts::PI * radius * radius, self.two_sided == 1))
+        Some(extent::flux(std::f64::consts::PI * radius * radius, self.two_sided))
     }
 }

@@ -110,8 +110,8 @@ parameters! {
         zenith_luminance: number = ZENITH_LUMINANCE,
         /// The reflectance of the ground.
         ground_reflectance: number = GROUND_REFLECTANCE,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     } derived {
         /// Sine and cosine of the turn.
         turn: Vec2 = |this: &Self| Vec2::from(this.rotation.to_radians().sin_cos()),
@@ -146,7 +146,7 @@ impl Environment {
         let (luminance, pdf) = match (self.source, self.picture()) {
             (STUDIO, _) => studio::seen(d),
             (SKY, _) => self.sky.seen(d),
-            (FILE, Some(picture)) => return (picture.radiance(d), picture.pdf(d)),
+            (FILE, Some(picture)) => return picture.seen(d),
             _ => (1.0, 1.0 / (4.0 * PI)),
         };
         (Vec3::splat(luminance), pdf)
@@ -191,13 +191,16 @@ impl LightType for Environment {
     }
 
     fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
-        let d = match (self.source, self.picture()) {
-            (STUDIO, _) => studio::sample(u),
-            (SKY, _) => self.sky.sample(u),
-            (FILE, Some(picture)) => picture.sample(u).0,
-            _ => sampling::sphere(u),
+        let at = |d| {
+            let (luminance, pdf) = self.at(d);
+            (d, luminance, pdf)
         };
-        let (luminance, pdf) = self.at(d);
+        let (d, luminance, pdf) = match (self.source, self.picture()) {
+            (STUDIO, _) => at(studio::sample(u)),
+            (SKY, _) => at(self.sky.sample(u)),
+            (FILE, Some(picture)) => picture.sample(u),
+            _ => at(sampling::sphere(u)),
+        };
         Sample { l: self.turned(d), radiance: light.intensity * luminance, pdf }
     }
 

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::LightRecord;
 use crate::parameter::{Parameter, ParameterKind};
 
 /// A direction from a point to a light with extent, chosen at random.
@@ -69,6 +70,15 @@ pub(super) const UNTURNED: Vec2 = Vec2::Y;
 /// or to both.
 pub(super) fn shines(facing: f32, two_sided: bool) -> bool {
     facing > 0.0 || two_sided && facing < 0.0
+}
+
+/// Where a direction from a point meets the plane of a flat light with its middle there, if the light shines to that side: the
+/// distance, and the way from the middle.
+pub(super) fn on_plane(light: &LightRecord, p: Vec3, l: Vec3, two_sided: bool) -> Option<(f32, Vec3)> {
+    let facing = -l.dot(light.direction);
+    let middle = light.position - p;
+    let distance = middle.dot(light.direction) / -facing;
+    (shines(facing, two_sided) && distance > 0.0).then(|| (distance, l * distance - middle))
 }
 
 /// The most points of a sequence that a block of samples holds.

@@ -105,8 +105,8 @@ pub struct Declaration {
     pub extent: bool,
     /// The twin in WGSL: `fn incident_<id>(light: Light, m: <Id>Parameters, p: vec3<f32>) -> Incident`, where the
     /// struct has the parameters by name (see [`parameter_struct`](LightEntry::parameter_struct)); a type without
-    /// parameters has no `m`. A type with extent has `sample_<id>(light, m, p, u: vec2<f32>) -> Sample` and
-    /// `seen_<id>(light, m, p, l: vec3<f32>) -> Seen` instead.
+    /// parameters has no `m`. A type with extent has `sample_<id>(light, m, p, u: vec2<f32>) -> LightSample` and
+    /// `seen_<id>(light, m, p, l: vec3<f32>) -> LightSeen` instead.
     pub wgsl: Source,
 }
 

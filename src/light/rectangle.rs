@@ -26,10 +26,10 @@ parameters! {
         height: number = HEIGHT,
         /// The turn about its direction, degrees.
         roll: number = ROLL,
-        /// 1 if it shines to both sides.
-        two_sided: choice = TWO_SIDED,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it shines to both sides.
+        two_sided: flag = TWO_SIDED,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     } derived {
         /// Sine and cosine of the turn.
         turn: Vec2 = |this: &Self| Vec2::from(this.roll.to_radians().sin_cos()),
@@ -50,7 +50,7 @@ impl Rectangle {
     fn towards(&self, light: &LightRecord, seen: &SphericalRectangle, u: Vec2) -> Sample {
         let at = seen.sample(u);
         let l = at.normalize_or_zero();
-        if !extent::shines(-l.dot(light.direction), self.two_sided == 1) {
+        if !extent::shines(-l.dot(light.direction), self.two_sided) {
             return Sample::default();
         }
         Sample { l, radiance: Vec3::splat(light.intensity), pdf: seen.pdf(at) }
@@ -88,22 +88,10 @@ impl LightType for Rectangle {
     }
 
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
-        let facing = -l.dot(light.direction);
-        if !extent::shines(facing, self.two_sided == 1) {
-            return Seen::NOTHING;
-        }
-        let middle = light.position - p;
-        let distance = middle.dot(light.direction) / -facing;
-        let beside = l * distance - middle;
+        let hit = extent::on_plane(light, p, l, self.two_sided);
         let [x, y] = extent::sides(light.direction, self.turn);
-        let half = self.half();
-        if distance.is_nan()
-            || distance <= 0.0
-            || beside.dot(x).abs() > half.x
-            || beside.dot(y).abs() > half.y
-        {
-            return Seen::NOTHING;
-        }
+        let within = |beside: Vec3| Vec2::new(beside.dot(x), beside.dot(y)).abs().cmple(self.half()).all();
+        let Some((distance, _)) = hit.filter(|(_, beside)| within(*beside)) else { return Seen::NOTHING };
         let pdf = self.from(light, p).pdf(l * distance);
         Seen { radiance: Vec3::splat(light.intensity), pdf, distance }
     }
@@ -113,6 +101,6 @@ impl LightType for Rectangle {
     }
 
     fn solid_angle(&self) -> Option<f64> {
-        Some(extent::flux(f64::from(self.width) * f64::from(self.height), self.two_sided == 1))
+        Some(extent::flux(f64::from(self.width) * f64::from(self.height), self.two_sided))
     }
 }

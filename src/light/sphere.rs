@@ -15,8 +15,8 @@ parameters! {
     pub struct Sphere {
         /// Its radius, metres.
         radius: number = RADIUS,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     }
 }
 

@@ -28,8 +28,8 @@ parameters! {
     pub struct Sun {
         /// The angle that it fills, degrees.
         diameter: number = DIAMETER,
-        /// 1 if it is to be seen in the picture.
-        visible: choice = VISIBLE,
+        /// True if it is to be seen in the picture.
+        visible: flag = VISIBLE,
     } derived {
         /// The squared sine of its angular radius.
         sine_squared: f32 = |sun: &Self| sun.radius().sin().powi(2),

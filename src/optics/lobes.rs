@@ -214,6 +214,12 @@ impl Lobes {
         })
     }
 
+    /// The same as bytes.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        self.rows().iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
+    }
+
     /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may lie below the surface.
     #[must_use]
     pub fn sample(&self, u: Vec2, v: Vec3) -> Vec3 {

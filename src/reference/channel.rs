@@ -17,7 +17,7 @@ use crate::{
         viridis::viridis,
     },
     registry::Registry,
-    scene::{Scene, observer::clip_from_room, record},
+    scene::{Scene, emitter, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
@@ -45,8 +45,7 @@ impl Sight {
         let encoding = scene.display.encoding;
         let size = [settings.width as f32, settings.height as f32];
         let light = setting.light.and_then(|i| scene.shining().nth(i)).and_then(|light| {
-            let entry = registry.light(&light.light_type)?;
-            Some(((entry.instantiate)(&light.parameters, encoding), record(light, registry, encoding)))
+            emitter(light, registry, encoding).map(|(_, emitter, record)| (emitter, record))
         });
         Self(Arc::new(Parts {
             setting,

@@ -10,13 +10,18 @@ use crate::{
     optics::{Frame, TermSelection, Terms, radiometry::Arriving, sequence::pixel_seed},
     reflection::Surface,
     registry::Registry,
-    scene::{Light, Scene, record},
+    scene::{Light, Scene, emitter, record},
     shading::Lighting,
 };
 
 /// The light of any model is kept within these bounds, so that interpolating and adding it gives no infinity and no
 /// NaN.
-pub(super) const BRIGHTEST: f32 = 1e30;
+const BRIGHTEST: f32 = 1e30;
+
+/// Light within these bounds; what is not a number is dark.
+pub(super) fn within_bounds(light: Vec3) -> Vec3 {
+    light.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
+}
 
 /// All lights of a scene, ready for calculation.
 pub(super) struct Lights {
@@ -144,7 +149,7 @@ impl Lighting for LightsOn<'_> {
         if !sum.is_finite() {
             self.lights.odd.store(true, Ordering::Relaxed);
         }
-        sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
+        within_bounds(sum)
     }
 }
 
@@ -187,7 +192,7 @@ pub(crate) struct LitBy {
     pub(crate) integral: Option<Integral>,
 }
 
-/// The light loop at a point, light by light: each contribution is what the loop gives for that light alone.
+/// The light loop at a point, light by light: each contribution is what the loop gives for that light alone, up to rounding.
 pub(super) fn light_by_light(
     scene: &Scene,
     registry: &Registry,
@@ -204,45 +209,34 @@ pub(super) fn light_by_light(
     // The number of a light among those that shine and are known is that of its sequence.
     let known = shining.filter(|(_, light)| registry.light(&light.light_type).is_some()).enumerate();
     let lit_by = |(number, (index, light)): (usize, (usize, &Light))| {
-        let entry = registry.light(&light.light_type)?;
-        let record = record(light, registry, encoding);
-        let emitter = (entry.instantiate)(&light.parameters, encoding);
+        let (entry, emitter, record) = emitter(light, registry, encoding)?;
         let incident = emitter.incident(&record, point.position);
         let group = (entry.group)(&[(&light.parameters, record)], encoding);
-        let (mut groups, mut extended) = (Vec::new(), Extended::default());
-        if entry.declaration.extent {
-            extended.add(group, number as u32);
+        let (response, contribution, integral) = if entry.declaration.extent {
+            let mut alone = Extended::default();
+            alone.add(group, number as u32);
+            let integral =
+                alone.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
+            (integral.terms, integral.terms.select(terms), Some(integral))
         } else {
-            groups.push(group);
-        }
-        let integral = entry
-            .declaration
-            .extent
-            .then(|| extended.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed));
-        let alone = Lights {
-            groups,
-            extended,
-            observer: all.observer,
-            terms,
-            raw: false,
-            odd: AtomicBool::new(false),
+            let alone = Lights {
+                groups: vec![group],
+                extended: Extended::default(),
+                observer: all.observer,
+                terms,
+                raw: false,
+                odd: AtomicBool::new(false),
+            };
+            let response = match incident {
+                Incident::From { l, .. } => surface.response(l, v, &frame),
+                Incident::Uniform { .. } => {
+                    Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
+                }
+            };
+            (response, alone.on(surface).sum(point.position, v, &frame), None)
         };
-        let response = match incident {
-            _ if integral.is_some() => integral.map(|i| i.terms).unwrap_or_default(),
-            Incident::From { l, .. } => surface.response(l, v, &frame),
-            Incident::Uniform { .. } => {
-                Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
-            }
-        };
-        Some(LitBy {
-            index,
-            record,
-            incident,
-            factors: emitter.factors(&record, point.position),
-            response,
-            contribution: alone.on(surface).seeded(point.seed).sum(point.position, v, &frame),
-            integral,
-        })
+        let factors = emitter.factors(&record, point.position);
+        Some(LitBy { index, record, incident, factors, response, contribution, integral })
     };
     Loop {
         eye,

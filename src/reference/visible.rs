@@ -2,14 +2,13 @@
 
 use glam::{Mat3, Vec3};
 
-use super::{Settings, lighting::BRIGHTEST};
+use super::{Settings, lighting::within_bounds};
 use crate::{
     light::{Emitter, LightRecord, extent::Cone},
     registry::Registry,
     scene::{
-        Scene,
+        Light, Scene, emitter,
         observer::{half_tangents, orientation},
-        record,
     },
 };
 
@@ -48,8 +47,7 @@ impl Visible {
             return None;
         }
         let seen = self.emitter.seen(&self.record, eye, ray.l);
-        let radiance = seen.radiance * self.record.colour;
-        let radiance = radiance.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) });
+        let radiance = within_bounds(seen.radiance * self.record.colour);
         (seen.distance > 0.0).then(|| Sight { radiance, nearness: ray.stretch / seen.distance })
     }
 }
@@ -88,10 +86,11 @@ impl VisibleLights {
         let encoding = scene.display.encoding;
         let eye = scene.observer.position;
         let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
-        let lights = shining.filter_map(|(index, light)| {
-            let entry = registry.light(&light.light_type).filter(|e| e.is_visible(&light.parameters))?;
-            let emitter = (entry.instantiate)(&light.parameters, encoding);
-            let record = record(light, registry, encoding);
+        let is_visible = |(_, light): &(usize, &Light)| {
+            registry.light(&light.light_type).is_some_and(|entry| entry.is_visible(&light.parameters))
+        };
+        let lights = shining.filter(is_visible).filter_map(|(index, light)| {
+            let (_, emitter, record) = emitter(light, registry, encoding)?;
             let cone = emitter.bounds(&record, eye).map(|cone| (cone, cone.half_angle.cos()));
             Some(Visible { emitter, record, index, cone })
         });

@@ -120,12 +120,7 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.illumination;
-        let mut bindings = Vec::with_capacity(3);
-        for (binding, handle) in [(0, &self.parameters), (1, lights), (2, words)] {
-            let buffer = buffers.get(handle).ok_or(AsBindGroupError::RetryNextUpdate)?;
-            bindings.push((binding, OwnedBindingResource::Buffer(buffer.buffer.clone())));
-        }
-        Ok(UnpreparedBindGroup { bindings: BindingResources(bindings) })
+        bound(buffers, [(0, &self.parameters), (1, lights), (2, words)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
@@ -136,6 +131,19 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
         )
         .to_vec()
     }
+}
+
+/// Buffers at their bindings; none before the renderer has all of them.
+pub(super) fn bound<const N: usize>(
+    buffers: &RenderAssets<GpuShaderBuffer>,
+    handles: [(u32, &Handle<ShaderBuffer>); N],
+) -> Result<UnpreparedBindGroup, AsBindGroupError> {
+    let mut bindings = Vec::with_capacity(N);
+    for (binding, handle) in handles {
+        let buffer = buffers.get(handle).ok_or(AsBindGroupError::RetryNextUpdate)?;
+        bindings.push((binding, OwnedBindingResource::Buffer(buffer.buffer.clone())));
+    }
+    Ok(UnpreparedBindGroup { bindings: BindingResources(bindings) })
 }
 
 impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {

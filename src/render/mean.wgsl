@@ -15,7 +15,7 @@ struct Header {
 // The part that the frame has in the mean; 1 in a picture that begins.
 @group(0) @binding(3) var<uniform> share: vec4<f32>;
 
-// As in wrapper.wgsl.
+// As in display.wgsl, whose last step this is for the mean.
 const CUT_OFF: f32 = 254.0 / 255.0;
 const WHITE: f32 = 1.0005;
 

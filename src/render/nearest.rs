@@ -89,7 +89,7 @@ mod tests {
     fn what_the_window_shows_comes_first_and_the_nearest_before_the_others() {
         let mut world = World::new();
         let scene = Scene::default();
-        world.insert_resource(Shown { lights: Vec::new(), observer: scene.observer });
+        world.insert_resource(Shown { observer: scene.observer, ..Shown::default() });
         world.insert_resource(CurrentScene(scene));
         let registry = Registry::builtin();
         let single = PictureCamera { follows_observer: true, fits_width: false };

@@ -16,8 +16,7 @@ use bevy::{
         render_asset::RenderAssets,
         render_resource::{
             AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntries, BindGroupLayoutEntry,
-            BindingResources, OwnedBindingResource, RenderPipelineDescriptor, ShaderStages,
-            SpecializedMeshPipelineError, UnpreparedBindGroup,
+            RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipelineError, UnpreparedBindGroup,
             binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
         },
         renderer::{RenderAdapter, RenderDevice},
@@ -31,6 +30,7 @@ use super::{
     entities::CurrentScene,
     illumination::{IlluminationBuffer, LightBuffers},
     live::LiveShaders,
+    material::bound,
     overrides::Overrides,
     schedule::{LabFrame, LabSystems},
     shown::Shown,
@@ -93,12 +93,7 @@ impl AsBindGroup for SeenMaterial {
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.illumination;
-        let mut bindings = Vec::with_capacity(2);
-        for (binding, handle) in [(1, lights), (2, words)] {
-            let buffer = buffers.get(handle).ok_or(AsBindGroupError::RetryNextUpdate)?;
-            bindings.push((binding, OwnedBindingResource::Buffer(buffer.buffer.clone())));
-        }
-        Ok(UnpreparedBindGroup { bindings: BindingResources(bindings) })
+        bound(buffers, [(1, lights), (2, words)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
@@ -204,7 +199,8 @@ fn show(world: &mut World, known: &mut QueryState<(Entity, &'static SeenLights)>
     let is_visible = |light: &Light| {
         registry.light(&light.light_type).is_some_and(|entry| entry.is_visible(&light.parameters))
     };
-    let any = world.resource::<Shown>().shining().any(is_visible);
+    let shown = world.resource::<Shown>();
+    let any = registry.has_extent(shown.types) && shown.shining().any(is_visible);
     let mut known: Vec<_> = known.iter(world).map(|(entity, seen)| (entity, seen.view)).collect();
     if any {
         for (view, layer, material) in wanted(world) {
@@ -224,7 +220,7 @@ fn show(world: &mut World, known: &mut QueryState<(Entity, &'static SeenLights)>
 fn wanted(world: &mut World) -> Vec<(Option<Entity>, usize, SeenMaterial)> {
     let registry = world.resource::<Registry>();
     let lights = registry
-        .lights_in(world.resource::<Shown>().light_types(registry))
+        .lights_in(world.resource::<Shown>().types)
         .iter()
         .filter(|light| light.declaration.extent)
         .collect();

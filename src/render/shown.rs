@@ -22,17 +22,14 @@ pub struct ShownObject(pub(super) Object);
 pub struct Shown {
     pub(super) lights: Vec<Light>,
     pub(super) observer: Observer,
+    /// The types of all lights, switched off or not: what shaders are composed of. Asked for in each frame.
+    pub(super) types: LightSet,
 }
 
 impl Shown {
     /// The lights that are on.
     pub(super) fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
-    }
-
-    /// The types of all of them, switched off or not: what shaders are composed of.
-    pub(super) fn light_types(&self, registry: &Registry) -> LightSet {
-        registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
     }
 }
 
@@ -74,7 +71,8 @@ pub(super) fn show_lights(
     mut was_animated: Local<bool>,
 ) {
     let is_animated = animated.iter(world).next().is_some();
-    if !world.is_resource_changed::<CurrentScene>() && !is_animated && !*was_animated {
+    let changed = world.is_resource_changed::<CurrentScene>() || world.is_resource_changed::<Registry>();
+    if !changed && !is_animated && !*was_animated {
         return;
     }
     *was_animated = is_animated;
@@ -89,6 +87,8 @@ pub(super) fn show_lights(
         now.and_then(Result::ok).unwrap_or_else(|| light.clone())
     });
     let eye = components(entities.observer).and_then(|entity| read_observer(entity, &known.observer).ok());
-    let now = Shown { lights: lights.collect(), observer: eye.unwrap_or(known.observer) };
+    let lights: Vec<Light> = lights.collect();
+    let types = registry.light_set(lights.iter().map(|light| light.light_type.as_str()));
+    let now = Shown { lights, observer: eye.unwrap_or(known.observer), types };
     world.resource_mut::<Shown>().set_if_neq(now);
 }

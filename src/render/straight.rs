@@ -96,7 +96,7 @@ fn choose(
     registry: Res<Registry>,
     mut commands: Commands,
 ) {
-    let extent = registry.has_extent(shown.light_types(&registry));
+    let extent = registry.has_extent(shown.types);
     for (camera, known, tone, samples, hdr, view) in &cameras {
         // Means are of half floats.
         let converges = view && extent;

@@ -212,7 +212,7 @@ fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Common {
         shading: scene.shading_model.clone(),
         encoding: scene.display.encoding,
         everywhere: shines_from_everywhere(shown.shining(), scene.display.encoding, registry),
-        lights: shown.light_types(registry),
+        lights: shown.types,
     }
 }
 

@@ -14,8 +14,13 @@ use bevy::{
     },
 };
 
+use glam::Vec4;
+
 use crate::{
-    optics::colour::Encoding, parameter::Values, reflection::ModelEntry, scene::MAX_OBJECTS,
+    optics::{colour::Encoding, lobes::MAX_LOBES},
+    parameter::Values,
+    reflection::ModelEntry,
+    scene::MAX_OBJECTS,
     shading::ShadingEntry,
 };
 
@@ -32,8 +37,11 @@ pub(super) fn row(
     let mut row = model.row(values, encoding, everywhere);
     row.resize(row.len().next_multiple_of(16), 0);
     row.extend(shading.row(values, encoding));
-    let lobes = if extent { model.instantiate(values, encoding).lobes().rows() } else { Default::default() };
-    row.extend(lobes.iter().flat_map(|lobe| lobe.to_array()).flat_map(f32::to_le_bytes));
+    let end = row.len() + size_of::<[Vec4; MAX_LOBES]>();
+    if extent {
+        row.extend(model.instantiate(values, encoding).lobes().bytes());
+    }
+    row.resize(end, 0);
     row
 }
 

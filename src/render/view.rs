@@ -288,7 +288,7 @@ fn rest(
     )>,
 ) {
     let (all, some) = changes.find();
-    let extent = changes.registry.has_extent(shown.light_types(&changes.registry));
+    let extent = changes.registry.has_extent(shown.types);
     let target = if extent { convergence.target.max(1) } else { 0 };
     // True if a picture begins, and the fewest samples that another lacks.
     let (mut begins, mut missing) = (false, None::<u32>);

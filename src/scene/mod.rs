@@ -5,7 +5,7 @@
 //! sRGB-encoded integers: the values as written by users.
 
 use crate::{
-    light::{Incident, LightEntry, LightRecord},
+    light::{Emitter, Incident, LightEntry, LightRecord},
     optics::{
         colour::{Encoding, srgb_encode},
         temperature,
@@ -390,6 +390,17 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
+/// A light of the scene for calculation: its type, its type with its own parameters, and the rest. None if its type is unknown.
+#[must_use]
+pub fn emitter<'a>(
+    light: &Light,
+    registry: &'a Registry,
+    encoding: Encoding,
+) -> Option<(&'a LightEntry, Box<dyn Emitter>, LightRecord)> {
+    let entry = registry.light(&light.light_type)?;
+    Some((entry, (entry.instantiate)(&light.parameters, encoding), record(light, registry, encoding)))
+}
+
 /// True if some of the lights that shine has extent, so that they are sampled.
 #[must_use]
 pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &Registry) -> bool {
@@ -405,13 +416,10 @@ pub fn shines_from_everywhere<'a>(
     encoding: Encoding,
     registry: &Registry,
 ) -> bool {
-    shining.into_iter().any(|light| {
-        registry.light(&light.light_type).is_some_and(|entry| {
-            let record = record(light, registry, encoding);
-            let emitter = (entry.instantiate)(&light.parameters, encoding);
-            matches!(emitter.incident(&record, Vec3::ZERO), Incident::Uniform { .. })
-        })
-    })
+    shining
+        .into_iter()
+        .filter_map(|light| emitter(light, registry, encoding))
+        .any(|(_, emitter, record)| matches!(emitter.incident(&record, Vec3::ZERO), Incident::Uniform { .. }))
 }
 
 #[cfg(test)]

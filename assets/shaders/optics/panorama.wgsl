@@ -20,14 +20,6 @@ fn panorama_seen(table: u32, d: vec3<f32>) -> vec4<f32> {
     return vec4(light, dot(light, vec3(0.2126, 0.7152, 0.0722)) / total);
 }
 
-fn panorama_radiance(table: u32, d: vec3<f32>) -> vec3<f32> {
-    return panorama_seen(table, d).xyz;
-}
-
-fn panorama_pdf(table: u32, d: vec3<f32>) -> f32 {
-    return panorama_seen(table, d).w;
-}
-
 // A direction for a point of the unit square, and its probability density.
 fn panorama_sample(table: u32, u: vec2<f32>) -> vec4<f32> {
     let columns = u32(illumination_number(table));

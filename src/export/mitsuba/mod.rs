@@ -24,7 +24,7 @@ use crate::{
     registry::compose,
     render::entities::object_transform,
     scene::{
-        Object,
+        Object, emitter, has_extent,
         observer::{NEAR, orientation},
         record,
     },
@@ -148,13 +148,10 @@ struct Counterpart<'a> {
 fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<'a>> {
     let Request { scene, registry, .. } = request;
     let encoding = scene.display.encoding;
-    let ambient = scene.shining().any(|light| {
-        registry.light(&light.light_type).is_some_and(|entry| {
-            let emitter = (entry.instantiate)(&light.parameters, encoding);
-            let incident = emitter.incident(&record(light, registry, encoding), Vec3::ZERO);
-            matches!(incident, Incident::Uniform { intensity } if intensity != Vec3::ZERO)
-        })
-    });
+    let emitters = scene.shining().filter_map(|light| emitter(light, registry, encoding));
+    let ambient = emitters
+        .map(|(_, emitter, record)| emitter.incident(&record, Vec3::ZERO))
+        .any(|incident| matches!(incident, Incident::Uniform { intensity } if intensity != Vec3::ZERO));
     let mut found = Vec::new();
     for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
         let (model, shading) = (scene.model_of(object), scene.shading_model_of(object));
@@ -218,8 +215,7 @@ fn differences(request: &Request) -> Vec<String> {
     let shown = |id: &str| scene.shown().any(|object| scene.shading_model_of(object) == id);
     let display = &scene.display;
     let mut notes = vec!["Mitsuba casts shadows, the lab does not; its background is black".to_owned()];
-    let extent = |id: &str| request.registry.light(id).is_some_and(|entry| entry.declaration.extent);
-    if scene.shining().any(|light| extent(&light.light_type)) {
+    if has_extent(scene.shining(), request.registry) {
         notes.push(
             "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and those that shine to both \
              sides are two, a millimetre apart"

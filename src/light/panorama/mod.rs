@@ -77,10 +77,17 @@ impl<'a> Panorama<'a> {
         Vec3::from_slice(&self.pixels[3 * (row * self.columns + column)..])
     }
 
+    /// The light from a unit direction, cd/m², and its probability density in [`sample`](Self::sample), sr⁻¹.
+    #[must_use]
+    pub fn seen(&self, direction: Vec3) -> (Vec3, f32) {
+        let radiance = self.radiance(direction);
+        (radiance, self.pdf_of(radiance))
+    }
+
     /// The probability density of a direction in [`sample`](Self::sample), sr⁻¹: in proportion to its luminance.
     #[must_use]
     pub fn pdf(&self, direction: Vec3) -> f32 {
-        self.pdf_of(self.radiance(direction))
+        self.seen(direction).1
     }
 
     fn pdf_of(&self, radiance: Vec3) -> f32 {
@@ -98,8 +105,8 @@ impl<'a> Panorama<'a> {
         let phi = TAU * (column as f32 + s) / self.columns as f32;
         let direction = Vec3::new(-sin * phi.sin(), cos, sin * phi.cos());
         // A direction at an edge may count to the next pixel by rounding: its own light and density belong together.
-        let radiance = self.radiance(direction);
-        (direction, radiance, self.pdf_of(radiance))
+        let (radiance, pdf) = self.seen(direction);
+        (direction, radiance, pdf)
     }
 }
 

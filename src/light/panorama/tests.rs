@@ -343,7 +343,7 @@ fn wgsl(text: &str, function: &str, numbers: &[f32]) -> impl Fn(&[f32]) -> [f32;
     OPTICS.iter().for_each(|source| composer.source(source));
     let user = "#import \"../optics/panorama.wgsl\"
 fn seen(d: vec3<f32>) -> vec4<f32> {
-    return vec4(panorama_radiance(0u, d), panorama_pdf(0u, d));
+    return panorama_seen(0u, d);
 }
 fn sampled(u: vec2<f32>) -> vec4<f32> {
     return panorama_sample(0u, u);

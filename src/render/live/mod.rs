@@ -84,7 +84,7 @@ fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Regis
 fn lights_of(world: &World, registry: &Registry) -> LightSet {
     let shown = world.get_resource::<Shown>();
     let without = || registry.lights().iter().filter(|light| !light.declaration.extent).collect();
-    shown.map_or_else(without, |shown| shown.light_types(registry))
+    shown.map_or_else(without, |shown| shown.types)
 }
 
 /// One shader.
