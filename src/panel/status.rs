@@ -8,10 +8,13 @@ use super::{
     Panel, PanelContext, Place, export,
     icon::{self, Icon},
     matching,
-    state::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
+    state::{Action, Converging, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
-use crate::{scene::variant::LETTERS, text::plural};
+use crate::{
+    scene::variant::LETTERS,
+    text::{per_cent, plural},
+};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -71,26 +74,39 @@ impl Panel for StatusLine {
     }
 }
 
-/// The samples of light with extent in words, per view if there are several; none while no view has such light.
-fn samples_in_words(converged: &[[u32; 2]]) -> Option<String> {
-    let shown = || converged.iter().enumerate().filter(|(_, [_, total])| *total > 0);
-    let words: Vec<_> = shown()
-        .map(|(view, [done, total])| {
-            let letter = LETTERS.get(view).copied().unwrap_or_default();
-            let of = if shown().count() > 1 { format!("{letter}: ") } else { String::new() };
-            format!("{of}{done} of {total}")
-        })
-        .collect();
-    (!words.is_empty()).then(|| format!("{} samples", words.join(", ")))
+/// How far pictures of light with extent have converged, the one that lacks most: in words, and in a line per view if there
+/// are several. None while no view has such light.
+fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
+    let shown: Vec<_> = converged.iter().enumerate().filter(|(_, view)| view.total > 0).collect();
+    let words = |Converging { done, total, noise }: Converging| {
+        let noise = noise.map(|noise| format!(" · noise {}", per_cent(noise))).unwrap_or_default();
+        format!("{done} of {total} samples{noise}")
+    };
+    let (_, least) = shown.iter().min_by_key(|(_, view)| view.done)?;
+    let most_noise = shown.iter().filter_map(|(_, view)| view.noise).reduce(f32::max);
+    let lines = shown.iter().filter(|_| shown.len() > 1).map(|(view, converging)| {
+        format!("{}: {}", LETTERS.get(*view).copied().unwrap_or_default(), words(**converging))
+    });
+    Some((words(Converging { noise: most_noise, ..**least }), lines.collect()))
 }
 
 /// How far pictures of light with extent have converged.
 fn samples(ui: &mut Ui, session: &Session) {
-    let Some(words) = samples_in_words(&session.facts.converged) else { return };
-    ui.add(egui::Label::new(theme::small(ui, words))).on_hover_text(
-        "Light with extent is added up from samples, a few in each frame. The picture is their mean: noise goes as samples \
-         come, and nothing more is drawn at the end. Every change begins anew.",
-    );
+    let Some((words, lines)) = samples_in_words(&session.facts.converged) else { return };
+    ui.add(egui::Label::new(theme::small(ui, words))).on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        ui.label(
+            "Light with extent is added up from samples, a few in each frame. The picture is their mean, and nothing more \
+             is drawn once it has all. Every change begins anew.",
+        );
+        ui.label(
+            "Noise: how far pixels are from their final value, as the root mean square of their standard errors, over the \
+             mean luminance of what is seen.",
+        );
+        for line in lines {
+            ui.label(line);
+        }
+    });
 }
 
 /// The part of the line that the last message may take from what stands at the right.
@@ -147,13 +163,17 @@ fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 #[cfg(test)]
 mod tests {
-    use super::samples_in_words;
+    use super::{Converging, samples_in_words};
 
     #[test]
-    fn samples_are_told_per_view_where_there_are_several() {
-        assert_eq!(samples_in_words(&[[0, 0]; 2]), None);
-        assert_eq!(samples_in_words(&[[64, 256], [0, 0]]).as_deref(), Some("64 of 256 samples"));
-        let both = samples_in_words(&[[64, 256], [8, 256]]);
-        assert_eq!(both.as_deref(), Some("A: 64 of 256, B: 8 of 256 samples"));
+    fn samples_and_noise_are_told_of_the_view_that_lacks_most_and_of_each_where_there_are_several() {
+        let of = |done, noise| Converging { done, total: 256, noise };
+        assert_eq!(samples_in_words(&[Converging::default(); 2]), None);
+        let one = samples_in_words(&[of(64, None), Converging::default()]);
+        assert_eq!(one, Some(("64 of 256 samples".to_owned(), Vec::new())));
+        let both = samples_in_words(&[of(64, Some(0.0123)), of(8, Some(0.005))]);
+        let lines = ["A: 64 of 256 samples · noise 1.2 %", "B: 8 of 256 samples · noise 0.50 %"];
+        let words = "8 of 256 samples · noise 1.2 %".to_owned();
+        assert_eq!(both, Some((words, lines.map(str::to_owned).to_vec())));
     }
 }

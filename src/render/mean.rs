@@ -1,8 +1,8 @@
 //! Pictures that converge: each frame has a few samples of light with extent, and the picture is the mean of the frames.
 //! A pass between that of the objects and the display's joins a frame to the mean.
 //!
-//! While a view's picture converges it has two textures of 32-bit floats, one to read and one to write: 2 × 16 bytes for
-//! each pixel. A view that rests has none. Cameras without a [`View`] draw all samples in each frame, and should not share
+//! While a view's picture converges it has two pairs of textures of 32-bit floats, one to read and one to write: 2 × 20 bytes
+//! for each pixel. A view that rests has none. Cameras without a [`View`] draw all samples in each frame, and should not share
 //! the frames of views that converge.
 
 use std::collections::{HashMap, HashSet};
@@ -31,8 +31,9 @@ use bevy::{
 };
 
 use super::{
-    converge::Part,
+    converge::{Converged, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
+    noise::{Grown, Measuring, Noise},
     stage::Stage,
     view::{Drawing, View},
 };
@@ -40,6 +41,8 @@ use crate::shader::wgsl;
 
 /// The format of means.
 const MEAN: TextureFormat = TextureFormat::Rgba32Float;
+/// The format of the sums of squares about the mean luminance.
+const SQUARES: TextureFormat = TextureFormat::R32Float;
 /// The format of frames.
 const FRAME: TextureFormat = TextureFormat::Rgba16Float;
 
@@ -61,37 +64,49 @@ impl Plugin for MeanPlugin {
 /// What the frame of a view adds to its mean.
 #[derive(Component, Clone, Copy, Debug)]
 struct Joins {
-    /// Samples that the mean has, with those of the frame.
-    done: u32,
+    /// The view in the main world.
+    view: Entity,
+    /// The number of the frame.
+    frame: u64,
+    /// Samples that the mean has, with those of the frame, and that it will have.
+    converged: Converged,
     /// Those of the frame.
     count: u32,
     illumination: AssetId<ShaderBuffer>,
+}
+
+impl Joins {
+    fn begins(&self) -> bool {
+        self.converged.done == self.count
+    }
 }
 
 /// The mean of the frames of a view.
 #[derive(Component)]
 struct Mean {
     size: Extent3d,
-    /// That to read, and that to write.
-    textures: [TextureView; 2],
+    /// The frames in it.
+    frames: u32,
+    /// Those to read, and those to write: the mean, and the squares about it.
+    textures: [[TextureView; 2]; 2],
 }
 
 impl Mean {
     fn new(size: Extent3d, device: &RenderDevice) -> Self {
-        let texture = |_| {
+        let texture = |format| {
             let texture = device.create_texture(&TextureDescriptor {
                 label: Some("mean"),
                 size,
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: TextureDimension::D2,
-                format: MEAN,
+                format,
                 usage: TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT,
                 view_formats: &[],
             });
             texture.create_view(&TextureViewDescriptor::default())
         };
-        Self { size, textures: [0, 1].map(texture) }
+        Self { size, frames: 1, textures: [(); 2].map(|()| [MEAN, SQUARES].map(texture)) }
     }
 }
 
@@ -103,16 +118,19 @@ struct Samples {
     written: HashSet<AssetId<ShaderBuffer>>,
 }
 
-type Views<'w, 's> = Query<'w, 's, (RenderEntity, &'static Drawing, Option<&'static Stage>), With<View>>;
+type Views<'w, 's> =
+    Query<'w, 's, (Entity, RenderEntity, &'static Drawing, Option<&'static Stage>), With<View>>;
 
 fn extract(
     views: Extract<Views>,
     shared: Extract<Res<IlluminationBuffer>>,
     known: Query<(), With<Joins>>,
     mut samples: ResMut<Samples>,
+    noise: Res<Noise>,
     mut commands: Commands,
 ) {
-    for (entity, drawing, stage) in &views {
+    noise.keep(|view| views.contains(view));
+    for (view, entity, drawing, stage) in &views {
         let Some(part) = drawing.part() else {
             if known.contains(entity) {
                 commands.entity(entity).remove::<(Joins, Mean)>();
@@ -121,8 +139,13 @@ fn extract(
         };
         let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
         samples.wanted.insert(illumination, part);
-        let done = drawing.converged().done;
-        commands.entity(entity).insert(Joins { done, count: part.count, illumination });
+        commands.entity(entity).insert(Joins {
+            view,
+            frame: drawing.drawn(),
+            converged: drawing.converged(),
+            count: part.count,
+            illumination,
+        });
     }
 }
 
@@ -146,14 +169,17 @@ fn write(mut samples: ResMut<Samples>, buffers: Res<RenderAssets<GpuShaderBuffer
 
 /// Gives views textures for their means. What was written in the frame before is read in this one.
 fn prepare(
-    mut views: Query<(Entity, &ViewTarget, Option<&mut Mean>), With<Joins>>,
+    mut views: Query<(Entity, &ViewTarget, &Joins, Option<&mut Mean>)>,
     device: Res<RenderDevice>,
     mut commands: Commands,
 ) {
-    for (view, target, mean) in &mut views {
+    for (view, target, joins, mean) in &mut views {
         let size = target.main_texture().size();
         match mean {
-            Some(mut mean) if mean.size == size => mean.textures.reverse(),
+            Some(mut mean) if mean.size == size => {
+                mean.textures.reverse();
+                mean.frames = if joins.begins() { 1 } else { mean.frames + 1 };
+            }
             _ => _ = commands.entity(view).insert(Mean::new(size, &device)),
         }
     }
@@ -173,6 +199,7 @@ impl Pass {
             (
                 texture_2d(float),
                 texture_2d(float),
+                texture_2d(float),
                 uniform_buffer_sized(false, None),
                 uniform_buffer_sized(false, None),
             ),
@@ -188,7 +215,7 @@ impl Pass {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let targets = [FRAME, MEAN].map(|format| Some(format.into()));
+        let targets = [FRAME, MEAN, SQUARES].map(|format| Some(format.into()));
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("mean"),
             layout: Some(&pipeline_layout),
@@ -219,10 +246,13 @@ fn join(
     view: ViewQuery<(&ViewTarget, &Joins, &Mean)>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     device: Res<RenderDevice>,
+    noise: Res<Noise>,
+    mut measuring: ResMut<Measuring>,
     mut pass: Local<Option<Pass>>,
     mut context: RenderContext,
 ) {
-    let (target, joins, Mean { textures: [known, next], .. }) = view.into_inner();
+    let (target, joins, Mean { frames, textures: [known, next], .. }) = view.into_inner();
+    let Joins { view, frame: number, converged: Converged { done, total }, count, .. } = *joins;
     let Some(illumination) = buffers.get(joins.illumination) else { return };
     if target.main_texture_format() != FRAME {
         error_once!(
@@ -232,7 +262,7 @@ fn join(
         return;
     }
     let Pass { layout, pipeline } = pass.get_or_insert_with(|| Pass::new(&device));
-    let share = [joins.count as f32 / joins.done as f32, 0.0, 0.0, 0.0];
+    let share = [count as f32 / done as f32, count as f32, 0.0, 0.0];
     let share = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("mean"),
         contents: &share.map(f32::to_le_bytes).concat(),
@@ -244,7 +274,8 @@ fn join(
         layout,
         &BindGroupEntries::sequential((
             frame.source,
-            known,
+            &known[0],
+            &known[1],
             illumination.buffer.as_entire_buffer_binding(),
             share.as_entire_buffer_binding(),
         )),
@@ -259,7 +290,7 @@ fn join(
     };
     let mut pass = context.command_encoder().begin_render_pass(&RenderPassDescriptor {
         label: Some("mean"),
-        color_attachments: &[attachment(frame.destination), attachment(next)],
+        color_attachments: &[attachment(frame.destination), attachment(&next[0]), attachment(&next[1])],
         depth_stencil_attachment: None,
         timestamp_writes: None,
         occlusion_query_set: None,
@@ -268,4 +299,7 @@ fn join(
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &*group, &[]);
     pass.draw(0..3, 0..1);
+    drop(pass);
+    let grown = Grown { view, frame: number, frames: *frames, done, total, count };
+    measuring.measure(grown, next.each_ref(), &device, context.command_encoder(), &noise);
 }

@@ -11,17 +11,21 @@ struct Header {
 
 @group(0) @binding(0) var frame: texture_2d<f32>;
 @group(0) @binding(1) var known: texture_2d<f32>;
-@group(0) @binding(2) var<uniform> illumination: Header;
-// The part that the frame has in the mean; 1 in a picture that begins.
-@group(0) @binding(3) var<uniform> share: vec4<f32>;
+// The sum of squares about the mean luminance.
+@group(0) @binding(2) var known_squares: texture_2d<f32>;
+@group(0) @binding(3) var<uniform> illumination: Header;
+// The part that the frame has in the mean, 1 in a picture that begins; and its samples.
+@group(0) @binding(4) var<uniform> share: vec4<f32>;
 
 // As in display.wgsl, whose last step this is for the mean.
 const CUT_OFF: f32 = 254.0 / 255.0;
 const WHITE: f32 = 1.0005;
+const LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Drawn {
     @location(0) picture: vec4<f32>,
     @location(1) mean: vec4<f32>,
+    @location(2) squares: f32,
 }
 
 @vertex
@@ -34,8 +38,13 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 fn fragment(@builtin(position) position: vec4<f32>) -> Drawn {
     let pixel = vec2<u32>(position.xy);
     var mean = textureLoad(frame, pixel, 0);
+    var squares = 0.0;
     if share.x < 1.0 {
-        mean = mix(textureLoad(known, pixel, 0), mean, share.x);
+        let before = textureLoad(known, pixel, 0);
+        let here = mean;
+        mean = mix(before, here, share.x);
+        squares = textureLoad(known_squares, pixel, 0).r
+            + share.y * dot(here.rgb - before.rgb, LUMINANCE) * dot(here.rgb - mean.rgb, LUMINANCE);
     }
     // The opacity of the mean is 0 where something is seen, 1 where nothing is, and in a channel everywhere.
     var colour = mean.rgb;
@@ -45,5 +54,5 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Drawn {
         let c = clamp(colour, vec3(0.0), vec3(1.0));
         colour = mix(vec3(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)), colour, mean.a);
     }
-    return Drawn(vec4(colour, select(1.0, CUT_OFF, is_cut_off)), mean);
+    return Drawn(vec4(colour, select(1.0, CUT_OFF, is_cut_off)), mean, squares);
 }

@@ -16,6 +16,7 @@ mod mean;
 pub mod meshes;
 mod mirror;
 mod nearest;
+pub mod noise;
 pub mod overrides;
 pub mod parts;
 pub mod plugin;

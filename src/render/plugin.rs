@@ -16,6 +16,7 @@ use super::{
     material::MaterialApp as _,
     mean::MeanPlugin,
     meshes::ShapeMeshes,
+    noise::NoisePlugin,
     overrides::Overrides,
     parts,
     schedule::{LabFrame, LabSystems, detect},
@@ -92,6 +93,7 @@ impl Plugin for ScenePlugin {
                 StraightPlugin,
                 SeenPlugin,
                 MeanPlugin,
+                NoisePlugin,
             ));
         // Two systems that touch the same data must say who comes first.
         detect(app, LogLevel::Warn);

@@ -96,6 +96,8 @@ pub struct Drawing {
     due: u32,
     /// Pictures that have been drawn.
     drawn: u64,
+    /// The first of them after the last change.
+    began: u64,
     /// One is drawn in this frame.
     draws: bool,
     /// The samples of light with extent, none if there is no such light.
@@ -110,6 +112,7 @@ impl Default for Drawing {
             last: None,
             due: PICTURES,
             drawn: 0,
+            began: 0,
             draws: false,
             converged: Converged::default(),
             part: None,
@@ -156,6 +159,11 @@ impl Drawing {
     #[must_use]
     pub fn drawn(&self) -> u64 {
         self.drawn
+    }
+
+    /// The number of the first of them that shows what is shown now.
+    pub(super) fn began(&self) -> u64 {
+        self.began
     }
 }
 
@@ -315,6 +323,7 @@ fn rest(
         let starts = drawing.due > 0;
         if starts {
             drawing.converged.done = 0;
+            drawing.began = drawing.drawn + 1;
         }
         let draws = !drawing.is_done() && view.size.min_element() > 0;
         if draws {

@@ -12,7 +12,7 @@ pub mod xml;
 
 pub use list::items;
 pub use words::{
-    detailed, did_you_mean, listed, nearest, number, one_of, plural, quoted, sentence, shortened,
+    detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence, shortened,
     with_article,
 };
 

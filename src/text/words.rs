@@ -51,6 +51,17 @@ pub fn detailed(message: &str, detail: &str) -> String {
     format!("{said}; {detail}{question}")
 }
 
+/// A part of 1 in per cent, with two digits: "12 %", "1.2 %", "0.12 %", "< 0.01 %".
+#[must_use]
+pub fn per_cent(part: f32) -> String {
+    match 100.0 * part {
+        n if n > 0.0 && n < 0.01 => "< 0.01 %".to_owned(),
+        n if n < 0.995 => format!("{n:.2} %"),
+        n if n < 9.95 => format!("{n:.1} %"),
+        n => format!("{n:.0} %"),
+    }
+}
+
 /// A message as a sentence within a text: with a full stop, unless it ends with another mark.
 #[must_use]
 pub fn sentence(message: &str) -> String {
@@ -107,6 +118,12 @@ pub fn number(v: f32) -> Json {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_are_told_in_per_cent_with_two_digits() {
+        let told = [0.0, 0.00001, 0.005, 0.00996, 0.0123, 0.0996, 0.123].map(per_cent);
+        assert_eq!(told, ["0.00 %", "< 0.01 %", "0.50 %", "1.0 %", "1.2 %", "10 %", "12 %"]);
+    }
 
     #[test]
     fn names_are_listed_as_people_do() {

@@ -19,12 +19,13 @@ use super::{
 };
 use crate::{
     channel::{DebugChannel, Setting},
-    panel::state::{Cell, PictureArea, Session},
+    panel::state::{Cell, Converging, PictureArea, Session},
     registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
         converge::Converged,
         entities::CurrentScene,
+        noise::Noise,
         overrides::Overrides,
         show::{ShownPicture, Shows},
         view::{Drawing, View, background_of, texture_of},
@@ -126,6 +127,7 @@ pub(super) fn set_views(
 /// A view that is shown.
 #[derive(Clone, Copy)]
 pub(super) struct ShownView<'a> {
+    entity: Entity,
     pub(super) view: &'a View,
     pub(super) drawing: &'a Drawing,
     target: &'a RenderTarget,
@@ -144,7 +146,7 @@ pub(super) struct ShownViews<'w, 's> {
     views: Query<
         'w,
         's,
-        (&'static View, &'static Drawing, &'static RenderTarget, Option<&'static OtherView>),
+        (Entity, &'static View, &'static Drawing, &'static RenderTarget, Option<&'static OtherView>),
         Or<(With<WindowView>, With<OtherView>)>,
     >,
 }
@@ -159,24 +161,27 @@ impl ShownViews<'_, '_> {
     pub(super) fn find(&self, number: usize) -> Option<ShownView<'_>> {
         let own = self.area.as_deref().map_or(0, first);
         let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
-        let (view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
-        Some(ShownView { view, drawing, target })
+        let (entity, view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
+        Some(ShownView { entity, view, drawing, target })
     }
 }
 
 /// Tells the panels how far the pictures of the views have converged.
 pub(super) fn tell_convergence(
     views: ShownViews,
+    noise: Option<Res<Noise>>,
     mut session: ResMut<Session>,
     mut requests: MessageWriter<RequestRedraw>,
 ) {
+    let mut awaited = false;
     let now = std::array::from_fn(|view| {
-        let Converged { done, total } =
-            views.find(view).map(|view| view.drawing.converged()).unwrap_or_default();
-        [done, total]
+        let Some(ShownView { entity, drawing, .. }) = views.find(view) else { return Converging::default() };
+        let Converged { done, total } = drawing.converged();
+        awaited |= noise.as_ref().is_some_and(|noise| noise.is_awaited(entity, drawing));
+        Converging { done, total, noise: noise.as_ref().and_then(|noise| noise.of(entity, drawing)) }
     });
     let known = &mut session.bypass_change_detection().facts.converged;
-    if std::mem::replace(known, now) != now {
+    if std::mem::replace(known, now) != now || awaited {
         requests.write(RequestRedraw);
     }
 }

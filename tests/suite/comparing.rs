@@ -10,7 +10,7 @@ use lights_camera_models::{
     document::{Edit, VariantField},
     optics::TermSelection,
     panel::marks::Lens,
-    panel::state::{Action, Clipping, CompareCommand, Numbers, Session, ViewChange},
+    panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
     parameter::{Value, Values},
     scene::{
         Comparison, Scene, Variant,
@@ -452,6 +452,28 @@ fn a_channel_is_not_compared_with_a_picture() {
     bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
     bench.settle();
     assert!(bench.says("RMSE 0.031"));
+}
+
+#[test]
+fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    let all = Converging { done: 256, total: 256, noise: Some(0.01) };
+    bench.session.facts.converged[0] = all;
+    bench.session.facts.converged[1] = Converging { done: 63, ..all };
+    let why = "Not converged yet: 63 of 256 samples";
+    for (layout, times) in [(Layout::SideBySide, 1), (Layout::Wipe, 1), (Layout::Difference, 2)] {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.settle();
+        assert!(!bench.says("RMSE"), "{layout:?}");
+        let written = crate::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+        assert_eq!(written, times, "{layout:?}: in the bar, and in the place of a map");
+    }
+    bench.session.facts.converged[1] = all;
+    bench.settle();
+    assert!(bench.says("RMSE 0.031") && !bench.says("Not converged"));
 }
 
 #[test]

@@ -1,13 +1,16 @@
 //! Pictures of light with extent converge in views, to what the CPU renderer draws, and then rest.
 
-use bevy::prelude::Transform;
+use std::sync::atomic::AtomicBool;
+
+use bevy::{ecs::entity::Entity, prelude::Transform};
 use lights_camera_models::{
     optics::colour::Encoding,
-    reference::{self, Settings},
+    reference::{self, Settings, Until},
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
         converge::Converged,
+        noise::Noise,
         view::{Drawing, View},
     },
     scene::Scene,
@@ -129,4 +132,44 @@ fn a_converged_view_rests_until_something_changes_and_begins_again_then() {
     renderer.step();
     assert_eq!(drawing(&mut renderer).converged(), Converged::default());
     assert!(converge(&mut renderer) < 8);
+}
+
+#[test]
+fn the_noise_of_a_picture_is_measured_as_it_converges() {
+    let scene = scene("rectangle", "phong");
+    let mut renderer = renderer(&scene);
+    let mut told = Vec::new();
+    let now = |renderer: &mut GpuRenderer| {
+        let world = renderer.app().world_mut();
+        let (view, drawing) =
+            world.query::<(Entity, &Drawing)>().iter(world).next().expect("there is a view");
+        let noise = world.resource::<Noise>();
+        (drawing.converged().done, noise.of(view, drawing), noise.is_awaited(view, drawing))
+    };
+    for _ in 0..400 {
+        renderer.step();
+        renderer.wait();
+        if let (done, Some(noise), _) = now(&mut renderer)
+            && told.last().is_none_or(|(_, last)| *last != noise)
+        {
+            told.push((done, noise));
+        }
+        if drawing(&mut renderer).rests() && !now(&mut renderer).2 {
+            break;
+        }
+    }
+    let (first, last) = (told[0], *told.last().expect("it is told"));
+    assert!(first.0 < 64 && last.0 == 256, "{told:?}");
+    assert!(last.1 < 0.5 * first.1, "{told:?}");
+    // The CPU renderer estimates it from blocks of 16 samples, which are spread more evenly than frames of up to 8.
+    let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
+    let (registry, odd) = (Registry::builtin(), AtomicBool::default());
+    let (_, reached) = reference::render_until(&scene, &registry, &settings, Until::default(), &odd);
+    let ratio = last.1 / reached.noise.expect("enough blocks");
+    assert!((0.7..3.0).contains(&ratio), "{ratio} {told:?} {reached:?}");
+    // A change begins anew, and says nothing of what was before.
+    let world = renderer.app().world_mut();
+    world.query::<&mut Drawing>().iter_mut(world).for_each(|mut drawing| drawing.redraw());
+    renderer.step();
+    assert_eq!(now(&mut renderer).1, None);
 }

@@ -167,17 +167,21 @@ const SPACE: f32 = 14.0;
 fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
     let palette = Palette::here(ui);
     // Once, where the usual numbers would be.
-    if let Some(reason) = session.incomparable().filter(|_| wanted("RMSE")) {
-        let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
-        let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
-        ui.painter().galley(rect.min, galley, palette.weak);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &reason));
-        response.on_hover_text(reason);
+    let later = "The difference is calculated once both pictures have all samples of light with extent.";
+    let unconverged = || session.unconverged().map(|reason| (reason, later.to_owned()));
+    if let Some((reason, help)) =
+        session.incomparable().map(|reason| (reason.clone(), reason)).or_else(unconverged)
+    {
+        if wanted("RMSE") {
+            let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
+            let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+            ui.painter().galley(rect.min, galley, palette.weak);
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &reason));
+            response.on_hover_text(help);
+        }
         return;
     }
-    let Some(numbers) = session.facts.comparison.as_ref().filter(|_| session.incomparable().is_none()) else {
-        return;
-    };
+    let Some(numbers) = session.facts.comparison.as_ref() else { return };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {

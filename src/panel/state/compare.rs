@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Session, Severity};
+use super::{Converging, Session, Severity};
 use crate::{
     channel::DebugChannel,
     document::{Edit, Extent, ObjectField, Revision, Selection, VariantField},
@@ -89,6 +89,16 @@ impl Session {
             }
             _ => None,
         }
+    }
+
+    /// That the views that are compared have not converged, in words, as long as they have not: numbers and map of their
+    /// difference are those from before.
+    #[must_use]
+    pub fn unconverged(&self) -> Option<String> {
+        let views = [0, self.compared_with()].map(|view| self.facts.converged[view.min(MAX_VARIANTS)]);
+        let Converging { done, total, .. } =
+            views.into_iter().max_by_key(|view| view.total.saturating_sub(view.done))?;
+        (done < total).then(|| format!("Not converged yet: {done} of {total} samples"))
     }
 
     /// Takes over into the scene which view is compared with view A, before the scene is written. This is no step of the

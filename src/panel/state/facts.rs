@@ -20,9 +20,8 @@ pub struct Facts {
     pub compiling: bool,
     /// The clipped parts of the picture of each view, view A first; `None` where nothing clips.
     pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
-    /// The samples of light with extent that the picture of each view is the mean of, and those that it will be, view A
-    /// first; 0 of 0 where there is no such light.
-    pub converged: [[u32; 2]; MAX_VARIANTS + 1],
+    /// How far the picture of each view has converged, view A first.
+    pub converged: [Converging; MAX_VARIANTS + 1],
     /// The numbers of the comparison; `None` until they are known.
     pub comparison: Option<Numbers>,
     /// The export that runs.
@@ -55,6 +54,17 @@ impl Facts {
     pub fn fps(&self) -> f32 {
         if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
     }
+}
+
+/// How far a picture of light with extent has converged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Converging {
+    /// The samples that it is the mean of.
+    pub done: u32,
+    /// Those that it will be the mean of; 0 if there is no such light.
+    pub total: u32,
+    /// The standard error of pixels over their mean luminance, once it is known.
+    pub noise: Option<f32>,
 }
 
 /// The state of an export that runs.

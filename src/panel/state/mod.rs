@@ -17,7 +17,7 @@ pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
 pub use compare::CompareCommand;
 pub use disk::OnDisk;
 pub use effect::{CameraChange, Effect, LabEffect, RecoveryChoice, Steer};
-pub use facts::{Clipping, Exporting, Facts, LARGEST, Matching, Numbers};
+pub use facts::{Clipping, Converging, Exporting, Facts, LARGEST, Matching, Numbers};
 pub use files::RECENT_FILES;
 pub use lesson::{LessonCommand, LessonSource};
 pub use lobe::{LobeChoice, LobeScale};

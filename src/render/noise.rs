@@ -1,0 +1,258 @@
+//! The noise of pictures that converge, measured on the GPU: the standard error of the luminance of pixels, as the root of
+//! its mean square over those in which something is seen, divided by their mean luminance.
+//!
+//! The pass that joins a frame to the mean keeps the sum of the squares about the mean, after B. Welford (1962). Now and then
+//! these are added up over the picture, and read back when the GPU has them, which nobody waits for.
+
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use bevy::{
+    app::{App, Plugin},
+    ecs::prelude::*,
+    render::{
+        Render, RenderApp, RenderSystems,
+        render_resource::{
+            BindGroupEntries, BindGroupLayout, BindGroupLayoutEntries, Buffer, BufferDescriptor,
+            BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePipeline, MapMode, ShaderStages,
+            TextureSampleType, TextureView,
+            binding_types::{storage_buffer_sized, texture_2d},
+        },
+        renderer::RenderDevice,
+    },
+};
+
+use super::view::Drawing;
+
+/// The workgroups that add up, each for some rows.
+const GROUPS: u32 = 64;
+/// What they write.
+const BYTES: u64 = GROUPS as u64 * 16;
+/// The frames from which on noise can be estimated.
+const ENOUGH: u32 = 4;
+/// Samples between two measurements.
+const BETWEEN: u32 = 16;
+
+/// Measures the noise of views that converge.
+pub(super) struct NoisePlugin;
+
+impl Plugin for NoisePlugin {
+    fn build(&self, app: &mut App) {
+        // Where nothing is drawn, nothing is measured, and nobody waits for it.
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        let noise = Noise::default();
+        app.insert_resource(noise.clone());
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            render
+                .insert_resource(noise)
+                .init_resource::<Measuring>()
+                .add_systems(Render, read.in_set(RenderSystems::Cleanup));
+        }
+    }
+}
+
+/// The noise of the pictures of views.
+#[derive(Clone, Debug, Default, Resource)]
+pub struct Noise(Arc<Mutex<HashMap<Entity, Known>>>);
+
+/// What is known of the picture of a view.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    /// The number of the last frame in it.
+    frame: u64,
+    /// `None` if it cannot be told.
+    noise: Option<f32>,
+}
+
+impl Noise {
+    fn known(&self, view: Entity) -> Option<Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&view).copied()
+    }
+
+    fn tell(&self, view: Entity, known: Known) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(view, known);
+    }
+
+    /// Forgets views that are no more.
+    pub(super) fn keep(&self, exists: impl Fn(Entity) -> bool) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|view, _| exists(*view));
+    }
+
+    /// The noise of the picture of a view as a part of its mean luminance, as far as it is known.
+    #[must_use]
+    pub fn of(&self, view: Entity, drawing: &Drawing) -> Option<f32> {
+        self.known(view).filter(|known| known.frame >= drawing.began())?.noise
+    }
+
+    /// True if a picture has all its samples, and what is known of its noise is older.
+    #[must_use]
+    pub fn is_awaited(&self, view: Entity, drawing: &Drawing) -> bool {
+        let older = |known: Known| (drawing.began()..drawing.drawn()).contains(&known.frame);
+        drawing.rests() && self.known(view).is_some_and(older)
+    }
+}
+
+/// A picture that has got a frame more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grown {
+    pub(super) view: Entity,
+    /// The number of the frame.
+    pub(super) frame: u64,
+    /// The frames in the mean.
+    pub(super) frames: u32,
+    /// Its samples, those of the frame included, and those it will have.
+    pub(super) done: u32,
+    pub(super) total: u32,
+    /// Those of the frame.
+    pub(super) count: u32,
+}
+
+impl Grown {
+    fn is_last(self) -> bool {
+        self.done >= self.total
+    }
+
+    fn is_measured(self) -> bool {
+        let step = |samples: u32| samples / BETWEEN;
+        self.frames >= ENOUGH && (self.is_last() || step(self.done) > step(self.done - self.count))
+    }
+}
+
+/// What the GPU adds up in this frame.
+#[derive(Default, Resource)]
+pub(super) struct Measuring {
+    pass: Option<Pass>,
+    sums: Vec<(Buffer, Grown)>,
+}
+
+struct Pass {
+    layout: BindGroupLayout,
+    pipeline: ComputePipeline,
+}
+
+impl Pass {
+    fn new(device: &RenderDevice) -> Self {
+        let float = TextureSampleType::Float { filterable: false };
+        let entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::COMPUTE,
+            (texture_2d(float), texture_2d(float), storage_buffer_sized(false, None)),
+        );
+        let layout = device.create_bind_group_layout("noise", &entries);
+        let module = device.create_and_validate_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("noise"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("noise.wgsl").into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("noise"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("noise"),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("sum"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+}
+
+impl Measuring {
+    /// Adds up the squares of a picture and its mean, if it is time.
+    pub(super) fn measure(
+        &mut self,
+        grown: Grown,
+        [mean, squares]: [&TextureView; 2],
+        device: &RenderDevice,
+        encoder: &mut CommandEncoder,
+        noise: &Noise,
+    ) {
+        if !grown.is_measured() {
+            if grown.is_last() {
+                noise.tell(grown.view, Known { frame: grown.frame, noise: None });
+            }
+            return;
+        }
+        let Pass { layout, pipeline } = self.pass.get_or_insert_with(|| Pass::new(device));
+        let buffer = |usage| {
+            let label = Some("noise");
+            device.create_buffer(&BufferDescriptor { label, size: BYTES, usage, mapped_at_creation: false })
+        };
+        let sums = buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let read = buffer(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let entries = BindGroupEntries::sequential((mean, squares, sums.as_entire_buffer_binding()));
+        let group = device.create_bind_group("noise", layout, &entries);
+        let mut pass = encoder
+            .begin_compute_pass(&ComputePassDescriptor { label: Some("noise"), timestamp_writes: None });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &*group, &[]);
+        pass.dispatch_workgroups(GROUPS, 1, 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&sums, 0, &read, 0, BYTES);
+        self.sums.push((read, grown));
+    }
+}
+
+/// Asks for the sums once the GPU has its commands.
+fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
+    for (buffer, grown) in measuring.sums.drain(..) {
+        let (noise, mapped) = (noise.clone(), buffer.clone());
+        buffer.slice(..).map_async(MapMode::Read, move |result| {
+            let sums = result.is_ok().then(|| mapped.slice(..).get_mapped_range().to_vec());
+            let known = sums.and_then(|bytes| relative_error(&bytes, grown.frames, grown.done));
+            noise.tell(grown.view, Known { frame: grown.frame, noise: known });
+        });
+    }
+}
+
+/// The noise from the sums of the workgroups; `None` where nothing is seen.
+fn relative_error(bytes: &[u8], frames: u32, samples: u32) -> Option<f32> {
+    let mut sums = [0.0f64; 3];
+    for [squares, luminance, pixels, _] in bytes.as_chunks::<4>().0.as_chunks::<4>().0 {
+        for (sum, part) in sums.iter_mut().zip([squares, luminance, pixels]) {
+            *sum += f64::from(f32::from_le_bytes(*part));
+        }
+    }
+    let [squares, luminance, pixels] = sums;
+    // Squares count once for each sample of their frame.
+    let variance = squares / f64::from(frames - 1) / f64::from(samples);
+    let noise = (variance / pixels).sqrt() / (luminance / pixels);
+    noise.is_finite().then_some(noise as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_the_standard_error_over_the_mean() {
+        // Two groups with a pixel each of the luminance 2, four frames of two samples, squares 12 and 0 in each frame.
+        let group = |squares: f32| [2.0 * squares, 2.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+        let bytes = [group(12.0), group(0.0)].concat();
+        let noise = relative_error(&bytes, 4, 8).expect("something is seen");
+        assert!((noise - 0.5f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
+        assert_eq!(relative_error(&[0; 32], 4, 8), None, "nothing is seen");
+    }
+
+    #[test]
+    fn it_is_measured_now_and_then_and_at_the_end() {
+        let entity = Entity::PLACEHOLDER;
+        let grown = |frames, done, count| Grown { view: entity, frame: 1, frames, done, total: 100, count };
+        for (frames, done, count, is) in [
+            (1, 1, 1, false),
+            (9, 15, 8, false),
+            (9, 16, 1, true),
+            (9, 18, 8, true),
+            (3, 16, 8, false),
+            (9, 100, 4, true),
+        ] {
+            assert_eq!(grown(frames, done, count).is_measured(), is, "{frames} {done} {count}");
+        }
+    }
+}
