@@ -3,11 +3,13 @@
 mod heading;
 mod part;
 mod said;
+mod sampled;
 mod strip;
 mod words;
 
 pub use heading::{header, header_parts, view_parts};
 pub use part::{Part, line};
+pub use sampled::{Sampled, sampled};
 pub use strip::{draw, draw_line, line_width, type_size};
 pub(crate) use words::{display, single, terms_alone, value};
 
@@ -27,6 +29,16 @@ pub struct Caption {
     pub facts: Vec<Part>,
     /// The name and the version of the program.
     pub program: &'static str,
+}
+
+impl Caption {
+    /// The same with what the light of the views rests on, before what each view has of its own.
+    #[must_use]
+    pub fn resting_on(mut self, views: &[Sampled]) -> Self {
+        let own = self.facts.iter().position(Part::leads).unwrap_or(self.facts.len());
+        self.facts.splice(own..own, sampled(views));
+        self
+    }
 }
 
 /// The caption of a scene as it is, of whose equations these terms are shown.

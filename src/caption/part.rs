@@ -30,9 +30,14 @@ impl Part {
         format!("{} {}", self.symbol, self.text).trim().to_owned()
     }
 
-    /// The sign between another part and this one. What ends in a colon leads the next.
+    /// True for a heading, which ends in a colon: it leads the next part.
+    pub(super) fn leads(&self) -> bool {
+        self.text.ends_with(':')
+    }
+
+    /// The sign between another part and this one.
     pub(crate) fn joint(&self, before: &Self) -> &'static str {
-        if before.text.ends_with(':') {
+        if before.leads() {
             " "
         } else if self.continues {
             ", "

@@ -21,8 +21,8 @@
 use glam::Vec3;
 
 use crate::{
-    light::Incident,
-    optics::colour::luminance,
+    light::{Emitter, Incident, LightRecord},
+    optics::{colour::luminance, sequence::Sequence},
     registry::Registry,
     scene::{Light, Scene, emitter},
 };
@@ -309,7 +309,13 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
     let encoding = scene.display.encoding;
     // The luminance of what arrives there, if it counts.
     let arriving = |light: &Light| {
-        let (_, emitter, record) = emitter(light, registry, encoding)?;
+        let (entry, emitter, record) = emitter(light, registry, encoding)?;
+        if entry.declaration.extent {
+            // It shines from no one direction.
+            return channel
+                .is_picture()
+                .then(|| luminance(from_all(&*emitter, &record, middle) * record.colour));
+        }
         let intensity = match emitter.incident(&record, middle) {
             Incident::From { intensity, .. } => intensity,
             Incident::Uniform { intensity } if channel.is_picture() => intensity,
@@ -324,6 +330,16 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
         .collect();
     let brightest = || known.iter().max_by(|a, b| a.2.total_cmp(&b.2));
     known.iter().find(|(_, index, _)| Some(*index) == chosen).or_else(brightest).map(|(place, ..)| *place)
+}
+
+/// The radiance of a light with extent, summed over the directions from a point.
+fn from_all(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Vec3 {
+    /// Samples: brightness is compared, no more.
+    const SAMPLES: u32 = 64;
+    let sequence = Sequence::new(0, 0);
+    let sum = (0..SAMPLES).map(|i| emitter.sample(record, p, sequence.point(i)));
+    let sum: Vec3 = sum.filter(|sample| sample.pdf > 0.0).map(|sample| sample.radiance / sample.pdf).sum();
+    sum / SAMPLES as f32
 }
 
 /// A number with its two leading digits, rounded by a function.
@@ -412,6 +428,20 @@ mod tests {
         assert_eq!(light(&lights(&[("ambient", 1.0)]), DebugChannel::NDotL, None), None);
         let alone = Setting::new(DebugChannel::Light, &scene, &registry, Vec3::Z, Some(3)).lit(&scene);
         assert_eq!(alone.lights.iter().map(|l| l.enabled).collect::<Vec<_>>(), [false, false, false, true]);
+    }
+
+    #[test]
+    fn a_light_with_extent_has_no_one_direction_but_a_picture_of_its_own() {
+        let registry = Registry::builtin();
+        let light =
+            |scene: &Scene, channel, chosen| Setting::new(channel, scene, &registry, Vec3::Z, chosen).light;
+        // 100 cd/m² of a square metre, 3 m above: 11 lx.
+        let scene = lights(&[("point", 1.0), ("rectangle", 100.0), ("point", 9.0)]);
+        assert_eq!(light(&scene, DebugChannel::NDotL, Some(1)), Some(2), "the brightest with a direction");
+        assert_eq!(light(&scene, DebugChannel::Light, None), Some(1), "it is brightest");
+        assert_eq!(light(&lights(&[("rectangle", 100.0)]), DebugChannel::NDotH, None), None);
+        let scene = lights(&[("rectangle", 1.0), ("point", 9.0)]);
+        assert_eq!(light(&scene, DebugChannel::Light, None), Some(1), "0.1 lx against 1");
     }
 
     #[test]

@@ -1,12 +1,17 @@
 //! `lcm compare`: the difference between two views, or two files, as numbers and as a picture.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Options, Outcome, outputs, pictures, print_json,
+    Options, Outcome, gauged,
+    light_samples::Sampling,
+    outputs, pictures, print_json,
     render::{self, Size, cpu_can_draw, samples},
     scenes::Source,
     views::{Choice, find},
@@ -17,7 +22,8 @@ use crate::{
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     export::write::inputs,
     failure::Failure,
-    reference::Settings,
+    progress::Progress,
+    reference::{self, Reached, Settings},
     registry::Registry,
     render::capture::png::About,
     scene::{
@@ -45,6 +51,8 @@ pub(super) struct Arguments {
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
+    #[command(flatten)]
+    sampling: Sampling,
     #[command(flatten)]
     choice: Choice,
     /// Fail if a metric is larger: rmse, flip, largest, light_rmse; with covered. before it, over covered pixels only
@@ -168,6 +176,24 @@ impl Input {
     }
 }
 
+/// How views are drawn.
+struct Drawing<'a> {
+    /// Samples per pixel.
+    samples: u32,
+    sampling: Sampling,
+    registry: &'a Registry,
+    /// The number of pictures.
+    count: usize,
+}
+
+impl Drawing<'_> {
+    /// Draws one of the pictures, whose progress is a part of the whole.
+    fn part<T>(&self, number: usize, whole: &Progress, draw: impl FnOnce(&Progress) -> T) -> T {
+        let tell = |done: f32, step: &str| (whole.tell)((number as f32 + done) / self.count as f32, step);
+        draw(&Progress { tell: &tell, cancelled: whole.cancelled })
+    }
+}
+
 /// A view that is compared: one of a scene, or a picture.
 #[derive(Clone, Copy)]
 struct View<'a> {
@@ -184,18 +210,28 @@ impl View<'_> {
         }
     }
 
-    /// The picture of the view. Pictures keep their size.
-    fn shown(&self, [width, height]: [u32; 2], samples: u32, registry: &Registry) -> Result<Shown, Failure> {
-        match self.input {
-            Input::Picture(_, shown) => Ok(shown.clone()),
-            Input::Scene(_, scene) => {
-                let settings = Settings { width, height, samples, ..Settings::default() };
-                let shown = Shown::of_view(scene, self.view, registry, &settings);
-                // An endless function of a custom model shows only when it runs.
-                self.check(registry)?;
-                shown.ok_or_else(|| Failure::Invalid(format!("{}: there is no such view", self.input.name())))
-            }
-        }
+    /// The picture of the view, and what was reached for lights with extent. Pictures keep their size.
+    fn shown(
+        &self,
+        [width, height]: [u32; 2],
+        drawing: &Drawing,
+        progress: &Progress,
+    ) -> Result<(Shown, Option<Reached>), Failure> {
+        let scene = match self.input {
+            Input::Picture(_, shown) => return Ok((shown.clone(), None)),
+            Input::Scene(_, scene) => scene,
+        };
+        let registry = drawing.registry;
+        let none = || Failure::Invalid(format!("{}: there is no such view", self.input.name()));
+        let (seen, terms) = scene.seen(self.view, registry).ok_or_else(none)?;
+        let settings = Settings { width, height, samples: drawing.samples, terms };
+        let odd = AtomicBool::default();
+        let until = drawing.sampling.until();
+        let (light, reached) = reference::render_until(&seen, registry, &settings, until, &odd, progress)
+            .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
+        // An endless function of a custom model shows only when it runs.
+        self.check(registry)?;
+        Ok((Shown::of_light(light, &seen.display), Some(reached).filter(|reached| reached.samples > 0)))
     }
 
     /// The picture of the view with the outlines of its objects, if it is one of a scene.
@@ -206,9 +242,13 @@ impl View<'_> {
         }
     }
 
-    fn report(&self) -> Side {
+    fn report(&self, reached: Option<Reached>) -> Side {
+        let light_samples = reached.map(|reached| reached.samples);
+        let noise = reached.and_then(|reached| reached.noise);
         match self.input {
-            Input::Picture(name, _) => Side { file: name.clone(), view: None, name: None },
+            Input::Picture(name, _) => {
+                Side { file: name.clone(), view: None, name: None, light_samples, noise }
+            }
             Input::Scene(source, scene) => Side {
                 file: source.plain_name(),
                 view: LETTERS.get(self.view).copied(),
@@ -216,6 +256,8 @@ impl View<'_> {
                     None => scene.name.clone(),
                     Some(i) => scene.variants.get(i).and_then(|variant| variant.name.clone()),
                 },
+                light_samples,
+                noise,
             },
         }
     }
@@ -241,6 +283,11 @@ struct Side {
     file: String,
     view: Option<&'static str>,
     name: Option<String>,
+    /// The samples of each light with extent, and the noise of the picture; none without such lights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    light_samples: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    noise: Option<f32>,
 }
 
 #[derive(Serialize)]
@@ -310,8 +357,35 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let size = size(arguments.size, &read)?;
     views.iter().try_for_each(|view| view.check(registry))?;
     let [a, b] = [views[0], other(&comparison, &views)];
-    let [shown_a, shown_b] = [a, b].map(|view| view.shown(size, arguments.samples, registry));
-    let mut shown = [shown_a?, shown_b?];
+    let beside = arguments.output.is_some() && comparison.layout == Layout::SideBySide;
+    let drawing = Drawing {
+        samples: arguments.samples,
+        sampling: arguments.sampling,
+        registry,
+        count: if beside { 2 + views.len() } else { 2 },
+    };
+    if let Some(input) = read.iter().find(|input| input.scene().is_some()) {
+        let scenes = read.iter().filter_map(Input::scene);
+        let idle = scenes.map(|scene| arguments.sampling.idle(scene, registry)).collect::<Option<Vec<_>>>();
+        let idle = idle.and_then(|idle| idle.into_iter().next());
+        idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", input.name())));
+    }
+    let drawn = gauged("drawing the views", options, |progress| {
+        let [first, second] =
+            [(a, 0), (b, 1)].map(|(view, i)| drawing.part(i, progress, |p| view.shown(size, &drawing, p)));
+        let shown = [first?, second?];
+        let beside = match beside {
+            true => Some(side_by_side(&comparison, size, &views, &drawing, progress)?),
+            false => None,
+        };
+        Ok::<_, Failure>((shown, beside))
+    });
+    let ([(shown_a, reached_a), (shown_b, reached_b)], beside) = drawn?;
+    for (view, reached) in [(a, reached_a), (b, reached_b)] {
+        let remark = reached.and_then(|reached| arguments.sampling.remark(reached));
+        remark.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", view.input.name())));
+    }
+    let mut shown = [shown_a, shown_b];
     if arguments.output.is_some() && comparison.layout == Layout::Difference {
         let [shown_a, shown_b] = shown;
         shown = [a.outlined(shown_a, registry), b.outlined(shown_b, registry)];
@@ -325,15 +399,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         pair.measure().ok_or_else(|| Failure::Invalid("the pictures have no pixels".to_owned()))?;
 
     let drawn = match &arguments.output {
-        Some(_) if comparison.layout == Layout::SideBySide => {
-            Some(side_by_side(&comparison, size, &views, arguments.samples, registry)?)
-        }
+        Some(_) if beside.is_some() => beside,
         Some(_) => Some((size, compose(&comparison, size, &shown).map_err(invalid)?)),
         None => None,
     };
     let report = Report {
-        a: a.report(),
-        b: b.report(),
+        a: a.report(reached_a),
+        b: b.report(reached_b),
         width: size[0],
         height: size[1],
         values: comparison.values.id(),
@@ -450,8 +522,8 @@ fn side_by_side(
     comparison: &Comparison,
     size: [u32; 2],
     views: &[View],
-    samples: u32,
-    registry: &Registry,
+    drawing: &Drawing,
+    progress: &Progress,
 ) -> Result<([u32; 2], Vec<u8>), Failure> {
     let variants = views.len() - 1;
     let places = |size| cells(comparison, variants, size);
@@ -464,10 +536,10 @@ fn side_by_side(
         || Failure::Usage(format!("{}x{} pixels have no room for the views side by side", size[0], size[1]));
     let whole = whole.ok_or_else(no_room)?;
     let places = places(whole).ok_or_else(no_room)?;
-    let shown = views
-        .iter()
-        .zip(&places)
-        .map(|(view, cell)| view.shown([cell.width, cell.height], samples, registry));
+    let shown = views.iter().zip(&places).enumerate().map(|(i, (view, cell))| {
+        let part = |progress: &Progress| view.shown([cell.width, cell.height], drawing, progress);
+        Ok::<_, Failure>(drawing.part(2 + i, progress, part)?.0)
+    });
     let shown = shown.collect::<Result<Vec<_>, _>>()?;
     let rgb8 = compose(comparison, whole, &shown).map_err(|error| Failure::Invalid(error.to_string()))?;
     Ok((whole, rgb8))

@@ -9,6 +9,7 @@ use crate::{
     files::{self, printable, printable_json},
     parameter::outside,
     program::{self, in_own_words},
+    progress::Progress,
     registry::Registry,
     scene::load::Defaults,
     signals::Interrupt,
@@ -26,7 +27,7 @@ use std::{
 
 use bevy::app::App;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use workshop::Places;
 
@@ -41,6 +42,7 @@ mod explain;
 mod export;
 mod finite;
 mod lesson;
+mod light_samples;
 mod matching;
 mod models;
 mod new;
@@ -495,16 +497,29 @@ fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&in_own_words(&what.to_string())));
 }
 
+/// The steps of a bar for one piece of work.
+const FINE: u64 = 1_000_000;
+
 /// A progress bar if it helps: several steps, a terminal, and no `--quiet`.
 fn progress(steps: u64, options: Options) -> ProgressBar {
     if steps < 2 || options.quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(steps);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
+    bar.set_style(style("{bar:30} {pos}/{len} {msg}"));
     bar
+}
+
+/// The style of a bar; `{left}` is the time that is left, if that can be told.
+fn style(template: &str) -> ProgressStyle {
+    let left = |state: &ProgressState, text: &mut dyn fmt::Write| {
+        if state.pos() > 0 {
+            // Writing to a line cannot fail.
+            let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+        }
+    };
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    style.with_key("left", left)
 }
 
 /// Works, and if that takes longer than some time and there is a terminal, calls `watch` beside it, with a function that
@@ -533,20 +548,30 @@ fn attended<T>(
     })
 }
 
-/// Works, and says on a terminal what takes so long, if it does.
-fn patiently<T>(what: &str, options: Options, work: impl FnOnce() -> T) -> T {
+/// Works, and says on a terminal what takes so long, if it does, with a bar if the work tells how far it is.
+fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) -> T {
+    let bar = ProgressBar::with_draw_target(Some(FINE), ProgressDrawTarget::hidden());
+    let what = printable(what);
+    bar.set_message(what.clone().into_owned());
+    let tell = |done: f32, step: &str| {
+        bar.set_message(format!("{what}, {step}"));
+        bar.set_position((done * FINE as f32) as u64);
+    };
     let watch = |goes_on: &dyn Fn() -> bool| {
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it") {
-            bar.set_style(style);
-        }
-        bar.set_message(printable(what).into_owned());
+        bar.set_style(style("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it"));
+        bar.set_draw_target(ProgressDrawTarget::stderr());
+        let mut known = false;
         while goes_on() {
+            if !known && bar.position() > 0 {
+                known = true;
+                bar.set_style(style("{bar:30} {percent} % {msg}{left}; Ctrl+C ends it"));
+            }
             bar.tick();
         }
         bar.finish_and_clear();
     };
-    attended(options, Duration::from_secs(1), watch, work)
+    let progress = Progress { tell: &tell, cancelled: &|| false };
+    attended(options, Duration::from_secs(1), watch, || work(&progress))
 }
 
 /// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything but y or yes is a no.

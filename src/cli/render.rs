@@ -1,24 +1,29 @@
 //! `lcm render`: scenes to PNG files.
 
 use std::{
+    borrow::Cow,
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
     str::FromStr,
     sync::atomic::AtomicBool,
+    time::Duration,
 };
 
 use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Options, Outcome, finite, outputs, patiently, progress,
+    FINE, Options, Outcome, finite, gauged,
+    light_samples::Sampling,
+    outputs, progress,
     scenes::Source,
+    style,
     views::{self, Part, Plan},
     workshop::{Workshop, drawable, invalid, not_on_cpu},
 };
 use crate::files::Shown as _;
 use crate::{
-    caption,
+    caption::{self, Sampled},
     channel::{DebugChannel, Legend, Setting},
     compare::{Cell, Shown, compose, with_legends},
     explain::finite::Tried,
@@ -26,7 +31,8 @@ use crate::{
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reference::{self, Reached, Until},
+    progress::Progress,
+    reference::{self, LightSamples, Reached, Until},
     reflection::ends::check_that_it_ends,
     registry::Registry,
     render::{
@@ -47,6 +53,8 @@ use crate::{
 const MOST_TRIED: usize = 64;
 /// More lights are not listed one by one.
 const MOST_LISTED: usize = 16;
+/// The time between two drawings of the bar of several pictures.
+const TICK: Duration = Duration::from_millis(200);
 /// The default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
 
@@ -67,14 +75,8 @@ pub(super) struct Arguments {
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
-    /// Samples of each light with extent, and as many of the directions in which objects reflect most, on the CPU: 1 to 1048576;
-    /// by default 256, with --noise 65536
-    #[arg(long, value_name = "N", value_parser = light_samples)]
-    light_samples: Option<u32>,
-    /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
-    /// luminance, in per cent, e.g. 1 or 0.5%
-    #[arg(long, value_name = "PERCENT", value_parser = noise)]
-    noise: Option<f32>,
+    #[command(flatten)]
+    sampling: Sampling,
     /// Use this reflection model for every object
     #[arg(long, value_name = "ID")]
     reflection: Option<String>,
@@ -128,18 +130,6 @@ impl Arguments {
     }
 }
 
-impl Arguments {
-    /// True if something is said of the samples of lights with extent, which the CPU renderer counts.
-    fn counts_samples(&self) -> bool {
-        self.light_samples.is_some() || self.noise.is_some()
-    }
-
-    fn until(&self) -> Until {
-        let default = if self.noise.is_some() { MAX_FOR_NOISE } else { Until::default().samples };
-        Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
-    }
-}
-
 /// The choice of renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Renderer {
@@ -177,31 +167,6 @@ impl FromStr for Size {
 /// Its range is checked where those of all changes are.
 fn exposure(text: &str) -> Result<f32, String> {
     text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
-}
-
-/// The most samples of lights with extent.
-const MAX_LIGHT_SAMPLES: u32 = 1 << 20;
-
-/// The most samples where noise decides, unless others are asked for.
-const MAX_FOR_NOISE: u32 = 1 << 16;
-
-fn light_samples(text: &str) -> Result<u32, String> {
-    text.trim()
-        .parse()
-        .ok()
-        .filter(|n| (1..=MAX_LIGHT_SAMPLES).contains(n))
-        .ok_or_else(|| format!("it must be a whole number from 1 to {MAX_LIGHT_SAMPLES}"))
-}
-
-/// Noise as a fraction, from per cent.
-fn noise(text: &str) -> Result<f32, String> {
-    let number = text.trim().trim_end_matches('%').trim_end();
-    number
-        .parse()
-        .ok()
-        .filter(|percent: &f32| (0.01..=100.0).contains(percent))
-        .map(|percent| percent / 100.0)
-        .ok_or_else(|| "it must be a number of per cent from 0.01 to 100, e.g. 1 or 0.5%".to_owned())
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {
@@ -263,8 +228,8 @@ struct Job<'a> {
     file: &'a Path,
     size: [u32; 2],
     samples: u32,
-    /// The end of the samples of lights with extent.
-    until: Until,
+    /// What is said of the samples of lights with extent.
+    sampling: Sampling,
     with_scene: bool,
     with_caption: bool,
     /// One view was asked for.
@@ -272,6 +237,14 @@ struct Job<'a> {
     /// The channel that is shown instead of the picture.
     channel: Option<Setting>,
     with_legend: bool,
+}
+
+impl Job<'_> {
+    /// True if what is shown of a scene rests on samples of lights with extent.
+    fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
+        self.channel.is_none_or(|setting| rests_on_samples(setting.channel))
+            && has_extent(scene.shining(), registry)
+    }
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
@@ -287,6 +260,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
+    let renderer = renderer(arguments)?;
 
     // All scenes are read before the first is rendered, so errors in the last one show at once.
     let mut scenes = Vec::with_capacity(sources.len());
@@ -329,16 +303,19 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     // All files are in one folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
-    let bar = progress(scenes.len() as u64, options);
-    let renderer = match arguments.renderer {
-        Renderer::Auto if arguments.counts_samples() => Renderer::Cpu,
-        Renderer::Gpu if arguments.counts_samples() => {
-            return Err(Failure::Usage(
-                "--light-samples and --noise are for the CPU renderer; the GPU takes 256 samples".to_owned(),
-            ));
+    if arguments.sampling.given().is_some() {
+        for (source, plan) in sources.iter().zip(&plans) {
+            // Views have the lights of their scene.
+            let idle = plan.parts.first().and_then(|part| arguments.sampling.idle(&part.scene, registry));
+            idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", source.name())));
         }
-        renderer => renderer,
-    };
+    }
+    let count = scenes.len() as u64;
+    let bar = progress(if count > 1 { count * FINE } else { 0 }, options);
+    if !bar.is_hidden() {
+        bar.set_style(style("{bar:30} {percent} % {msg}{left}"));
+        bar.enable_steady_tick(TICK);
+    }
     let mut painter = Painter::new(renderer, options.trial_program())?;
     // A model that only a GPU can draw needs a driver after all. A scene from standard input cannot be read twice.
     #[cfg(target_os = "linux")]
@@ -367,10 +344,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if !problems.is_empty() {
         return Err(Failure::Invalid(problems.join("\n")));
     }
-    for ((((scene, plan), channel), source), file) in
-        scenes.iter().zip(&plans).zip(channels).zip(&sources).zip(&files)
-    {
-        bar.set_message(printable(&source.name()).into_owned());
+    let jobs = scenes.iter().zip(&plans).zip(channels).zip(&sources).zip(&files);
+    for (done, ((((scene, plan), channel), source), file)) in (0u64..).zip(jobs) {
         let job = Job {
             scene,
             plan,
@@ -378,28 +353,79 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             file,
             size,
             samples: arguments.samples,
-            until: arguments.until(),
+            sampling: arguments.sampling,
             with_scene: !arguments.no_scene,
             with_caption: arguments.caption,
             alone: arguments.view.is_some(),
             channel,
             with_legend: !arguments.no_legend,
         };
-        let remarks = if bar.is_hidden() {
-            patiently(&format!("drawing {}", source.name()), options, || painter.draw(&job, registry))?
+        let Painted { remarks, light } = if bar.is_hidden() {
+            let what = format!("drawing {}", source.name());
+            gauged(&what, options, |progress| painter.draw(&job, registry, progress))?
         } else {
-            painter.draw(&job, registry)?
+            let what = printable(&format!("{} of {count}, {}", done + 1, source.name())).into_owned();
+            let begin = done * FINE;
+            let tell = |done: f32, step: &str| {
+                bar.set_message(if step.is_empty() { what.clone() } else { format!("{what}, {step}") });
+                bar.set_position(begin + (done * FINE as f32) as u64);
+            };
+            tell(0.0, "");
+            painter.draw(&job, registry, &Progress { tell: &tell, cancelled: &|| false })?
         };
         remarks.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", source.name())));
-        bar.inc(1);
+        let light = if light.is_empty() { light } else { format!(": {light}") };
+        let wrote = format!("wrote {}{light}", file.shown());
         if bar.is_hidden() {
-            options.tell(format_args!("wrote {}", file.shown()));
+            options.tell(wrote);
         } else {
-            bar.println(printable(&format!("wrote {}", file.shown())));
+            bar.println(printable(&wrote));
         }
     }
     bar.finish_and_clear();
     Ok(())
+}
+
+/// The renderer that is asked for. The samples of lights with extent are counted on the CPU.
+fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
+    let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
+    if let Some(channel) = arguments.channel.filter(|channel| !rests_on_samples(*channel)) {
+        let known = DebugChannel::ALL.into_iter().filter(|known| rests_on_samples(*known));
+        let known: Vec<_> = known.map(DebugChannel::id).collect();
+        return Err(Failure::Usage(format!(
+            "{given} cannot be used with --channel {}, which shows no light of lamps; channels that do are {}",
+            channel.id(),
+            crate::text::listed(&known, "and")
+        )));
+    }
+    match arguments.renderer {
+        Renderer::Gpu => Err(Failure::Usage(format!(
+            "{given} cannot be used with --renderer gpu, which always takes {} samples; use --renderer cpu",
+            LightSamples::DEFAULT
+        ))),
+        Renderer::Auto | Renderer::Cpu => Ok(Renderer::Cpu),
+    }
+}
+
+/// True for channels whose values come from the light that leaves the surface.
+fn rests_on_samples(channel: DebugChannel) -> bool {
+    channel.is_of_light() && !channel.has_wires()
+}
+
+/// What came of a picture.
+struct Painted {
+    /// Remarks on light that is not finite, or noisier than was asked for.
+    remarks: Vec<String>,
+    /// What the light of lights with extent rests on, in words; often empty.
+    light: String,
+}
+
+/// A view as it was drawn.
+struct Drawn {
+    shown: Shown,
+    /// What was reached for lights with extent; none without them.
+    reached: Option<Reached>,
+    remark: Option<String>,
 }
 
 /// Renders pictures, one after the other, with the chosen renderer.
@@ -440,8 +466,8 @@ impl Painter {
         }
     }
 
-    /// Renders one picture. Returns remarks on light that is not finite.
-    fn draw(&mut self, job: &Job, registry: &Registry) -> Result<Vec<String>, Failure> {
+    /// Renders one picture.
+    fn draw(&mut self, job: &Job, registry: &Registry, progress: &Progress) -> Result<Painted, Failure> {
         let gpu = self.takes_gpu(job.plan, registry);
         if gpu && job.plan.needs_light() {
             return Err(Failure::NoRenderer(format!(
@@ -449,15 +475,25 @@ impl Painter {
                 job.source.name()
             )));
         }
-        let mut shown = Vec::with_capacity(job.plan.parts.len());
-        let mut remarks = Vec::new();
-        for part in &job.plan.parts {
-            let (drawn, remark) =
-                if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? };
-            let outlined = shown.is_empty() && job.plan.is_map();
-            shown.push(if outlined { drawn.outlined(&part.scene, registry) } else { drawn });
+        let count = job.plan.parts.len();
+        let mut all = Vec::with_capacity(count);
+        let (mut remarks, mut rests_on) = (Vec::new(), Vec::new());
+        for (i, part) in job.plan.parts.iter().enumerate() {
+            let tell = |done: f32, step: &str| {
+                let letter = LETTERS.get(part.cell.view).filter(|_| count > 1);
+                let step = letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"));
+                (progress.tell)((i as f32 + done) / count as f32, &step);
+            };
+            let progress = Progress { tell: &tell, cancelled: progress.cancelled };
+            let Drawn { shown, reached, remark } =
+                if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry, &progress)? };
+            let outlined = all.is_empty() && job.plan.is_map();
+            all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
             remarks.extend(remark);
+            rests_on.extend(reached.map(|Reached { samples, noise }| Sampled { samples, noise }));
         }
+        let mut shown = all;
+        let light = caption::line(&caption::sampled(&rests_on));
         let rgb8 = match shown.pop() {
             Some(only) if shown.is_empty() => only.into_rgb8(),
             last => {
@@ -480,18 +516,14 @@ impl Painter {
             Some(setting) => about.with("Channel", setting.channel.id()),
             None => about,
         };
+        let about = if light.is_empty() { about } else { about.with("Light", &*light) };
         let about = if job.with_scene { about } else { about.without_scene() };
-        let (rgb8, size) = captioned(job, registry, rgb8);
+        let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
         outputs::write_picture(job.file, size, &rgb8, &about)?;
-        Ok(remarks)
+        Ok(Painted { remarks, light })
     }
 
-    fn on_gpu(
-        &mut self,
-        job: &Job,
-        part: &Part,
-        registry: &Registry,
-    ) -> Result<(Shown, Option<String>), Failure> {
+    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
         let Cell { width, height, .. } = part.cell;
         let key = (width, height, job.samples);
         let failed = |e: GpuError| match e {
@@ -526,14 +558,18 @@ impl Painter {
         let rgb8 = renderer.read_rgb8().map_err(failed)?;
         let shown =
             Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))?;
+        let reached = job
+            .converges(&part.scene, registry)
+            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
         // What ships with the program is always finite.
         if !has_untested(registry) {
-            return Ok((shown, None));
+            return Ok(Drawn { shown, reached, remark: None });
         }
         renderer.set_channel(Some(finite::channel(&part.scene, registry)));
         renderer.settle().map_err(failed)?;
         let channel = renderer.read_rgb8().map_err(failed)?;
-        Ok((shown, finite::remark_on_gpu(part, registry, &channel, &mut self.tried)))
+        let remark = finite::remark_on_gpu(part, registry, &channel, &mut self.tried);
+        Ok(Drawn { shown, reached, remark })
     }
 }
 
@@ -551,12 +587,12 @@ fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
 }
 
 /// The picture and its size, with a caption if there shall be one.
-fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>) -> (Vec<u8>, [u32; 2]) {
+fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>, rests_on: &[Sampled]) -> (Vec<u8>, [u32; 2]) {
     if !job.with_caption {
         return (rgb8, job.size);
     }
     let shown: Vec<_> = job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
-    let caption = caption::of_picture(job.scene, &shown, registry);
+    let caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
     caption::draw(&caption, rgb8, job.size)
 }
 
@@ -575,39 +611,50 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
     }
 }
 
-fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<(Shown, Option<String>), Failure> {
-    cpu_can_draw(&part.scene, registry)?;
+fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> Result<Drawn, Failure> {
+    let can_draw = || {
+        let without = job.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
+        cpu_can_draw_or(&part.scene, registry, &format!("--renderer gpu{without}"))
+    };
+    can_draw()?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
     // A channel does not note what it shows.
     let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
-    let mut converged = None;
-    let shown = if let Some(channel) = &job.channel {
-        let rgb8 = reference::render_channel(&part.scene, registry, &settings, channel);
-        Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
-    } else if has_extent(part.scene.shining(), registry) {
-        let (picture, reached) = reference::render_until(&part.scene, registry, &settings, job.until, &odd);
-        converged = Some(reached);
-        Shown::of_light(picture, &part.scene.display)
+    let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()));
+    let alone = job.channel.filter(|setting| setting.channel.is_picture());
+    let lit =
+        alone.map_or_else(|| Cow::Borrowed(&part.scene), |setting| Cow::Owned(setting.lit(&part.scene)));
+    let until = job.sampling.until();
+    let converged = || {
+        reference::render_until(&lit, registry, &settings, until, &odd, progress)
+            .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))
+    };
+    let mut reached = None;
+    let shown = if let Some(setting) = job.channel.filter(|_| alone.is_none()) {
+        if job.converges(&lit, registry) {
+            // A channel is no mean of others, so it takes all samples at once: as many as the picture takes.
+            reached = Some(match until {
+                Until { noise: Some(_), .. } => converged()?.1,
+                Until { samples, noise: None } => Reached { samples, noise: None },
+            });
+        }
+        let samples = reached.map_or_else(LightSamples::default, |reached| LightSamples::of(reached.samples));
+        of_codes(reference::render_channel_by(&lit, registry, &settings, &setting, samples))?
+    } else if job.converges(&lit, registry) {
+        let (picture, end) = converged()?;
+        reached = Some(end);
+        Shown::of_light(picture, &lit.display)
     } else if job.plan.needs_light() {
-        Shown::of_light(reference::render_noting(&part.scene, registry, &settings, &odd), &part.scene.display)
+        Shown::of_light(reference::render_noting(&lit, registry, &settings, &odd), &lit.display)
     } else {
-        let rgb8 = reference::render_rgb8_noting(&part.scene, registry, &settings, &odd);
-        Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
+        of_codes(reference::render_rgb8_noting(&lit, registry, &settings, &odd))?
     };
     // An endless function shows only when it runs.
-    cpu_can_draw(&part.scene, registry)?;
+    can_draw()?;
     let remark = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
-    Ok((shown, remark.or_else(|| too_noisy(job.until, converged?))))
-}
-
-/// A remark on a picture that is noisier than was asked for.
-fn too_noisy(until: Until, Reached { samples, noise }: Reached) -> Option<String> {
-    let noise = noise.filter(|noise| until.noise.is_some_and(|wanted| *noise > wanted))?;
-    Some(format!(
-        "after {samples} samples the noise is {:.2} %; more --light-samples lower it",
-        100.0 * noise
-    ))
+    let remark = remark.or_else(|| job.sampling.remark(reached?));
+    Ok(Drawn { shown, reached, remark })
 }
 
 /// The views that the picture of a scene shows.
@@ -667,9 +714,14 @@ fn setting(
 
 /// Fails if the CPU renderer is known to lack something that a scene's models need.
 pub(super) fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
+    cpu_can_draw_or(scene, registry, "--renderer gpu")
+}
+
+/// The same with what to use instead.
+fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {
-            return Err(not_on_cpu(model, &why, "--renderer gpu"));
+            return Err(not_on_cpu(model, &why, instead));
         }
     }
     Ok(())

@@ -9,19 +9,26 @@ use std::{
     fmt,
 };
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::{Seen, numbers::triple, pixel};
+use super::{
+    Seen as Explained,
+    numbers::{number, triple},
+    pixel,
+};
 use crate::files::Shown as _;
 use crate::{
     channel::colours::{INFINITE, NAN},
-    light::Incident,
+    light::{
+        Emitter, Incident, LightRecord,
+        extent::{Sample, Seen},
+    },
     optics::{Frame, Terms},
     parameter::words,
     reference::Settings,
     reflection::{ModelEntry, Surface, ends::check_that_it_ends},
     registry::Registry,
-    scene::{Object, Scene, error::Path, record},
+    scene::{Light, Object, Scene, emitter, error::Path, record},
     text::quoted,
 };
 
@@ -137,27 +144,78 @@ fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
         let emitter = (entry.instantiate)(&light.parameters, encoding);
         let record = record(light, registry, encoding);
         let odd = places.iter().find_map(|p| {
-            let (value, l) = match emitter.incident(&record, *p) {
-                Incident::From { l, intensity } => (intensity, l),
-                Incident::Uniform { intensity } => (intensity, Vec3::Z),
+            let (of, value) = if entry.declaration.extent {
+                with_extent(&*emitter, &record, *p)?
+            } else {
+                of_direction(&*emitter, &record, *p)?
             };
-            (!value.is_finite() || value != Vec3::ZERO && !l.is_finite()).then(|| {
-                let of = if value.is_finite() { ("direction", l) } else { ("intensity", value) };
-                (*p, of)
-            })
+            Some((*p, of, value))
         });
-        found.extend(odd.map(|(p, (of, value))| NotFinite {
-            path: part("lights", i),
-            what: format!(
-                "{}is of the type {}, whose {of} at {} m is {}; it must be finite",
-                named(light.name.as_deref()),
-                entry.declaration.id,
-                triple(p),
-                triple(value)
-            ),
-        }));
+        found.extend(odd.map(|(p, of, value)| of_light(i, light, of, p, &value)));
     }
     found
+}
+
+fn of_light(index: usize, light: &Light, of: &str, p: Vec3, value: &str) -> NotFinite {
+    let (name, id, p) = (named(light.name.as_deref()), &light.light_type, triple(p));
+    let what = format!("{name}is of the type {id}, whose {of} at {p} m is {value}; it must be finite");
+    NotFinite { path: part("lights", index), what }
+}
+
+/// What is not finite of a light without extent at a point, and its value.
+fn of_direction(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<(&'static str, String)> {
+    let (value, l) = match emitter.incident(record, p) {
+        Incident::From { l, intensity } => (intensity, l),
+        Incident::Uniform { intensity } => (intensity, Vec3::Z),
+    };
+    if !value.is_finite() {
+        return Some(("intensity", triple(value)));
+    }
+    (value != Vec3::ZERO && !l.is_finite()).then(|| ("direction", triple(l)))
+}
+
+/// What is not finite of a light with extent at a point: in samples, or seen in their directions and in some others.
+fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<(&'static str, String)> {
+    let mut directions = directions();
+    for u in grid() {
+        let Sample { l, radiance, pdf } = emitter.sample(record, p, u);
+        if !radiance.is_finite() {
+            return Some(("radiance in sample", triple(radiance)));
+        }
+        if !pdf.is_finite() {
+            return Some(("density in sample", number(pdf)));
+        }
+        if radiance != Vec3::ZERO && pdf > 0.0 {
+            if !l.is_finite() {
+                return Some(("direction in sample", triple(l)));
+            }
+            directions.push(l);
+        }
+    }
+    directions.into_iter().find_map(|l| {
+        let Seen { radiance, pdf, distance } = emitter.seen(record, p, l);
+        match () {
+            () if !radiance.is_finite() => Some(("radiance in seen", triple(radiance))),
+            () if !pdf.is_finite() => Some(("density in seen", number(pdf))),
+            // Infinite is far away.
+            () if distance.is_nan() => Some(("distance in seen", number(distance))),
+            () => None,
+        }
+    })
+}
+
+/// Points of the unit square: a grid with its edges.
+fn grid() -> impl Iterator<Item = Vec2> {
+    /// Points on a side. Samples are below 1.
+    const SIDE: usize = 5;
+    let at = |i: usize| (i as f32 / (SIDE - 1) as f32).min(1.0f32.next_down());
+    (0..SIDE * SIDE).map(move |i| Vec2::new(at(i % SIDE), at(i / SIDE)))
+}
+
+/// Directions of the whole sphere.
+fn directions() -> Vec<Vec3> {
+    let polar = [0.0, 45.0, 90.0, 135.0, 180.0];
+    polar.into_iter().flat_map(|theta| PLANES.map(|phi| direction(theta, phi))).collect()
 }
 
 /// Points at objects, and a grid in the room.
@@ -264,7 +322,7 @@ pub fn traced(
         else {
             continue;
         };
-        for odd in of_pixel(&seen, *at) {
+        for odd in of_pixel(scene, registry, &seen, *at) {
             if !found.iter().any(|known| known.path == odd.path) {
                 found.push(odd);
             }
@@ -273,12 +331,20 @@ pub fn traced(
     found
 }
 
-fn of_pixel(seen: &Seen, [x, y]: [u32; 2]) -> Vec<NotFinite> {
+fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 2]) -> Vec<NotFinite> {
     let mut found = Vec::new();
     let object = seen.object.name.as_deref();
     for spot in &seen.spots {
         for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
-            if lit.arriving.is_finite() {
+            let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
+            let of = light.and_then(|light| {
+                let (_, emitter, record) = emitter(light, registry, scene.display.encoding)?;
+                let (of, value) = with_extent(&*emitter, &record, spot.position)?;
+                Some(of_light(lit.light.index, light, of, spot.position, &value))
+            });
+            if let Some(of) = of {
+                found.push(of);
+            } else if lit.arriving.is_finite() {
                 let value = odd(&lit.response).unwrap_or(lit.contribution);
                 let where_ = format!("{} at pixel {x},{y}", light_path(lit.light.index));
                 let what = of_model(object, seen.model.id, value, &where_);

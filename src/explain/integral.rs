@@ -121,6 +121,9 @@ pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
     let of_error = if (1.0..1.95).contains(&lead) { 2 } else { 1 };
     let last = place(error) + 1 - of_error;
     let digits = if value == 0.0 { 1 } else { (place(value) - last + 1).clamp(1, MOST) };
+    // Digits before the point are written whether they mean something or not.
+    let unit = 10f64.powi(last.max(0));
+    let value = if last > 0 { (value / unit).round() * unit } else { value };
     [rounded(value, digits as usize), rounded(error, of_error as usize)]
 }
 
@@ -134,6 +137,7 @@ mod tests {
             (0.512_345, 0.0031, ["0.512", "0.003"]),
             (0.512_345, 0.0012, ["0.5123", "0.0012"]),
             (12.345, 2.0, ["12", "2"]),
+            (12_345.0, 300.0, ["12300", "300"]),
             (0.01, 0.3, ["0.01", "0.3"]),
             (0.3, 0.0, ["0.3", "0"]),
             (1.0 / 3.0, 0.0, ["0.3333", "0"]),

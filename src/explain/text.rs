@@ -7,6 +7,8 @@ use glam::Vec3;
 use super::{
     Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
     lines::{self, calculation, reading},
+    measured,
+    noise::{estimated, within},
     number,
     numbers::{DIGITS, colour, of_value},
     pairs, rounded, rounded_number_or_triple, rounded_triple, triple,
@@ -14,6 +16,7 @@ use super::{
 use crate::{
     light::Factor,
     optics::{TermSelection, colour::Encoding},
+    reference::DisplaySteps,
     reflection::Family,
     shading::Stage,
     text::plural,
@@ -162,10 +165,8 @@ impl Explanation {
                 spot,
                 "For comparison: per-pixel shading at this pixel, which is not what is shown",
             );
-            out.line(
-                1,
-                format_args!("the light would be {} instead of {}", triple(spot.colour), triple(seen.light)),
-            );
+            let [would, light] = [estimated(spot.colour, spot.error()), estimated(seen.light, seen.error())];
+            out.line(1, format_args!("the light would be {would} instead of {light}"));
         }
     }
 
@@ -191,7 +192,8 @@ impl Explanation {
         }
         if spot.lights.len() > 1 {
             let lights = plural(spot.lights.len(), "light");
-            out.line(1, format_args!("sum over {lights} = {}", triple(spot.sum)));
+            let sum = spot.error().map_or_else(|| triple(spot.sum), |error| measured(spot.sum, error));
+            out.line(1, format_args!("sum over {lights} = {sum}"));
         }
         if spot.is_replaced() {
             out.line(
@@ -262,13 +264,16 @@ impl Explanation {
 
     fn display(&self, out: &mut Writer) {
         let steps = &self.steps;
+        let say = |step: fn(&DisplaySteps) -> Vec3| estimated(step(steps), self.error_of(step));
         out.heading("From light to the code on the display");
         if self.seen.is_some() || self.lamp.is_some() {
-            out.line(1, format_args!("light {}", triple(steps.light)));
+            let error = self.error_of(|steps| steps.light);
+            let light = error.map_or_else(|| triple(steps.light), |error| measured(steps.light, error));
+            out.line(1, format_args!("light {light}"));
             let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
             out.line(
                 1,
-                format_args!("exposure {ev} EV, factor 2^{ev} = {factor}: {}", triple(steps.exposed)),
+                format_args!("exposure {ev} EV, factor 2^{ev} = {factor}: {}", say(|steps| steps.exposed)),
             );
         } else {
             out.line(1, format_args!("background {}, whatever the exposure", triple(steps.exposed)));
@@ -279,30 +284,44 @@ impl Explanation {
                 format_args!(
                     "without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since \
                      the last step encodes: {}",
-                    triple(steps.input)
+                    say(|steps| steps.input)
                 ),
             );
         }
         let tone = self.display.tone_mapping.name();
-        out.line(1, format_args!("tone mapping, {tone}: {}", triple(steps.mapped)));
+        out.line(1, format_args!("tone mapping, {tone}: {}", say(|steps| steps.mapped)));
         if steps.mapped.is_nan() {
             out.line(1, "what is no number is shown as 0");
         } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
             out.line(1, "what is beyond 0–1 is clipped");
         }
-        out.line(1, format_args!("sRGB encoding: {}", triple(steps.encoded)));
-        let encoded = steps.mapped.to_array().into_iter().zip(steps.encoded.to_array());
-        for (channel, (linear, encoded)) in ["red", "green", "blue"].into_iter().zip(encoded) {
+        out.line(1, format_args!("sRGB encoding: {}", say(|steps| steps.encoded)));
+        let [of_mapped, of_encoded] =
+            [self.error_of(|steps| steps.mapped), self.error_of(|steps| steps.encoded)];
+        for (i, channel) in ["red", "green", "blue"].into_iter().enumerate() {
+            let (linear, encoded) = (steps.mapped[i], steps.encoded[i]);
             // As the display takes it: the formula of IEC 61966-2-1.
             let x = if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) };
+            let put = within(x, of_mapped.map(|error| error[i]), DIGITS);
             let numbers = match x {
-                x if x > 0.003_130_8 => format!("1.055 × {}^(1/2.4) − 0.055", number(x)),
-                x => format!("12.92 × {}", number(x)),
+                x if x > 0.003_130_8 => format!("1.055 × {put}^(1/2.4) − 0.055"),
+                _ => format!("12.92 × {put}"),
             };
-            out.mathematics(2, "", &format!("{channel}: {numbers} = {}", number(encoded)), "");
+            let encoded = within(encoded, of_encoded.map(|error| error[i]), DIGITS);
+            out.mathematics(2, "", &format!("{channel}: {numbers} = {encoded}"), "");
         }
         let [r, g, b] = steps.codes;
         out.line(1, format_args!("× 255, rounded: {r}, {g}, {b}"));
+        if let Some(error) = of_encoded {
+            let codes = rounded_triple(255.0 * error, 1);
+            out.line(
+                1,
+                format_args!(
+                    "These are the codes of the picture, made from all digits. The standard error of the light is that of \
+                     {codes} codes."
+                ),
+            );
+        }
     }
 }
 
@@ -397,9 +416,10 @@ fn result(out: &mut Writer, seen: &Seen) {
     out.heading("Interpolated between the vertices");
     for (i, corner) in seen.corners.iter().enumerate() {
         let sign = if i == 0 { "" } else { "+ " };
-        out.line(1, format_args!("{sign}{} × {}", number(corner.weight), triple(corner.colour)));
+        let colour = estimated(corner.colour, seen.error_at(corner));
+        out.line(1, format_args!("{sign}{} × {colour}", number(corner.weight)));
     }
-    out.line(1, format_args!("= {}", triple(seen.light)));
+    out.line(1, format_args!("= {}", estimated(seen.light, seen.error())));
 }
 
 /// Directions, their cosines and angles.

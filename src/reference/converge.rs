@@ -7,6 +7,7 @@ use glam::Vec4;
 use super::{LightSamples, Picture, Settings, render_noting, render_samples};
 use crate::{
     optics::colour::luminance,
+    progress::{Cancelled, Progress},
     registry::Registry,
     scene::{Scene, has_extent},
 };
@@ -33,7 +34,8 @@ pub struct Reached {
     pub samples: u32,
     /// The noise: the standard error of the luminance of pixels that are lit, as the root of its mean square over them, divided
     /// by their mean luminance. It is estimated from the blocks of samples that the picture is the mean of; as those are spread
-    /// more evenly together than alone, it is rather too large. `None` with fewer than four blocks.
+    /// more evenly together than alone, it is rather too large. `None` with fewer than
+    /// [`Until::FEWEST_FOR_NOISE`] samples.
     pub noise: Option<f32>,
 }
 
@@ -43,17 +45,43 @@ const AT_ONCE: u32 = 16;
 /// The blocks from which on noise can be estimated.
 const ENOUGH: u32 = 4;
 
+impl Until {
+    /// The fewest samples of which the noise can be told.
+    pub const FEWEST_FOR_NOISE: u32 = AT_ONCE * ENOUGH;
+
+    /// The part of the work that is done, and what has been reached, in words. Noise falls at least with the root of the number of
+    /// samples, so the work ends no later than that says.
+    fn progress(self, Reached { samples, noise }: Reached) -> (f32, String) {
+        let done = |all: f32| (samples as f32 / all).min(1.0);
+        let all = self.samples.max(1) as f32;
+        match (self.noise, noise) {
+            (Some(wanted), Some(noise)) => {
+                let needed = samples as f32 * (noise / wanted).powi(2);
+                let said =
+                    format!("{samples} samples, noise {:.2} %, until {:.2} %", 100.0 * noise, 100.0 * wanted);
+                (done(needed.min(all)), said)
+            }
+            // Nobody knows yet when it ends.
+            (Some(_), None) => (0.0, format!("{samples} samples")),
+            (None, _) => (done(all), format!("{samples} of {} samples", self.samples)),
+        }
+    }
+}
+
 /// Renders a scene to light until there are enough samples. The same samples give the same picture, whatever the machine.
-#[must_use]
+///
+/// # Errors
+/// [`Cancelled`] if the user no longer wants it.
 pub fn render_until(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
     until: Until,
     odd: &AtomicBool,
-) -> (Picture, Reached) {
+    progress: &Progress,
+) -> Result<(Picture, Reached), Cancelled> {
     if !has_extent(scene.shining(), registry) {
-        return (render_noting(scene, registry, settings, odd), Reached { samples: 0, noise: None });
+        return Ok((render_noting(scene, registry, settings, odd), Reached { samples: 0, noise: None }));
     }
     let pixels = settings.width as usize * settings.height as usize;
     let mut mean = vec![Vec4::ZERO; pixels];
@@ -75,12 +103,14 @@ pub fn render_until(
         if blocks >= ENOUGH {
             noise = Some(relative_error(&mean, &squares, blocks));
         }
+        let (done, said) = until.progress(Reached { samples: taken, noise });
+        progress.step(done, &said)?;
         if until.noise.is_some_and(|enough| noise.is_some_and(|noise| noise <= enough)) {
             break;
         }
     }
     let picture = Picture { width: settings.width, height: settings.height, pixels: mean };
-    (picture, Reached { samples: taken, noise })
+    Ok((picture, Reached { samples: taken, noise }))
 }
 
 /// See [`Reached::noise`].
@@ -113,6 +143,12 @@ mod tests {
         scene
     }
 
+    /// Without anybody who watches.
+    fn until(scene: &Scene, registry: &Registry, samples: u32, noise: Option<f32>) -> (Picture, Reached) {
+        let (odd, until) = (AtomicBool::default(), Until { samples, noise });
+        render_until(scene, registry, &SMALL, until, &odd, &Progress::NONE).expect("nobody cancels")
+    }
+
     const SMALL: Settings =
         Settings { width: 48, height: 32, samples: 1, terms: crate::optics::TermSelection::All };
 
@@ -121,8 +157,7 @@ mod tests {
         let registry = Registry::builtin();
         let scene = lit(&registry);
         let odd = AtomicBool::default();
-        let (picture, reached) =
-            render_until(&scene, &registry, &SMALL, Until { samples: 72, noise: None }, &odd);
+        let (picture, reached) = until(&scene, &registry, 72, None);
         assert_eq!(reached.samples, 72);
         let at_once = render_samples(&scene, &registry, &SMALL, LightSamples::of(72), &odd);
         let farthest = |a: &Picture, b: &Picture| {
@@ -138,9 +173,8 @@ mod tests {
         let registry = Registry::builtin();
         let scene = lit(&registry);
         let odd = AtomicBool::default();
-        let until = |noise| Until { samples: 4096, noise: Some(noise) };
-        let (coarse, first) = render_until(&scene, &registry, &SMALL, until(0.004), &odd);
-        let (_, second) = render_until(&scene, &registry, &SMALL, until(0.001), &odd);
+        let (coarse, first) = until(&scene, &registry, 4096, Some(0.004));
+        let (_, second) = until(&scene, &registry, 4096, Some(0.001));
         let noise = first.noise.expect("several blocks");
         assert!(noise <= 0.004 && second.noise.is_some_and(|noise| noise <= 0.001));
         assert!(first.samples < second.samples && second.samples < 4096, "{first:?} {second:?}");
@@ -171,9 +205,37 @@ mod tests {
     #[test]
     fn without_light_with_extent_the_picture_is_the_same_bits() {
         let registry = Registry::builtin();
-        let (scene, odd) = (Scene::default(), AtomicBool::default());
-        let (picture, reached) = render_until(&scene, &registry, &SMALL, Until::default(), &odd);
+        let scene = Scene::default();
+        let (picture, reached) = until(&scene, &registry, 256, None);
         assert_eq!(reached, Reached { samples: 0, noise: None });
         assert_eq!(picture, crate::reference::render(&scene, &registry, &SMALL));
+    }
+
+    #[test]
+    fn progress_is_told_block_by_block_and_it_can_be_cancelled() {
+        let registry = Registry::builtin();
+        let (scene, odd) = (lit(&registry), AtomicBool::default());
+        let told = std::cell::RefCell::new(Vec::new());
+        let tell = |done: f32, what: &str| told.borrow_mut().push((done, what.to_owned()));
+        let watched = |until, most: usize| {
+            told.borrow_mut().clear();
+            let cancelled = || told.borrow().len() >= most;
+            let progress = Progress { tell: &tell, cancelled: &cancelled };
+            render_until(&scene, &registry, &SMALL, until, &odd, &progress).map(|(_, reached)| reached)
+        };
+        let end = watched(Until { samples: 40, noise: None }, 9);
+        assert_eq!(end.map(|reached| reached.samples), Ok(40));
+        let said = |done, what: &str| (done, what.to_owned());
+        let expected =
+            [said(0.4, "16 of 40 samples"), said(0.8, "32 of 40 samples"), said(1.0, "40 of 40 samples")];
+        assert_eq!(*told.borrow(), expected);
+        assert_eq!(watched(Until { samples: 4096, noise: None }, 2), Err(Cancelled));
+        assert_eq!(told.borrow().len(), 2);
+        // Where noise decides, the end is estimated from it.
+        let end = watched(Until { samples: 4096, noise: Some(0.002) }, 999);
+        let told = told.borrow();
+        assert!(told[..3].iter().all(|(done, _)| *done == 0.0) && told[3].0 > 0.0, "{told:?}");
+        assert_eq!(told.last().map(|(done, _)| *done), Some(1.0), "{told:?}");
+        assert!(told.last().is_some_and(|(_, what)| what.ends_with(", until 0.20 %")), "{told:?} {end:?}");
     }
 }

@@ -201,6 +201,18 @@ pub fn render_rgb8_until(
 /// Renders a debug channel of a scene: red, green and blue of each pixel, as its legend has them.
 #[must_use]
 pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, setting: &Setting) -> Vec<u8> {
+    render_channel_by(scene, registry, settings, setting, LightSamples::default())
+}
+
+/// The same with some of the samples of lights with extent, but for the [channel that is a picture](DebugChannel::is_picture).
+#[must_use]
+pub fn render_channel_by(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    setting: &Setting,
+    samples: LightSamples,
+) -> Vec<u8> {
     if setting.channel.is_picture() {
         return render_rgb8(&setting.lit(scene), registry, settings);
     }
@@ -210,7 +222,7 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
     let ground = if wires { DebugChannel::NotANumber } else { setting.channel };
     let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
     let finish = |pixel| display.apply(pixel);
-    let ever = (None, &AtomicBool::default(), LightSamples::default());
+    let ever = (None, &AtomicBool::default(), samples);
     let mut rgb8 = draw(scene, registry, settings, Some(&sight), ever, background, finish).into_flattened();
     if wires {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);

@@ -1,17 +1,19 @@
 //! The documents: their tables match the registry, their examples match the program, and the tour of the README is
 //! right.
 
-use std::{fs, io};
+use std::{fs, io, sync::atomic::AtomicBool};
 
 use glam::Vec3;
 use lights_camera_models::{
+    caption::{self, Sampled},
     channel::DebugChannel,
     explain, lesson,
     light::{MAX_LIGHTS, ies, panorama},
     matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Parameter, Value, Values},
-    reference::{self, Settings},
+    progress::Progress,
+    reference::{self, Settings, Until},
     reflection::ModelEntry,
     registry::Registry,
     render::capture::{evaluate::evaluate, png},
@@ -121,7 +123,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             "docs/comparing.md",
             vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
         ),
-        ("docs/command-line.md", vec![("explain", explained())]),
+        ("docs/command-line.md", vec![("noise", noise()), ("explain", explained())]),
         ("docs/worked-examples.md", worked_examples(&registry)),
         (
             "docs/lessons.md",
@@ -160,6 +162,23 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The noise of a scene by the number of samples.
+fn noise() -> String {
+    let (path, registry) = (root().join("scenes/softbox_and_lamps.json"), Registry::builtin());
+    let scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let settings = Settings { width: 80, height: 45, samples: 1, ..Settings::default() };
+    let row = |samples: u32| {
+        let (odd, until) = (AtomicBool::default(), Until { samples, noise: None });
+        let reached = reference::render_until(&scene, &registry, &settings, until, &odd, &Progress::NONE)
+            .expect("nobody cancels")
+            .1;
+        let words = caption::line(&caption::sampled(&[Sampled { samples, noise: reached.noise }]));
+        let noise = words.split_once("noise ").expect("it is known").1.to_owned();
+        vec![samples.to_string(), noise]
+    };
+    table(&["`--light-samples`", "noise"], [64, 128, 256, 512, 1024].into_iter().map(row))
 }
 
 /// The worked example of a pixel.

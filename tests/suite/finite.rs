@@ -1,14 +1,17 @@
 //! Light that is not finite is reported with the light or model that gives it, by every command and by the window.
 
-use std::{fs, path::Path, sync::atomic::AtomicBool};
+use std::{f32::consts::PI, fs, path::Path, sync::atomic::AtomicBool};
 
 use bevy::app::PluginGroup as _;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lights_camera_models::{
     channel::{DebugChannel, Setting},
     explain::finite::{NotFinite, Scope, Tried, marked, probe, traced},
-    light::{self, Incident, LightRecord, LightType},
-    optics::{Frame, Terms},
+    light::{
+        self, Incident, LightRecord, LightType,
+        extent::{Sample, Seen},
+    },
+    optics::{Frame, Terms, sampling},
     panel::state::{Session, Severity},
     parameters,
     reference::{self, Settings},
@@ -81,6 +84,108 @@ impl LightType for Broken {
         let none = 0.0 * light.position.length_squared();
         Incident::From { l: Vec3::Y, intensity: Vec3::splat(light.intensity / none) }
     }
+}
+
+/// Panes that glow from everywhere, but not with numbers.
+macro_rules! pane {
+    ($name:ident, $id:literal, $sample:expr, $seen:expr) => {
+        parameters! {
+            /// A pane that gives no number.
+            struct $name {}
+        }
+        impl LightType for $name {
+            const DECLARATION: light::Declaration =
+                light::Declaration::new($id, "Pane", Source::new(concat!($id, ".wgsl"), "")).with_extent();
+            fn sample(&self, _: &LightRecord, _: Vec3, u: Vec2) -> Sample {
+                let good = Sample { l: sampling::sphere(u), radiance: Vec3::ONE, pdf: 0.25 / PI };
+                ($sample)(good)
+            }
+            fn seen(&self, _: &LightRecord, _: Vec3, l: Vec3) -> Seen {
+                let good = Seen { radiance: Vec3::ONE, pdf: 0.25 / PI, distance: f32::INFINITY };
+                ($seen)(good, l)
+            }
+        }
+    };
+}
+pane!(Sound, "sound", |s| s, |s, _| s);
+pane!(Glare, "glare", |s| Sample { radiance: Vec3::new(1.0, f32::INFINITY, 0.0), ..s }, |s, _| s);
+pane!(Needle, "needle", |s| Sample { pdf: f32::INFINITY, ..s }, |s, _| s);
+pane!(Astray, "astray", |s| Sample { l: Vec3::NAN, ..s }, |s, _| s);
+pane!(Hole, "hole", |s| s, |s, l: Vec3| Seen {
+    radiance: if l.y > 0.5 { Vec3::splat(f32::NAN) } else { Vec3::ONE },
+    ..s
+});
+pane!(Blur, "blur", |s| s, |s, _| Seen { pdf: f32::NAN, ..s });
+pane!(Nowhere, "nowhere", |s| s, |s, _| Seen { distance: f32::NAN, ..s });
+
+/// The panes with what is wrong with them.
+const PANES: [(&str, &str); 6] = [
+    ("glare", "radiance in sample at (1, ∞, 0)"),
+    ("needle", "density in sample at ∞"),
+    ("astray", "direction in sample at (NaN, NaN, NaN)"),
+    ("hole", "radiance in seen at (NaN, NaN, NaN)"),
+    ("blur", "density in seen at NaN"),
+    ("nowhere", "distance in seen at NaN"),
+];
+
+fn panes() -> Registry {
+    let mut registry = Registry::builtin();
+    registry.add_light_type::<Sound>().add_light_type::<Glare>().add_light_type::<Needle>();
+    registry.add_light_type::<Astray>().add_light_type::<Hole>();
+    registry.add_light_type::<Blur>().add_light_type::<Nowhere>();
+    registry
+}
+
+/// The default scene with a pane as its second light.
+fn behind(pane: &str) -> Scene {
+    let mut scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
+    let window = Light { light_type: pane.to_owned(), name: Some("Window".to_owned()), ..Light::default() };
+    scene.lights.push(window);
+    scene
+}
+
+#[test]
+fn a_light_with_extent_is_named_with_what_it_gives() {
+    let registry = panes();
+    for scope in [Scope::All, Scope::Untested] {
+        for (pane, wrong) in PANES {
+            let found = probe(&behind(pane), &registry, scope, &mut Tried::default());
+            assert_eq!(paths(&found), ["lights[1]"], "{pane}");
+            let said = found[0].to_string();
+            let (of, value) = wrong.split_once(" at ").expect("both");
+            let begins = format!("lights[1] (\"Window\") is of the type {pane}, whose {of} at (");
+            assert!(said.starts_with(&begins), "{said}");
+            assert!(said.ends_with(&format!(" m is {value}; it must be finite")), "{said}");
+        }
+        assert_eq!(probe(&behind("sound"), &registry, scope, &mut Tried::default()), []);
+    }
+}
+
+#[test]
+fn pixels_lit_by_such_a_light_lead_to_it_and_not_to_the_model() {
+    let registry = panes();
+    let settings = Settings { width: 48, height: 27, samples: 1, ..Settings::default() };
+    for (pane, shows) in [("glare", true), ("hole", true), ("blur", true), ("sound", false)] {
+        let scene = behind(pane);
+        let odd = AtomicBool::default();
+        let _ = reference::render_rgb8_noting(&scene, &registry, &settings, &odd);
+        assert_eq!(odd.into_inner(), shows, "{pane}");
+        let eye = scene.observer.position;
+        let setting = Setting::new(DebugChannel::NotANumber, &scene, &registry, eye, None);
+        let pixels =
+            marked(&reference::render_channel(&scene, &registry, &settings, &setting), settings.width);
+        let expected: &[&str] = if shows { &["lights[1]"] } else { &[] };
+        assert_eq!(paths(&traced(&scene, &registry, &settings, &pixels)), expected, "{pane}");
+    }
+    // A model that gives no number is named under lights with extent, too.
+    let mut registry = registry;
+    registry.add_reflection_model::<Torn>();
+    let scene = Scene { reflection_model: "torn".to_owned(), ..behind("sound") };
+    let scene = Scene { lights: scene.lights[1..].to_vec(), ..scene };
+    let setting = Setting::new(DebugChannel::NotANumber, &scene, &registry, scene.observer.position, None);
+    let pixels = marked(&reference::render_channel(&scene, &registry, &settings, &setting), settings.width);
+    assert!(!pixels.is_empty());
+    assert_eq!(paths(&traced(&scene, &registry, &settings, &pixels)), ["objects[0]"]);
 }
 
 fn registry() -> Registry {

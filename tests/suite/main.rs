@@ -87,6 +87,7 @@ mod programs;
 mod reference_renderer;
 mod registration;
 mod reload;
+mod sampling;
 mod saving;
 mod scene_errors;
 mod scene_list;

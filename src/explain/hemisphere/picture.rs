@@ -72,12 +72,13 @@ impl Hemisphere {
             canvas.scale([left, HEAD + side + 14], side, scale.trim());
             whites.push(format!("white in “{title}” is {}", scale.trim()));
         }
-        let integral = crate::explain::rounded_number_or_triple(self.integral, 3);
+        // From the pixels of the disc, which give two digits.
+        let integral = crate::explain::rounded_number_or_triple(self.integral, 2);
         let lines = [
             "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
              points right. V: to the viewer; R: its mirror direction."
                 .to_owned(),
-            format!("The mean of the product times π is the light to the observer from lights with extent: {integral}"),
+            format!("The mean of the product times π is the light to the observer from lights with extent: about {integral}"),
         ];
         let mut y = HEAD + side + 52;
         for line in lines.iter().flat_map(|line| Lettering::Regular.lines(SMALL, line, size[0] - 2 * GAP, 3))

@@ -1,21 +1,25 @@
 //! The way from light to the code on the display.
 
 use bevy_egui::egui::Ui;
+use glam::Vec3;
 
 use super::rows;
-use crate::{explain::Explanation, optics::colour::Encoding, panel::theme};
+use crate::{explain::Explanation, optics::colour::Encoding, panel::theme, reference::DisplaySteps};
 
 /// The steps, one below the other, each with its result.
 pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     rows::close(ui);
     let (steps, display) = (&explanation.steps, &explanation.display);
+    let step = |ui: &mut Ui, what: &str, of: fn(&DisplaySteps) -> Vec3| {
+        rows::step(ui, what, of(steps), explanation.error_of(of));
+    };
     rows::heading(ui, "From light to the code on the display");
     if explanation.seen.is_some() || explanation.lamp.is_some() {
-        rows::step(ui, "light of the pixel", steps.light);
+        step(ui, "light of the pixel", |steps| steps.light);
         let (ev, factor) = (rows::short(display.exposure), rows::short(steps.exposure));
-        rows::step(ui, &format!("exposure {ev} EV, × {factor}"), steps.exposed);
+        step(ui, &format!("exposure {ev} EV, × {factor}"), |steps| steps.exposed);
     } else {
-        rows::step(ui, "background, whatever the exposure", steps.exposed);
+        step(ui, "background, whatever the exposure", |steps| steps.exposed);
     }
     if display.encoding == Encoding::Off {
         rows::note(
@@ -23,16 +27,17 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
             "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the last \
              step encodes.",
         );
-        rows::step(ui, "decoded", steps.input);
+        step(ui, "decoded", |steps| steps.input);
     }
-    rows::step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), steps.mapped);
+    step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), |steps| steps.mapped);
     if steps.mapped.is_nan() {
         rows::note(ui, "What is no number is shown as 0.");
     } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
         rows::note(ui, "What is beyond 0–1 is clipped.");
     }
     // Not light any more: the numbers of the display.
-    rows::named_triple(ui, "sRGB encoding:", steps.encoded, "");
+    let encoded = explanation.error_of(|steps| steps.encoded);
+    rows::named_within(ui, "sRGB encoding:", steps.encoded, encoded);
     let [r, g, b] = steps.codes;
     ui.horizontal(|ui| {
         ui.label(theme::small(ui, "× 255, rounded: the code"));

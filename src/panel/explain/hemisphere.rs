@@ -158,8 +158,12 @@ pub(super) fn hemisphere(
             });
         }
     });
-    let integral = rows::short_or_triple(discs.hemisphere.integral);
-    rows::note(ui, &format!("The mean of the product times π is the light to the observer: {integral}"));
+    // From the pixels of the disc, which give two digits; the integral of the samples stands below its light.
+    let integral = crate::explain::rounded_number_or_triple(discs.hemisphere.integral, 2);
+    rows::note(
+        ui,
+        &format!("The mean of the product times π is the light to the observer: about {integral}"),
+    );
 }
 
 /// One disc with its marks; the pointer shows the direction and what comes from there.

@@ -68,7 +68,8 @@ pub(super) fn lights(
         // A light without a name of its own is called by its type.
         let kind = if lit.light.name.is_some() { lit.light.type_name } else { "" };
         let id = Id::new(("light of an explanation", lit.light.index));
-        if rows::fold(ui, id, &name, kind, open, lit.contribution).clicked() {
+        let shown = (lit.contribution, lit.integral.map(|integral| integral.error));
+        if rows::fold(ui, id, (&name, kind), open, shown).clicked() {
             let light = if open { Unfolded::None } else { Unfolded::Light(lit.light.index) };
             probe::choose(ui.ctx(), Choice { light, ..choice });
         }
@@ -82,7 +83,8 @@ pub(super) fn lights(
         rows::light(ui, &format!("{count}, none brighter:"), rest, false);
     }
     if spot.lights.len() > 1 {
-        rows::light(ui, &format!("sum over {}", plural(spot.lights.len(), "light")), spot.sum, true);
+        let before = format!("sum over {}", plural(spot.lights.len(), "light"));
+        rows::estimate(ui, &before, spot.sum, spot.error(), true);
     }
     if spot.is_replaced() {
         rows::light(ui, "what is no number counts as 0, and nothing beyond ±10³⁰:", spot.colour, true);

@@ -224,13 +224,13 @@ fn start(
     let (surface, frame, ctx) = (seen.model.surface.0.clone(), spot.frame, ctx.clone());
     let of = |index: &usize| {
         let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
-        Some((*index, name(*index), lit.leading()?.l))
+        Some((*index, name(*index), lit.leading()?.l, lit.integral.is_some()))
     };
     let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
     thread::spawn(move || {
-        let lobe = |(light, name, l)| {
+        let lobe = |(light, name, l, extends)| {
             let lobe = Lobe::new(&*surface, l, &frame, terms, &Progress::NONE).ok()?;
-            Some(LightLobe { light, name, l, rims: surface::rims(&lobe), lobe })
+            Some(LightLobe { light, name, l, extends, rims: surface::rims(&lobe), lobe })
         };
         // Nobody listens once the window is closed.
         drop(sender.send(lights.into_iter().filter_map(lobe).collect()));
@@ -302,6 +302,9 @@ pub(super) fn paint(
     }
 }
 
+/// Said where a light fills many directions.
+const OF_EXTENT: &str = "Light with extent: from the direction\nthat gives most";
+
 /// What is written beside lobes.
 fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection) -> Legend {
     let number = |v: f64| rows::short(v as f32);
@@ -319,6 +322,9 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
         false => format!("Length of the vectors: {}", number(scale.to)),
         true => format!("Centre: {}; length of the vectors: {}", number(scale.from), number(scale.to)),
     });
+    if lobes.iter().any(|light| light.extends) {
+        lines.push(OF_EXTENT.to_owned());
+    }
     if count > lobes.len() {
         lines.push(format!("The {} brightest of {count} lights", lobes.len()));
     }

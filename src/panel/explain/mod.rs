@@ -412,7 +412,7 @@ fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
     ui.add(
         egui::Label::new("No object is at the centre of this pixel: the light itself is seen there.").wrap(),
     );
-    rows::step(ui, "L, cd/m²", lamp.radiance);
+    rows::step(ui, "L, cd/m²", lamp.radiance, None);
 }
 
 fn background(ui: &mut Ui) {

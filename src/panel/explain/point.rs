@@ -33,8 +33,8 @@ pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
     }
     if let Some(per_pixel) = &seen.per_pixel {
         ui.add_space(6.0);
-        rows::light(ui, "per-pixel shading would give", per_pixel.colour, false);
-        rows::light(ui, "instead of", seen.light, false);
+        rows::estimate(ui, "per-pixel shading would give", per_pixel.colour, per_pixel.error(), false);
+        rows::estimate(ui, "instead of", seen.light, seen.error(), false);
     }
 }
 
@@ -51,12 +51,12 @@ fn vertices(ui: &mut Ui, seen: &Seen) {
         for corner in &seen.corners {
             ui.label(theme::small(ui, format!("vertex {}", corner.vertex)));
             ui.label(format!("{} ×", rows::short(corner.weight))).on_hover_text(rows::all(corner.weight));
-            rows::light(ui, "", corner.colour, false);
+            rows::estimate(ui, "", corner.colour, seen.error_at(corner), false);
             ui.end_row();
         }
         ui.label("");
         ui.label("=");
-        rows::light(ui, "", seen.light, true);
+        rows::estimate(ui, "", seen.light, seen.error(), true);
         ui.end_row();
     });
 }

@@ -8,7 +8,9 @@ use glam::Vec3;
 
 use super::pairs;
 use crate::{
-    explain::{self, Model, number, rounded, rounded_number_or_triple, rounded_triple, triple},
+    explain::{
+        self, Model, number, rounded, rounded_number_or_triple, rounded_triple, triple, triple_within,
+    },
     panel::{
         linked::{self, linked},
         maths::{self, Sizes},
@@ -31,6 +33,11 @@ pub(super) const INDENT: f32 = 14.0;
 /// A number of three digits.
 pub(super) fn short(v: f32) -> String {
     raised(&rounded(v, DIGITS))
+}
+
+/// A number of so many digits, at most three.
+pub(super) fn of_digits(v: f32, digits: usize) -> String {
+    raised(&rounded(v, digits.min(DIGITS)))
 }
 
 /// Three numbers of three digits.
@@ -194,16 +201,31 @@ pub(super) fn named_triple(ui: &mut Ui, name: &str, v: Vec3, unit: &str) -> Resp
     named(ui, name, &format!("{}{unit}", short_triple(v)), &rounded_triple(v, ALL))
 }
 
-/// A step on the way to the display, and its result.
-pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3) {
+/// Words and three numbers with the digits that their standard errors leave.
+pub(super) fn named_within(ui: &mut Ui, name: &str, v: Vec3, error: Option<Vec3>) -> Response {
+    named(ui, name, &short_within(v, error), &all_within(v, error))
+}
+
+/// Three numbers of three digits, or of those that their standard errors leave.
+fn short_within(v: Vec3, error: Option<Vec3>) -> String {
+    raised(&triple_within(v, error, DIGITS))
+}
+
+/// Three numbers with all digits, and their standard errors.
+fn all_within(v: Vec3, error: Option<Vec3>) -> String {
+    error.map_or_else(|| rounded_triple(v, ALL), |error| explain::measured(v, error))
+}
+
+/// A step on the way to the display, and its result with its standard error, if it has one.
+pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(theme::small(ui, format!("{what}:")));
         sample(ui, v);
-        let shown = text(ui, short_triple(v));
+        let shown = text(ui, short_within(v, error));
         ui.add(Label::new(shown).selectable(true));
     });
-    row.response.on_hover_text(rounded_triple(v, ALL));
+    row.response.on_hover_text(all_within(v, error));
 }
 
 /// Lines that stand closer than widgets do.
@@ -214,6 +236,11 @@ pub(super) fn close(ui: &mut Ui) {
 
 /// A colour behind words: its sample and its numbers.
 pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response {
+    estimate(ui, before, v, None, bold)
+}
+
+/// The same with the digits that a standard error leaves.
+pub(super) fn estimate(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, bold: bool) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         if !before.is_empty() {
@@ -221,11 +248,11 @@ pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response 
             ui.label(before);
         }
         sample(ui, v);
-        let shown = short_triple(v);
+        let shown = short_within(v, error);
         let shown = if bold { theme::strong(ui, shown) } else { text(ui, shown) };
         ui.add(Label::new(shown).selectable(true));
     });
-    row.response.on_hover_text(rounded_triple(v, ALL))
+    row.response.on_hover_text(all_within(v, error))
 }
 
 /// A colour with its standard error behind words: as many digits as the error allows.
@@ -300,7 +327,13 @@ pub(super) fn spoken(v: Vec3) -> String {
 }
 
 /// A row that can be clicked, with a triangle that says if it is unfolded.
-pub(super) fn fold(ui: &mut Ui, id: egui::Id, name: &str, kind: &str, open: bool, v: Vec3) -> Response {
+pub(super) fn fold(
+    ui: &mut Ui,
+    id: egui::Id,
+    (name, kind): (&str, &str),
+    open: bool,
+    (v, error): (Vec3, Option<Vec3>),
+) -> Response {
     let palette = Palette::here(ui);
     let height = 24.0 * theme::scale_here(ui).max(1.0);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
@@ -320,7 +353,7 @@ pub(super) fn fold(ui: &mut Ui, id: egui::Id, name: &str, kind: &str, open: bool
             .layout(egui::Layout::right_to_left(egui::Align::Center)),
     );
     inner.spacing_mut().item_spacing.x = 6.0;
-    let shown = theme::strong(&inner, short_triple(v));
+    let shown = theme::strong(&inner, short_within(v, error));
     inner.label(shown);
     sample(&mut inner, v);
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
@@ -332,7 +365,7 @@ pub(super) fn fold(ui: &mut Ui, id: egui::Id, name: &str, kind: &str, open: bool
     let kind = theme::elided(ui, kind, egui::TextStyle::Small, palette.weak, rect.left() + 20.0 + room - end);
     let at = egui::pos2(end, rect.center().y - 0.5 * kind.size().y);
     ui.painter().galley(at, kind, palette.weak);
-    response.on_hover_text(rounded_triple(v, ALL))
+    response.on_hover_text(all_within(v, error))
 }
 
 #[cfg(test)]

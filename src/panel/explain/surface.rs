@@ -33,8 +33,10 @@ pub struct LightLobe {
     pub light: usize,
     /// Its name.
     pub name: String,
-    /// The direction to it.
+    /// The direction to it: of a light with extent, the one that gives most.
     pub l: Vec3,
+    /// True if the light has extent.
+    pub extends: bool,
     /// The lobe.
     pub lobe: Lobe,
     /// The lines around it.

@@ -129,11 +129,11 @@ fn row(
                 Layout::right_to_left(Align::Center),
                 |ui| {
                     ui.set_min_width(EFFECT * scale);
-                    ui.label(format!("{sign}{}", rows::short(effect)))
+                    ui.label(format!("{sign}{}", rows::of_digits(effect, influence.digits)))
                 },
             );
             let text = number.inner;
-            let [r, g, b] = influence.derivative().to_array().map(|v| rounded(v, rows::DIGITS));
+            let [r, g, b] = influence.derivative().to_array().map(|v| rows::of_digits(v, influence.digits));
             text.on_hover_text(format!(
                 "Δ light/Δ {} = ({r}, {g}, {b}) between {} and {}",
                 influence.symbol,

@@ -1,0 +1,89 @@
+//! The options of commands that take samples of lights with extent.
+
+use clap::Args;
+
+use crate::{
+    reference::{Reached, Until},
+    registry::Registry,
+    scene::{Scene, has_extent},
+};
+
+/// The most samples of lights with extent.
+const MOST: u32 = 1 << 20;
+
+/// The most samples where noise decides, unless others are asked for.
+const MOST_FOR_NOISE: u32 = 1 << 16;
+
+/// What is said of the samples of lights with extent, which the CPU renderer counts.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(super) struct Sampling {
+    /// Samples of each light with extent, and as many of the directions in which objects reflect most, on the CPU: 1 to 1048576;
+    /// by default 256, with --noise 65536
+    #[arg(long, value_name = "N", value_parser = light_samples, allow_hyphen_values = true)]
+    light_samples: Option<u32>,
+    /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
+    /// luminance, in per cent, e.g. 1 or 0.5%
+    #[arg(long, value_name = "PERCENT", value_parser = noise, allow_hyphen_values = true)]
+    noise: Option<f32>,
+}
+
+impl Sampling {
+    /// The end of the samples.
+    pub(super) fn until(self) -> Until {
+        let default = if self.noise.is_some() { MOST_FOR_NOISE } else { Until::default().samples };
+        Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
+    }
+
+    /// The options that are given, for messages.
+    pub(super) fn given(self) -> Option<&'static str> {
+        match (self.light_samples, self.noise) {
+            (None, None) => None,
+            (Some(_), None) => Some("--light-samples"),
+            (None, Some(_)) => Some("--noise"),
+            (Some(_), Some(_)) => Some("--light-samples and --noise"),
+        }
+    }
+
+    /// A remark on options that change nothing in a scene.
+    pub(super) fn idle(self, scene: &Scene, registry: &Registry) -> Option<String> {
+        let given = self.given().filter(|_| !has_extent(scene.shining(), registry))?;
+        let verb = if self.light_samples.is_some() && self.noise.is_some() { "change" } else { "changes" };
+        Some(format!("no light has extent, so the picture has no noise, and {given} {verb} nothing"))
+    }
+
+    /// A remark on a picture that is noisier than was asked for, or may be.
+    pub(super) fn remark(self, Reached { samples, noise }: Reached) -> Option<String> {
+        let wanted = self.noise?;
+        match noise {
+            Some(noise) if noise > wanted => Some(format!(
+                "after {samples} samples the noise is {:.2} %; more --light-samples lower it",
+                100.0 * noise
+            )),
+            Some(_) => None,
+            None => Some(format!(
+                "the noise is not known with fewer than {} --light-samples, so --noise changes nothing",
+                Until::FEWEST_FOR_NOISE
+            )),
+        }
+    }
+}
+
+fn light_samples(text: &str) -> Result<u32, String> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|n| (1..=MOST).contains(n))
+        .ok_or_else(|| format!("it must be a whole number from 1 to {MOST}, e.g. 1000"))
+}
+
+/// Noise as a fraction, from per cent.
+fn noise(text: &str) -> Result<f32, String> {
+    let text = text.trim();
+    let number = text.strip_suffix('%').unwrap_or(text).trim_end();
+    number
+        .parse()
+        .ok()
+        .filter(|percent: &f32| (0.01..=100.0).contains(percent))
+        .map(|percent| percent / 100.0)
+        .ok_or_else(|| "it must be a number of per cent from 0.01 to 100, e.g. 1 or 0.5%".to_owned())
+}

@@ -1,0 +1,193 @@
+//! The noise of light with extent on its way to the code: standard errors, and the digits that they leave.
+
+use glam::Vec3;
+
+use super::{
+    Corner, Explanation, Place, Seen, Spot,
+    integral::with_error,
+    numbers::{DIGITS, rounded},
+};
+use crate::reference::{DisplaySteps, Picture};
+
+impl Spot {
+    /// The standard error of the sum over the lights; none where no light has extent.
+    #[must_use]
+    pub fn error(&self) -> Option<Vec3> {
+        let errors = self.lights.iter().filter_map(|lit| Some(lit.integral?.error));
+        root_of_squares(errors)
+    }
+}
+
+impl Seen {
+    /// The standard error of the light of the pixel; none where no light has extent.
+    #[must_use]
+    pub fn error(&self) -> Option<Vec3> {
+        let weight = |spot: &Spot| match spot.place {
+            Place::Vertex { weight, .. } => weight,
+            Place::Polygon | Place::Pixel => 1.0,
+        };
+        root_of_squares(self.spots.iter().filter_map(|spot| Some(spot.error()? * weight(spot))))
+    }
+
+    /// That of the colour of a corner; none where the equation was evaluated elsewhere.
+    #[must_use]
+    pub fn error_at(&self, corner: &Corner) -> Option<Vec3> {
+        let is = |spot: &&Spot| matches!(spot.place, Place::Vertex { vertex, .. } if vertex == corner.vertex);
+        self.spots.iter().find(is)?.error()
+    }
+}
+
+impl Explanation {
+    /// The way to the code of light that is one standard error brighter; none where no light has extent.
+    #[must_use]
+    pub fn brighter(&self) -> Option<DisplaySteps> {
+        let error = self.seen.as_ref()?.error()?;
+        let light = self.steps.light + error;
+        Some(Picture::display_steps(light.extend(self.steps.coverage), &self.display))
+    }
+
+    /// The standard error of a step on the way to the code; none where no light has extent.
+    #[must_use]
+    pub fn error_of(&self, step: impl Fn(&DisplaySteps) -> Vec3) -> Option<Vec3> {
+        self.brighter().map(|brighter| (step(&brighter) - step(&self.steps)).abs())
+    }
+}
+
+/// The error of a sum of independent values.
+fn root_of_squares(errors: impl Iterator<Item = Vec3>) -> Option<Vec3> {
+    let squares = errors.map(|error| error * error).reduce(|sum, squares| sum + squares);
+    squares.map(|squares| squares.map(f32::sqrt))
+}
+
+/// A number with the digits that its standard error leaves, at most so many.
+#[must_use]
+pub fn within(v: f32, error: Option<f32>, digits: usize) -> String {
+    let usual = rounded(v, digits);
+    let Some(error) = error.filter(|error| *error > 0.0) else { return usual };
+    let [measured, _] = with_error(v, error);
+    // Both are roundings of one number: that of fewer digits is no longer.
+    if measured.chars().count() <= usual.chars().count() { measured } else { usual }
+}
+
+/// The same of red, green and blue.
+#[must_use]
+pub fn triple_within(v: Vec3, error: Option<Vec3>, digits: usize) -> String {
+    let [r, g, b] = [0, 1, 2].map(|i| within(v[i], error.map(|error| error[i]), digits));
+    format!("({r}, {g}, {b})")
+}
+
+/// Four digits, as explanations have them.
+pub(super) fn estimated(v: Vec3, error: Option<Vec3>) -> String {
+    triple_within(v, error, DIGITS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        explain::pixel,
+        reference::Settings,
+        registry::Registry,
+        scene::{Light, Scene},
+    };
+
+    #[test]
+    fn numbers_have_no_digit_that_noise_made() {
+        for (v, error, expected) in [
+            (0.225_34, Some(0.003), "0.225"),
+            (0.225_34, Some(0.000_01), "0.2253"),
+            (0.225_34, Some(0.0), "0.2253"),
+            (0.225_34, None, "0.2253"),
+            (0.5, Some(0.2), "0.5"),
+            (12_345.0, Some(300.0), "12300"),
+            (f32::NAN, Some(f32::NAN), "NaN"),
+        ] {
+            assert_eq!(within(v, error, DIGITS), expected, "{v} {error:?}");
+        }
+        let v = Vec3::new(0.225_34, 0.5, 1.0 / 3.0);
+        assert_eq!(triple_within(v, Some(Vec3::new(0.003, 0.0, 0.04)), DIGITS), "(0.225, 0.5, 0.33)");
+    }
+
+    /// The explanation of a pixel of the default scene under another light.
+    fn explained(light: &str, shading: &str) -> Explanation {
+        let mut scene = Scene { shading_model: shading.to_owned(), ..Scene::default() };
+        scene.display.exposure = -1.0;
+        let at = scene.objects[0].position;
+        let lamp = |side: Vec3| Light {
+            light_type: light.to_owned(),
+            position: Some(at + side),
+            direction: Some(-side),
+            intensity: 8.0,
+            ..scene.lights[0].clone()
+        };
+        scene.lights = vec![lamp(Vec3::new(1.0, 1.5, 2.0)), lamp(Vec3::new(-1.0, 0.5, 2.0))];
+        let settings = Settings { width: 64, height: 36, samples: 1, ..Settings::default() };
+        pixel(&scene, &Registry::builtin(), &settings, [34, 16]).expect("inside")
+    }
+
+    /// The digits behind the point, at most, of the last line that begins so.
+    fn digits(text: &str, begins: &str) -> usize {
+        let line = text.lines().map(str::trim).rfind(|line| line.starts_with(begins)).expect(begins);
+        let value =
+            line.split(" ± ").next().and_then(|line| line.rsplit([':', '=']).next()).expect("a value");
+        let numbers =
+            value.split(|c: char| !c.is_ascii_digit() && c != '.').filter_map(|n| n.split_once('.'));
+        numbers.map(|(_, behind)| behind.len()).max().unwrap_or(0)
+    }
+
+    #[test]
+    fn errors_go_from_the_lights_to_the_code() {
+        let explanation = explained("rectangle", "phong");
+        let spot = &explanation.seen.as_ref().expect("the sphere").spots[0];
+        let errors: Vec<_> =
+            spot.lights.iter().map(|lit| lit.integral.expect("it has extent").error).collect();
+        let sum = spot.error().expect("both have noise");
+        assert!((sum * sum - errors[0] * errors[0] - errors[1] * errors[1]).abs().max_element() < 1e-9);
+        assert!(sum.cmpge(errors[0]).all() && sum.cmpgt(Vec3::ZERO).all());
+        let of_light = explanation.error_of(|steps| steps.light).expect("noise");
+        assert!((of_light - sum).abs().max_element() < 1e-6, "{of_light} {sum}");
+        let exposed = explanation.error_of(|steps| steps.exposed).expect("noise");
+        assert!((exposed - 0.5 * sum).abs().max_element() < 1e-6, "half at −1 EV");
+        // Of vertices, each by its weight.
+        let explanation = explained("rectangle", "gouraud");
+        let seen = explanation.seen.as_ref().expect("the sphere");
+        let squares: Vec3 = seen
+            .corners
+            .iter()
+            .map(|corner| seen.error_at(corner).expect("noise") * corner.weight)
+            .map(|error| error * error)
+            .sum();
+        let error = seen.error().expect("noise");
+        assert!((error * error - squares).abs().max_element() < 1e-9);
+        assert_eq!(explained("point", "phong").brighter(), None);
+    }
+
+    #[test]
+    fn no_line_from_the_sum_to_the_code_has_a_digit_that_noise_made() {
+        let sphere = explained("rectangle", "phong");
+        // The digit of the error, or two if it begins with 1.
+        let most = |step: fn(&DisplaySteps) -> Vec3| {
+            let error = sphere.error_of(step).expect("noise").min_element();
+            (1.0 - error.log10().floor()) as usize
+        };
+        let text = sphere.to_text();
+        let light: fn(&DisplaySteps) -> Vec3 = |steps| steps.light;
+        let encoded: fn(&DisplaySteps) -> Vec3 = |steps| steps.encoded;
+        for (begins, step) in [
+            ("sum over 2 lights", light),
+            ("light ", light),
+            ("exposure", |steps| steps.exposed),
+            ("tone mapping", |steps| steps.mapped),
+            ("sRGB encoding", encoded),
+            ("red:", encoded),
+        ] {
+            assert!(digits(&text, begins) <= most(step), "{begins}: {}\n{text}", most(step));
+        }
+        let most = most(light);
+        assert!(text.contains("The standard error of the light is that of ("), "{text}");
+        // Without noise all four are said.
+        let exact = explained("point", "phong").to_text();
+        assert!(digits(&exact, "sum over 2 lights") >= 4 && digits(&exact, "light ") >= 4, "{exact}");
+        assert!(most < 4 && !exact.contains("standard error"), "else this would prove nothing: {most}");
+    }
+}
