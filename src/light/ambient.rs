@@ -20,6 +20,8 @@ impl LightType for Ambient {
         default_intensity: 1.0,
         slider_max: 10.0,
         cone_parameter: None,
+        sizes: &[],
+        roll_parameter: None,
         equation: "I(p) = I",
         extent: false,
         wgsl: wgsl!("light/ambient.wgsl"),

@@ -1,6 +1,6 @@
 //! Declarations of light types, step by step: another field of [`Declaration`] changes none of them.
 
-use super::Declaration;
+use super::{Declaration, Size};
 use crate::shader::Source;
 
 impl Declaration {
@@ -27,6 +27,8 @@ impl Declaration {
             default_intensity: 1.0,
             slider_max: 10.0,
             cone_parameter: None,
+            sizes: &[],
+            roll_parameter: None,
             equation: "",
             extent: false,
             wgsl,
@@ -91,6 +93,29 @@ impl Declaration {
     #[must_use]
     pub const fn cone(self, parameter: &'static str) -> Self {
         Self { cone_parameter: Some(parameter), ..self }
+    }
+
+    /// The same with sizes: numbers in metres that have handles in the picture, and make the outline of a light with extent.
+    ///
+    /// ```
+    /// use lights_camera_models::{light::{Declaration, Size}, shader::Source};
+    /// const PANEL: Declaration = Declaration::new("panel", "Panel", Source::new("panel.wgsl", "…"))
+    ///     .at_position()
+    ///     .with_direction()
+    ///     .luminance(10.0, 100.0)
+    ///     .sizes(&[Size::Width("width"), Size::Height("height")])
+    ///     .roll("roll");
+    /// assert_eq!(PANEL.sizes[1].parameter(), "height");
+    /// ```
+    #[must_use]
+    pub const fn sizes(self, sizes: &'static [Size]) -> Self {
+        Self { sizes, ..self }
+    }
+
+    /// The same with a turn about its direction that has a handle in the picture: the number of that name, in degrees.
+    #[must_use]
+    pub const fn roll(self, parameter: &'static str) -> Self {
+        Self { roll_parameter: Some(parameter), ..self }
     }
 
     /// The same with the equation of the light that arrives at a point.

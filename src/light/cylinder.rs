@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{
-    Declaration, LightRecord, LightType,
+    Declaration, LightRecord, LightType, Size,
     extent::{self, Cone, SMALLEST, Sample, Seen, VISIBLE},
 };
 use crate::{
@@ -75,6 +75,7 @@ impl LightType for Cylinder {
     .at_position()
     .with_direction()
     .luminance(10.0, 100.0)
+    .sizes(&[Size::Length(LENGTH.name), Size::Radius(RADIUS.name)])
     .equation("I(p) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {

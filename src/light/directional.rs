@@ -21,6 +21,8 @@ impl LightType for Directional {
         default_intensity: 1.0,
         slider_max: 10.0,
         cone_parameter: None,
+        sizes: &[],
+        roll_parameter: None,
         equation: "I(p) = I",
         extent: false,
         wgsl: wgsl!("light/directional.wgsl"),

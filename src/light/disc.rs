@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{
-    Declaration, LightRecord, LightType,
+    Declaration, LightRecord, LightType, Size,
     extent::{self, Cone, SMALLEST, Sample, Seen, TWO_SIDED, UNTURNED, VISIBLE},
 };
 use crate::{
@@ -40,6 +40,7 @@ impl LightType for Disc {
         .at_position()
         .with_direction()
         .luminance(10.0, 100.0)
+        .sizes(&[Size::Radius(RADIUS.name)])
         .equation("I(p) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {

@@ -23,10 +23,12 @@ mod environment;
 pub mod extent;
 mod factor;
 pub mod ies;
+mod outline;
 pub mod panorama;
 mod photometric;
 mod point;
 mod rectangle;
+mod size;
 mod sky;
 mod sphere;
 mod spot;
@@ -44,6 +46,7 @@ pub use factor::Factor;
 pub use photometric::Photometric;
 pub use point::Point;
 pub use rectangle::Rectangle;
+pub use size::Size;
 pub use sphere::Sphere;
 pub use spot::Spot;
 pub use sun::Sun;
@@ -98,6 +101,10 @@ pub struct Declaration {
     pub slider_max: f32,
     /// The name of the parameter that is the half angle in degrees of the cone that a gizmo should draw.
     pub cone_parameter: Option<&'static str>,
+    /// Its sizes, which have handles in the picture and make its outline.
+    pub sizes: &'static [Size],
+    /// The name of the parameter that turns it about its direction, right-handed, in degrees, and has a handle in the picture.
+    pub roll_parameter: Option<&'static str>,
     /// The equation of the light that arrives at a point, as readable mathematics.
     pub equation: &'static str,
     /// True if it fills a part of the directions from which a point is lit: then it has [`LightType::sample`] and
@@ -382,6 +389,12 @@ impl LightEntry {
     #[must_use]
     pub fn cone_parameter(&self) -> Option<&'static Parameter> {
         self.parameter(self.declaration.cone_parameter?)
+    }
+
+    /// The parameter that turns it about its direction, degrees.
+    #[must_use]
+    pub fn roll_parameter(&self) -> Option<&'static Parameter> {
+        self.parameter(self.declaration.roll_parameter?)
     }
 
     /// Half the angle, in degrees, of the cone that a gizmo should draw.

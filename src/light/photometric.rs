@@ -82,6 +82,8 @@ impl LightType for Photometric {
         default_intensity: 1.0,
         slider_max: 10.0,
         cone_parameter: None,
+        sizes: &[],
+        roll_parameter: None,
         equation: "I(p) = I w / d^2",
         extent: false,
         wgsl: wgsl!("light/photometric.wgsl"),

@@ -25,6 +25,8 @@ impl LightType for Point {
         default_intensity: 20.0,
         slider_max: 200.0,
         cone_parameter: None,
+        sizes: &[],
+        roll_parameter: None,
         equation: "I(p) = I / d^2",
         extent: false,
         wgsl: wgsl!("light/point.wgsl"),

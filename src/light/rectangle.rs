@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{
-    Declaration, LightRecord, LightType,
+    Declaration, LightRecord, LightType, Size,
     extent::{self, Cone, ROLL, SMALLEST, Sample, Seen, TWO_SIDED, VISIBLE},
 };
 use crate::{optics::sampling::SphericalRectangle, parameter::Parameter, parameters, shader::wgsl};
@@ -68,6 +68,8 @@ impl LightType for Rectangle {
     .at_position()
     .with_direction()
     .luminance(10.0, 100.0)
+    .sizes(&[Size::Width(WIDTH.name), Size::Height(HEIGHT.name)])
+    .roll(ROLL.name)
     .equation("I(p) = L");
 
     const DERIVED: &'static [Parameter] = &[extent::number("roll_sine"), extent::number("roll_cosine")];

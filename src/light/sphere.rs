@@ -3,7 +3,7 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Declaration, LightRecord, LightType,
+    Declaration, LightRecord, LightType, Size,
     disc::RADIUS,
     extent::{self, Cone, Sample, Seen, VISIBLE},
 };
@@ -42,6 +42,7 @@ impl LightType for Sphere {
         .glyph("○")
         .at_position()
         .luminance(10.0, 100.0)
+        .sizes(&[Size::Radius(RADIUS.name)])
         .equation("I(p) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {

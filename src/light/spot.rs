@@ -60,6 +60,8 @@ impl LightType for Spot {
         default_intensity: 20.0,
         slider_max: 200.0,
         cone_parameter: Some(CONE_ANGLE.name),
+        sizes: &[],
+        roll_parameter: None,
         equation: "I(p) = I cone(θ, θ_c, s) / d^2",
         extent: false,
         wgsl: wgsl!("light/spot.wgsl"),

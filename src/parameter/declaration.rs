@@ -259,6 +259,14 @@ impl Parameter {
         self.allows(&nearest).then_some(nearest)
     }
 
+    /// The nearest legal value to an angle in degrees, for which a whole turn more or less is the same.
+    #[must_use]
+    pub fn nearest_angle(&self, degrees: f32) -> Option<Value> {
+        let same = [0.0, -360.0, 360.0].map(|turn| Value::Number(degrees + turn));
+        let legal = same.into_iter().find(|value| self.allows(value));
+        legal.or_else(|| self.nearest(&Value::Number(degrees)))
+    }
+
     /// The WGSL type of its field.
     #[must_use]
     pub fn wgsl_type(&self) -> &'static str {

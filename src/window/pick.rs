@@ -1,4 +1,4 @@
-//! Clicking into the picture selects what is under the pointer.
+//! Clicking into the picture selects what is under the pointer: a light by its mark, a lamp or an object by what is seen of it.
 
 use bevy::{
     app::{App, Plugin},
@@ -31,6 +31,7 @@ use crate::{
         parts::SceneObject,
         schedule::LabFrame,
     },
+    scene::{Light, Scene, emitter},
 };
 
 /// Selects what is clicked in the picture.
@@ -49,7 +50,7 @@ const LIGHT_REACH: f32 = 12.0;
 /// Distance that the pointer may move between press and release of a click, points.
 const CLICK_SLACK: f32 = 4.0;
 
-/// Selects the light whose mark, or else the object whose surface, was clicked.
+/// Selects the light whose mark, or else the object or the lamp whose surface, was clicked.
 fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
     over: Res<OverPicture>,
@@ -96,14 +97,32 @@ fn pick(
         // A picture that stands still draws no object, but shows all of them.
         let settings =
             MeshRayCastSettings::default().with_filter(&filter).with_visibility(RayCastVisibility::Visible);
-        let (hit, _) = ray_cast.cast_ray(ray, &settings).first()?;
-        entities.objects.iter().position(|e| e == hit).map(Selection::Object)
+        let object = ray_cast.cast_ray(ray, &settings).first().and_then(|(hit, there)| {
+            let index = entities.objects.iter().position(|e| e == hit)?;
+            Some((Selection::Object(index), there.distance))
+        });
+        let lamp = lamp_at(&scene.0, &registry, ray).map(|(i, distance)| (Selection::Light(i), distance));
+        let nearest = object.into_iter().chain(lamp).min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.map(|(selection, _)| selection)
     });
     if let Some(selection) = selection
         && selection != session.selection
     {
         session.apply(Action::Select(selection), &registry);
     }
+}
+
+/// The nearest light with extent that a ray meets in the picture, and its distance. What is all around is the background.
+fn lamp_at(scene: &Scene, registry: &Registry, ray: Ray3d) -> Option<(usize, f32)> {
+    let met = |light: &Light| {
+        let (entry, emitter, record) = emitter(light, registry, scene.display.encoding)?;
+        let distance = emitter.seen(&record, ray.origin, *ray.direction).distance;
+        let is_around = distance.is_infinite() && emitter.bounds(&record, ray.origin).is_none();
+        let is_met = light.enabled && entry.is_visible(&light.parameters) && distance > 0.0;
+        (is_met && !is_around).then_some(distance)
+    };
+    let lamps = scene.lights.iter().enumerate().filter_map(|(i, light)| Some((i, met(light)?)));
+    lamps.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 fn nearest_light(
@@ -132,6 +151,7 @@ mod tests {
     use bevy::{
         asset::Assets,
         camera::{CameraProjection as _, PerspectiveProjection, RenderTargetInfo},
+        math::Dir3,
         mesh::Mesh,
         transform::components::Transform,
         window::WindowResolution,
@@ -140,58 +160,109 @@ mod tests {
     use glam::{UVec2, Vec3};
 
     use super::*;
-    use crate::{
-        render::camera::picture_camera,
-        scene::{Scene, observer::NEAR},
-    };
+    use crate::{parameter::Value, render::camera::picture_camera, scene::observer::NEAR};
 
     const SIZE: UVec2 = UVec2::new(400, 300);
 
+    /// What is selected by a click at the place of a point of the room, with so many other cameras.
+    fn clicked(scene: &Scene, point: Vec3, others: usize) -> Selection {
+        let mut session = Session::new(scene.clone());
+        session.selection = Selection::Observer;
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
+        let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
+        let mut camera = Camera::default();
+        camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
+        let lens =
+            PerspectiveProjection { fov: 1.4, near: NEAR, aspect_ratio: 4.0 / 3.0, ..Default::default() };
+        camera.computed.clip_from_view = lens.get_clip_from_view();
+        let place =
+            GlobalTransform::from(Transform::from_translation(scene.observer.position + 6.0 * Vec3::Z));
+        let at = camera.world_to_viewport(&place, point).expect("it is seen");
+        let mut window = Window { resolution: WindowResolution::new(SIZE.x, SIZE.y), ..Window::default() };
+        window.set_cursor_position(Some(at));
+
+        let mut world = World::new();
+        world.insert_resource(session);
+        world.insert_resource(area);
+        world.insert_resource(OverPicture { now: true, pressed: Some(at) });
+        world.insert_resource(CurrentScene(scene.clone()));
+        world.insert_resource(Registry::builtin());
+        world.init_resource::<SceneEntities>();
+        world.init_resource::<Assets<Mesh>>();
+        world.init_resource::<ButtonInput<MouseButton>>();
+        world.spawn((window, PrimaryWindow));
+        for _ in 0..others {
+            // They look elsewhere.
+            world.spawn((picture_camera(1), GlobalTransform::from_xyz(0.0, 0.0, -50.0)));
+        }
+        world.spawn((picture_camera(1), WindowView)).insert((camera, place));
+        let mut schedule = Schedule::default();
+        schedule.add_systems(pick);
+        world.resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
+        schedule.run(&mut world);
+        let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
+        buttons.clear();
+        buttons.release(MouseButton::Left);
+        schedule.run(&mut world);
+        world.resource::<Session>().selection
+    }
+
     #[test]
     fn a_click_selects_a_light_however_many_cameras_there_are() {
+        let scene = Scene::default();
+        let light = marks::anchor(&scene.lights[0], &scene).expect("it has a place");
         for others in 0..3 {
-            let scene = Scene::default();
-            let mut session = Session::new(scene.clone());
-            session.selection = Selection::Observer;
-            let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
-            let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
-            let mut camera = Camera::default();
-            camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
-            let lens =
-                PerspectiveProjection { fov: 1.4, near: NEAR, aspect_ratio: 4.0 / 3.0, ..Default::default() };
-            camera.computed.clip_from_view = lens.get_clip_from_view();
-            let place =
-                GlobalTransform::from(Transform::from_translation(scene.observer.position + 6.0 * Vec3::Z));
-            let light = marks::anchor(&scene.lights[0], &scene).expect("it has a place");
-            let at = camera.world_to_viewport(&place, light).expect("it is seen");
-            let mut window =
-                Window { resolution: WindowResolution::new(SIZE.x, SIZE.y), ..Window::default() };
-            window.set_cursor_position(Some(at));
-
-            let mut world = World::new();
-            world.insert_resource(session);
-            world.insert_resource(area);
-            world.insert_resource(OverPicture { now: true, pressed: Some(at) });
-            world.insert_resource(CurrentScene(scene));
-            world.insert_resource(Registry::builtin());
-            world.init_resource::<SceneEntities>();
-            world.init_resource::<Assets<Mesh>>();
-            world.init_resource::<ButtonInput<MouseButton>>();
-            world.spawn((window, PrimaryWindow));
-            for _ in 0..others {
-                // They look elsewhere.
-                world.spawn((picture_camera(1), GlobalTransform::from_xyz(0.0, 0.0, -50.0)));
-            }
-            world.spawn((picture_camera(1), WindowView)).insert((camera, place));
-            let mut schedule = Schedule::default();
-            schedule.add_systems(pick);
-            world.resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
-            schedule.run(&mut world);
-            let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
-            buttons.clear();
-            buttons.release(MouseButton::Left);
-            schedule.run(&mut world);
-            assert_eq!(world.resource::<Session>().selection, Selection::Light(0), "{others} more");
+            assert_eq!(clicked(&scene, light, others), Selection::Light(0), "{others} more");
         }
+    }
+
+    /// A light with extent that faces the camera.
+    fn lamp(light_type: &str, position: Vec3) -> Light {
+        let mut light = Light {
+            light_type: light_type.to_owned(),
+            position: Some(position),
+            direction: (light_type != "sphere").then_some(Vec3::Z),
+            ..Light::default()
+        };
+        light.parameters.set("radius", Value::Number(1.0));
+        light
+    }
+
+    #[test]
+    fn a_click_on_a_lamp_selects_it_where_it_is_seen() {
+        let middle = Vec3::new(5.0, 5.0, 13.0);
+        for light_type in ["rectangle", "disc", "sphere"] {
+            let mut scene = Scene { lights: vec![lamp(light_type, middle)], ..Scene::default() };
+            // Away from its mark.
+            let (on, beside) = (middle + Vec3::new(0.75, 0.2, 0.0), middle + Vec3::new(1.2, 1.2, 0.0));
+            assert_eq!(clicked(&scene, on, 0), Selection::Light(0), "{light_type}");
+            assert_eq!(clicked(&scene, beside, 0), Selection::Observer, "{light_type}");
+            for (name, value) in [("visible", false), ("enabled", false)] {
+                scene.lights[0] = lamp(light_type, middle);
+                scene.lights[0].parameters.set("visible", Value::flag(name != "visible" || value));
+                scene.lights[0].enabled = name != "enabled" || value;
+                assert_eq!(clicked(&scene, on, 0), Selection::Observer, "{light_type}, not {name}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_lamp_is_met_and_what_is_all_around_is_not() {
+        let registry = Registry::builtin();
+        let around = Light { light_type: "environment".to_owned(), position: None, ..Light::default() };
+        let sun = Light {
+            light_type: "sun".to_owned(),
+            position: None,
+            direction: Some(Vec3::Z),
+            ..Light::default()
+        };
+        let [far, near] = [2.0, 4.0].map(|z| lamp("disc", Vec3::new(5.0, 5.0, z)));
+        let mut scene = Scene { lights: vec![around, sun, far, near], ..Scene::default() };
+        let ray = Ray3d::new(Vec3::new(5.0, 5.0, 9.0), Dir3::NEG_Z);
+        assert_eq!(lamp_at(&scene, &registry, ray), Some((3, 5.0)));
+        scene.lights.truncate(2);
+        assert_eq!(lamp_at(&scene, &registry, ray), Some((1, f32::INFINITY)), "the sun is a disc");
+        scene.lights.truncate(1);
+        assert_eq!(lamp_at(&scene, &registry, ray), None);
     }
 }

@@ -146,6 +146,8 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("toon.rs", example("toon.rs", "rust")),
                 ("light.rs", example("light.rs", "rust")),
                 ("light.wgsl", example("light.wgsl", "wgsl")),
+                ("lamp.rs", example("lamp.rs", "rust")),
+                ("lamp.wgsl", example("lamp.wgsl", "wgsl")),
                 ("shape.rs", example("shape.rs", "rust")),
                 ("shading_model.rs", example("shading_model.rs", "rust")),
                 ("shading_model.wgsl", example("shading_model.wgsl", "wgsl")),

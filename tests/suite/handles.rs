@@ -6,6 +6,7 @@ use bevy_egui::egui::{
 use glam::{Quat, Vec3};
 use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
+    light::{self, LightRecord, LightType, Size, extent},
     panel::{
         marks::Lens,
         state::{
@@ -13,10 +14,14 @@ use lights_camera_models::{
             Session, ViewChange,
         },
     },
+    parameter::{Parameter, Value},
+    parameters,
+    registry::{Register as _, Registry},
     scene::{Light, Scene, comparison::Layout},
+    shader::Source,
 };
 
-use crate::panels::Bench;
+use crate::{panels::Bench, plugins::lamp::RingLamp};
 
 const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
@@ -34,10 +39,14 @@ fn scene() -> Scene {
 }
 
 fn bench(scene: Scene) -> Bench {
+    bench_with(scene, Registry::builtin())
+}
+
+fn bench_with(scene: Scene, registry: Registry) -> Bench {
     let mut session = Session::new(scene);
     session.facts.camera = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(-0.5);
     session.facts.eye = Vec3::splat(5.0) + session.facts.camera * Vec3::new(0.0, 0.0, 5.0);
-    let mut bench = Bench::new(session);
+    let mut bench = Bench::with_registry(session, registry);
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
     bench
@@ -463,4 +472,262 @@ fn keys_choose_the_handles_and_nudge_the_selection() {
     bench.click_at(field, PointerButton::Primary);
     bench.key(Key::ArrowRight, CTRL);
     assert_eq!(bench.session.document.done(), done);
+}
+
+// ── lights with extent ──
+
+const PLACE: Vec3 = Vec3::new(4.6, 5.6, 5.3);
+const WAY: Vec3 = Vec3::new(0.3, -0.4, 0.85);
+const SPAN: Parameter = Parameter::number("span", 0.2..=3.0, 1.2).unit("m").help("From side to side.");
+const RISE: Parameter = Parameter::number("rise", 0.2..=3.0, 0.8).unit("m").help("From bottom to top.");
+const TILT: Parameter = Parameter::number("tilt", 0.0..=360.0, 0.0).unit("°").help("About its direction.");
+
+parameters! {
+    /// A rectangle of another crate, whose sizes have names of their own.
+    struct Banner {
+        span: number = SPAN,
+        rise: number = RISE,
+        tilt: number = TILT,
+    }
+}
+
+impl LightType for Banner {
+    const DECLARATION: light::Declaration =
+        light::Declaration::new("banner", "Banner", Source::new("banner.wgsl", ""))
+            .at_position()
+            .with_direction()
+            .luminance(1.0, 10.0)
+            .sizes(&[Size::Width("span"), Size::Height("rise")])
+            .roll("tilt");
+
+    fn seen(&self, _: &LightRecord, _: Vec3, _: Vec3) -> extent::Seen {
+        extent::Seen::NOTHING
+    }
+}
+
+/// A lamp that is selected, with handles for its sizes.
+fn lamp(light_type: &str) -> Bench {
+    let mut registry = Registry::builtin();
+    registry.add_light_type::<Banner>().add_light_type::<RingLamp>();
+    let mut scene = scene();
+    scene.lights[0] = Light {
+        light_type: light_type.to_owned(),
+        position: Some(PLACE),
+        direction: (light_type != "sphere").then_some(WAY),
+        ..Light::default()
+    };
+    for (name, metres) in [("width", 1.2), ("height", 0.8), ("length", 1.4), ("radius", 0.5)] {
+        scene.lights[0].parameters.set(name, Value::Number(metres));
+    }
+    let mut bench = bench_with(scene, registry);
+    bench.apply(Action::Select(Selection::Light(0)));
+    bench.apply(mode(HandleMode::Size));
+    bench
+}
+
+/// Parameters of the lamp.
+fn numbers<const N: usize>(bench: &Bench, names: [&str; N]) -> [f32; N] {
+    let light = &bench.session.document.lights[0];
+    let entry = bench.registry.light(&light.light_type).unwrap();
+    names.map(|name| light.parameters.number(entry.parameter(name).unwrap()))
+}
+
+/// The places of the handles of a parameter of the lamp, at its first end and at the other.
+fn ends(bench: &Bench, parameter: &str) -> Vec<Pos2> {
+    let lamp = bench.session.name_of(Selection::Light(0), &bench.registry);
+    ["", ", at the other end"]
+        .into_iter()
+        .filter_map(|end| {
+            let name = format!("Handle: {parameter} of {lamp}{end}");
+            Some(bench.tree.iter().find(|s| s.label == name)?.rect.center())
+        })
+        .collect()
+}
+
+#[test]
+fn a_size_grows_on_both_sides_by_what_the_pointer_pulls_at_either_end() {
+    let direction = WAY.normalize();
+    let [x, y] = extent::sides(direction, glam::Vec2::Y);
+    let cases = [
+        ("rectangle", ["width", "height"], x),
+        ("rectangle", ["height", "width"], y),
+        ("cylinder", ["length", "radius"], direction),
+        ("banner", ["span", "rise"], x),
+        ("banner", ["rise", "span"], y),
+    ];
+    for (light_type, [name, other], axis) in cases {
+        for end in [0, 1] {
+            let mut bench = lamp(light_type);
+            let lens = Lens::of(&bench.session, bench.area.rect);
+            let before = numbers(&bench, [name, other]);
+            let way = if end == 0 { axis } else { -axis };
+            let edge = |metres: f32| lens.project(PLACE + 0.5 * metres * way).unwrap();
+            let at = ends(&bench, name)[end];
+            assert!(at.distance(edge(before[0])) < 1.0, "{light_type}, {name}: {at:?} is not at its edge");
+            let by = edge(before[0] + 0.3) - edge(before[0]);
+            drag(&mut bench, at, by, Modifiers::NONE);
+            let after = numbers(&bench, [name, other]);
+            assert!((after[0] - before[0] - 0.3).abs() < 0.0151, "{light_type}, {name}: {after:?}");
+            assert_eq!(after[1], before[1], "{light_type}, {name}");
+            assert!(ends(&bench, name)[end].distance(at + by) < 2.5, "{light_type}, {name}");
+            assert_eq!(bench.session.document.lights[0].position, Some(PLACE));
+            assert_eq!(bench.session.document.done(), 1);
+            bench.apply(Action::Undo);
+            assert_eq!(numbers(&bench, [name, other]), before);
+            assert!(bench.session.messages.is_empty());
+        }
+    }
+}
+
+#[test]
+fn a_radius_grows_as_far_as_the_pointer_pulls() {
+    for light_type in ["disc", "sphere", "cylinder", "ring_lamp"] {
+        let mut bench = lamp(light_type);
+        let middle = Lens::of(&bench.session, bench.area.rect).project(PLACE).unwrap();
+        let all = ends(&bench, "radius");
+        assert_eq!(all.len(), 1, "{light_type}");
+        drag(&mut bench, all[0], 0.4 * (all[0] - middle), Modifiers::NONE);
+        let [radius] = numbers(&bench, ["radius"]);
+        assert!((radius - 0.7).abs() < 0.025, "{light_type}: {radius}");
+        bench.apply(Action::Undo);
+        assert_eq!(numbers(&bench, ["radius"]), [0.5], "{light_type}");
+    }
+}
+
+#[test]
+fn a_size_stays_within_its_range_and_goes_in_steps_with_ctrl() {
+    let mut bench = lamp("banner");
+    let at = ends(&bench, "span")[0];
+    let middle = Lens::of(&bench.session, bench.area.rect).project(PLACE).unwrap();
+    let out = (at - middle).normalized();
+    drag(&mut bench, at, -500.0 * out, Modifiers::NONE);
+    assert_eq!(numbers(&bench, ["span"]), [0.2]);
+    // There its handle is apart from the middle all the same.
+    let at = ends(&bench, "span")[0];
+    assert!(at.distance(middle) > 20.0, "{at:?}");
+    pull(&mut bench, at, 700.0 * out, Modifiers::NONE);
+    assert_eq!(numbers(&bench, ["span"]), [3.0]);
+    assert!(bench.texts().iter().any(|text| text == "span 3.000 m"), "{:?}", bench.texts());
+    press(&mut bench, at + 700.0 * out, false);
+    bench.settle();
+    bench.apply(Action::Undo);
+    drag(&mut bench, at, 60.0 * out, CTRL);
+    let [span] = numbers(&bench, ["span"]);
+    assert!(span > 0.5 && (4.0 * span).fract() == 0.0, "{span}");
+    assert!(bench.session.messages.is_empty(), "{:?}", bench.session.messages);
+}
+
+#[test]
+fn a_size_that_reaches_out_of_the_view_has_its_handle_at_the_edge() {
+    let mut bench = lamp("rectangle");
+    bench.session.document.amend(|scene| scene.lights[0].parameters.set("width", Value::Number(60.0)));
+    bench.settle();
+    let all = ends(&bench, "width");
+    assert!(all.len() == 2 && all.iter().all(|at| bench.area.rect.contains(*at)), "{all:?}");
+    let middle = Lens::of(&bench.session, bench.area.rect).project(PLACE).unwrap();
+    drag(&mut bench, all[0], 30.0 * (middle - all[0]).normalized(), Modifiers::NONE);
+    let [width] = numbers(&bench, ["width"]);
+    assert!(width < 59.9 && width > 50.0, "{width}");
+}
+
+#[test]
+fn a_lamp_is_rolled_about_its_direction() {
+    for (light_type, name) in [("rectangle", "roll"), ("banner", "tilt")] {
+        let mut bench = lamp(light_type);
+        bench.apply(mode(HandleMode::Turn));
+        let lens = Lens::of(&bench.session, bench.area.rect);
+        let [x, y] = extent::sides(WAY.normalize(), glam::Vec2::Y);
+        let middle = lens.project(PLACE).unwrap();
+        let top = ends(&bench, name)[0];
+        // The knob is at the top of the lamp.
+        let up = lens.project(PLACE + 0.1 * y).unwrap() - middle;
+        assert!((top - middle).normalized().dot(up.normalized()) > 0.999, "{light_type}");
+        let arm = {
+            let metres =
+                |points: f32| points / lens.project(PLACE + 0.01 * y).unwrap().distance(middle) * 0.01;
+            metres(top.distance(middle))
+        };
+        for (wanted, modifiers, slack) in [(40.0f32, Modifiers::NONE, 2.5), (-32.0, CTRL, 0.0)] {
+            let angle = wanted.to_radians();
+            let to = lens.project(PLACE + arm * (angle.cos() * y - angle.sin() * x)).unwrap();
+            drag(&mut bench, top, to - top, modifiers);
+            let [roll] = numbers(&bench, [name]);
+            // The range of the tilt begins at 0.
+            let expected = if slack == 0.0 { -30.0 } else { wanted };
+            let expected = if name == "tilt" { expected.rem_euclid(360.0f32) } else { expected };
+            assert!((roll - expected).abs() <= slack, "{light_type}: {roll} for {expected}");
+            bench.apply(Action::Undo);
+            assert_eq!(numbers(&bench, [name]), [0.0]);
+        }
+        // The direction is turned by its own handle, which leaves the room to the sizes.
+        handle(&bench, "direction of");
+        bench.apply(mode(HandleMode::Size));
+        assert!(!bench.says("Handle: direction of"));
+    }
+    let mut bench = lamp("disc");
+    bench.apply(mode(HandleMode::Turn));
+    assert!(!bench.says("Handle: roll"), "a disc is round");
+}
+
+#[test]
+fn each_view_has_the_handles_of_a_lamp_and_a_presentation_has_none() {
+    let mut bench = lamp("rectangle");
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+    bench.apply(Action::Select(Selection::Light(0)));
+    let widths = |bench: &Bench| {
+        let named = bench.tree.iter().filter(|s| s.label == "Handle: width of Rectangle 1");
+        let mut all: Vec<_> = named.map(|s| s.rect.center()).collect();
+        all.sort_by(|a, b| a.x.total_cmp(&b.x));
+        all
+    };
+    assert_eq!(widths(&bench).len(), 2);
+    for view in [0, 1] {
+        let before = numbers(&bench, ["width"]);
+        let at = widths(&bench)[view];
+        let middle = Lens::of(&bench.session, bench.area.cells[view].rect).project(PLACE).unwrap();
+        drag(&mut bench, at, 20.0 * (at - middle).normalized(), Modifiers::NONE);
+        assert!(numbers(&bench, ["width"])[0] > before[0] + 0.05, "view {view}");
+    }
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert!(!bench.says("Handle:"));
+}
+
+/// The closed lines in the colour of the selection.
+fn outlines(bench: &mut Bench) -> Vec<Vec<Pos2>> {
+    let selected = Color32::from_rgb(0x7c, 0xc8, 0xff);
+    let of = |shape| match shape {
+        Shape::Path(path) if path.closed && path.stroke.color == ColorMode::Solid(selected) => {
+            Some(path.points)
+        }
+        _ => None,
+    };
+    bench.shapes().into_iter().filter_map(of).collect()
+}
+
+#[test]
+fn a_lamp_that_is_selected_has_its_outline_also_where_it_is_not_to_be_seen() {
+    let corners = |bench: &Bench| {
+        let lens = Lens::of(&bench.session, bench.area.rect);
+        let [x, y] = extent::sides(WAY.normalize(), glam::Vec2::Y);
+        [(0.6, 0.4), (-0.6, 0.4), (-0.6, -0.4), (0.6, -0.4)]
+            .map(|(a, b)| lens.project(PLACE + a * x + b * y).unwrap())
+    };
+    let mut bench = lamp("rectangle");
+    for visible in [true, false] {
+        let value = Value::flag(visible);
+        bench.session.document.amend(|scene| scene.lights[0].parameters.set("visible", value.clone()));
+        bench.settle();
+        let all = outlines(&mut bench);
+        let frame = corners(&bench);
+        assert_eq!(all.len(), 1);
+        assert!(all[0].len() == 4, "{all:?}");
+        assert!(frame.iter().all(|c| all[0].iter().any(|p| p.distance(*c) < 0.1)), "{all:?} and {frame:?}");
+    }
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.settle();
+    assert!(outlines(&mut bench).is_empty());
+    for light_type in ["disc", "sphere", "cylinder", "banner", "ring_lamp"] {
+        assert_eq!(outlines(&mut lamp(light_type)).len(), 1, "{light_type}");
+    }
 }

@@ -46,6 +46,9 @@ use crate::{
 #[path = "../../examples/extension/src/main.rs"]
 #[allow(dead_code)]
 pub mod extension;
+#[path = "../../examples/lamp.rs"]
+#[allow(dead_code)]
+pub mod lamp;
 #[path = "../../examples/light.rs"]
 #[allow(dead_code)]
 pub mod light;
@@ -304,6 +307,7 @@ fn stage() {
         "window" => drop(window::main()),
         "panel" => drop(panel::main()),
         "animate" => drop(crate::animation::animate::main()),
+        "lamp" => drop(lamp::main()),
         "light" => drop(light::main()),
         "shading_model" => drop(shading_model::main()),
         "shape" => drop(shape::main()),
@@ -437,17 +441,19 @@ fn the_examples_pass_the_public_tests_and_draw_alike_without_a_window() {
     };
     fn register(to: &mut impl Register) {
         to.add_light_type::<light::Blind>()
+            .add_light_type::<lamp::RingLamp>()
             .add_object_type::<shape::Pear>()
             .add_shading_model::<shading_model::Banded>();
     }
     testing::assert_light::<light::Blind>();
+    testing::assert_light::<lamp::RingLamp>();
     testing::assert_mesh::<shape::Pear>();
     testing::assert_shading::<shading_model::Banded>();
     let mut registry = Registry::builtin();
     register(&mut registry);
     let mut renderer =
         GpuRenderer::extended(160, 90, 1, Output::Linear, register).expect("software Vulkan is installed");
-    for name in ["light", "shape", "shading_model"] {
+    for name in ["lamp", "light", "shape", "shading_model"] {
         let file = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let scene = load::file(Path::new(&file), &registry, Defaults::Refuse).expect(name).scene;
         let gpu = on_gpu(&mut renderer, &scene);
@@ -554,7 +560,7 @@ mod on_screen {
             });
             assert!(!running.said().contains("ERROR"), "{name}: {}", running.said());
         };
-        ["light", "shading_model", "shape"].into_iter().for_each(shows);
+        ["lamp", "light", "shading_model", "shape"].into_iter().for_each(shows);
         let mut running = screen.start_with(|config| program("animate", config));
         let mut seen = BTreeSet::new();
         running.until("the light that swings", |picture: &Picture| {

@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use lights_camera_models::{
-    light::{self, Incident, LightRecord, LightType, ies},
+    light::{self, Incident, LightRecord, LightType, Size, ies},
     optics::{Frame, Terms},
     parameter::{BASE_COLOUR, K_D, Parameter, Values},
     parameters, reflection,
@@ -305,6 +305,16 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
     light_refused::<OtherCone>(&[
         "parameter `cone_angle`: is a colour, but that of `spot` is a number; light types share parameters by name",
     ]);
+    light!(Sizeless, LAMP.at_position().sizes(&[Size::Radius("zenith")]), {
+        zenith: colour = Parameter::colour("zenith", [0; 3])
+    });
+    light_refused::<Sizeless>(&["its size is parameter `zenith`, but must be one of its numbers"]);
+    light!(Rolled, LAMP.at_position().with_direction().roll("tilt"));
+    light_refused::<Rolled>(&["its roll is parameter `tilt`, but must be one of its numbers"]);
+    light!(Nowhere, LAMP.sizes(&[Size::Radius("dimmed")]), { dimmed: number = DIMMED_BY });
+    light_refused::<Nowhere>(&["it has sizes, but no position around which they lie"]);
+    light!(Undirected, LAMP.at_position().sizes(&[Size::Width("dimmed")]), { dimmed: number = DIMMED_BY });
+    light_refused::<Undirected>(&["`dimmed` is measured by its direction, but it has none"]);
     light!(KeyOfLight, LAMP, { intensity: number = Parameter::number("intensity", 0.0..=1.0, 0.5) });
     light_refused::<KeyOfLight>(&["parameter `intensity`: the name is that of another key of a light"]);
     light!(Without, LAMP, { dimmed: number = DIMMED_BY });

@@ -5,7 +5,10 @@ use std::f32::consts::{PI, TAU};
 use bevy_egui::egui::Pos2;
 use glam::{Quat, Vec3};
 
-use super::shape::{Body, Handle, LETTERS, Placed, Target};
+use super::{
+    lamp,
+    shape::{Body, Handle, LETTERS, Placed, Target},
+};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection},
     panel::marks::{Lens, Ray},
@@ -38,8 +41,8 @@ pub(super) enum Dragged {
     Size(f32),
     /// The direction of a light.
     Direction(Vec3),
-    /// Half the angle of a cone, degrees.
-    Cone(f32),
+    /// A parameter of a light, in its unit.
+    Parameter(f32),
 }
 
 /// A handle in the hand, and what it had when it was grasped.
@@ -56,7 +59,10 @@ pub(super) struct Grasp {
     rotation: Quat,
     size: f32,
     direction: Vec3,
-    cone: Option<(&'static Parameter, f32)>,
+    /// The parameter of a light that it changes, and its value.
+    parameter: Option<(&'static Parameter, f32)>,
+    /// The way to the end of a size of a light, and the part of it that lies there.
+    end: Option<(Vec3, f32)>,
     /// The handle is on the side of its sphere that is towards the camera.
     near: bool,
     /// It was pulled off its sphere; back on it, it is on the other side.
@@ -77,16 +83,6 @@ fn wrapped(radians: f32) -> f32 {
 /// The largest decimal step of a length that is no larger than another.
 fn decimal(length: f32) -> f32 {
     10f32.powf(length.max(1e-6).log10().floor()).clamp(1e-4, 0.01)
-}
-
-/// The place on an axis through a point that is nearest to a line of sight, metres from the point.
-fn along(ray: Ray, from: Vec3, axis: Vec3) -> Option<f32> {
-    let cos = axis.dot(ray.way);
-    let (to, less) = (ray.eye - from, 1.0 - cos * cos);
-    let t = (to.dot(axis) - cos * to.dot(ray.way)) / less;
-    // Beyond the vanishing point the two meet behind the camera.
-    let ahead = (from + t * axis - ray.eye).dot(ray.way) > 0.0;
-    (less > 1e-5 && ahead).then_some(t)
 }
 
 /// The place where a line of sight meets a plane.
@@ -134,7 +130,8 @@ impl Grasp {
             rotation: Quat::IDENTITY,
             size: 1.0,
             direction: Vec3::NEG_Y,
-            cone: None,
+            parameter: None,
+            end: None,
             near: is_near(placed.point - target.at, lens.eye() - target.at),
             off: false,
         };
@@ -144,7 +141,14 @@ impl Grasp {
             }
             Body::Light(light, entry) => {
                 grasp.direction = light.direction.and_then(Vec3::try_normalize).unwrap_or(Vec3::NEG_Y);
-                grasp.cone = entry.cone_parameter().map(|p| (p, light.parameters.number(p)));
+                let parameter = target.parameter(placed.handle);
+                grasp.parameter = parameter.map(|p| (p, light.parameters.number(p)));
+                if let Handle::Extent(i, end) = placed.handle
+                    && let Some(size) = entry.declaration.sizes.get(i)
+                {
+                    let way = lamp::way(light, entry, *size, end, target.at, lens);
+                    grasp.end = Some((way, size.part()));
+                }
             }
         }
         grasp
@@ -156,16 +160,14 @@ impl Grasp {
         let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
         let step = if snap { METRES } else { decimal(lens.metres(self.at, 1.0)) };
         let flat = |ray: Ray| on_plane(ray, self.at, ahead);
+        let parameter = |value: Option<Value>| match value? {
+            Value::Number(value) => Some(Dragged::Parameter(value)),
+            _ => None,
+        };
         match self.handle {
             Handle::Axis(axis) => {
                 let way = Vec3::AXES[axis];
-                // Along the axis as it is seen: what the pointer does across it moves nothing.
-                let end = lens.project(self.at + lens.metres(self.at, 10.0) * way)?;
-                let middle = lens.project(self.at)?;
-                let seen = (end - middle).normalized();
-                // The middle goes as far in the picture as the pointer, wherever on the arrow that is.
-                let foot = middle + seen * (pointer - self.pointer).dot(seen);
-                let by = along(lens.ray(foot), self.at, way)?;
+                let by = self.moved_along(lens, pointer, self.at, way)?;
                 let to = snapped(self.at[axis] + by, step);
                 let mut place = self.at;
                 place[axis] = room.nearest(Vec3::splat(to))[axis];
@@ -178,19 +180,7 @@ impl Grasp {
             }
             Handle::Ring(axis) => {
                 let axis = Vec3::AXES[axis];
-                let to_eye = (lens.eye() - self.at).normalize_or_zero();
-                let by = if axis.dot(to_eye).abs() < EDGE_ON {
-                    let across = axis.cross(to_eye).normalize_or_zero();
-                    let radius = (self.point - self.at).length();
-                    (flat(now)? - flat(start)?).dot(across) / radius
-                } else {
-                    let angle = |ray: Ray| {
-                        let arm = on_plane(ray, self.at, axis)? - self.at;
-                        let first = axis.any_orthonormal_vector();
-                        Some(arm.dot(axis.cross(first)).atan2(arm.dot(first)))
-                    };
-                    angle(now)? - angle(start)?
-                };
+                let by = self.turned_about(lens, pointer, axis)?;
                 let before = twist(self.rotation, axis);
                 let after = snapped(wrapped(before + by), if snap { DEGREES } else { 1.0 });
                 let degrees = turned(self.rotation, axis, after.to_radians() - before);
@@ -218,12 +208,48 @@ impl Grasp {
             Handle::Cone => {
                 let angle = self.opened(lens, pointer)?.to_degrees();
                 let wanted = snapped(angle, if snap { DEGREES } else { 0.5 });
-                match self.cone?.0.nearest(&Value::Number(wanted))? {
-                    Value::Number(angle) => Some(Dragged::Cone(angle)),
-                    _ => None,
-                }
+                parameter(self.parameter?.0.nearest(&Value::Number(wanted)))
+            }
+            Handle::Extent(..) => {
+                let ((which, before), (way, part)) = self.parameter.zip(self.end)?;
+                let by = self.moved_along(lens, pointer, self.point, way)?;
+                let wanted = snapped(before + by / part, step).max(step);
+                parameter(which.nearest(&Value::Number(wanted)))
+            }
+            Handle::Roll => {
+                let (which, before) = self.parameter?;
+                let after = wrapped(before.to_radians() + self.turned_about(lens, pointer, self.direction)?);
+                parameter(which.nearest_angle(snapped(after, if snap { DEGREES } else { 1.0 }) + 0.0))
             }
         }
+    }
+
+    /// How far the pointer moves a point along an axis, metres. Along the axis as it is seen: what the pointer does across it
+    /// moves nothing. The point goes as far in the picture as the pointer, wherever on the handle that is.
+    fn moved_along(&self, lens: &Lens, pointer: Pos2, from: Vec3, axis: Vec3) -> Option<f32> {
+        let place = lens.project(from)?;
+        let end = lens.project(from + lens.metres(from, 10.0) * axis)?;
+        let seen = (end - place).normalized();
+        lens.ray(place + seen * (pointer - self.pointer).dot(seen)).along(from, axis)
+    }
+
+    /// The angle by which the pointer turns a ring about an axis, radians.
+    fn turned_about(&self, lens: &Lens, pointer: Pos2, axis: Vec3) -> Option<f32> {
+        let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
+        let to_eye = (lens.eye() - self.at).normalize_or_zero();
+        if axis.dot(to_eye).abs() < EDGE_ON {
+            let [_, _, ahead] = lens.axes();
+            let flat = |ray: Ray| on_plane(ray, self.at, ahead);
+            let across = axis.cross(to_eye).normalize_or_zero();
+            let radius = (self.point - self.at).length();
+            return Some((flat(now)? - flat(start)?).dot(across) / radius);
+        }
+        let angle = |ray: Ray| {
+            let arm = on_plane(ray, self.at, axis)? - self.at;
+            let first = axis.any_orthonormal_vector();
+            Some(arm.dot(axis.cross(first)).atan2(arm.dot(first)))
+        };
+        Some(angle(now)? - angle(start)?)
     }
 
     /// Takes note of a place of the pointer: pulled off its sphere and back, the handle of a direction is on the other side.
@@ -269,8 +295,8 @@ impl Grasp {
             (Selection::Object(i), Dragged::Size(size)) => Edit::Object(i, ObjectField::Size(size)),
             (Selection::Light(i), Dragged::Position(p)) => Edit::Light(i, LightField::Position(p)),
             (Selection::Light(i), Dragged::Direction(d)) => Edit::Light(i, LightField::Direction(d)),
-            (Selection::Light(i), Dragged::Cone(angle)) => {
-                Edit::Light(i, LightField::Parameter(self.cone?.0.name, Value::Number(angle)))
+            (Selection::Light(i), Dragged::Parameter(value)) => {
+                Edit::Light(i, LightField::Parameter(self.parameter?.0.name, Value::Number(value)))
             }
             _ => return None,
         })
@@ -293,8 +319,13 @@ impl Grasp {
                 let [azimuth, elevation] = angles(d.normalize_or_zero()).map(|v| v.round() + 0.0);
                 format!("azimuth {azimuth}°   elevation {elevation}°")
             }
-            (Dragged::Cone(angle), _) => {
-                format!("{} {angle:.1}°", self.cone.map_or("cone", |(p, _)| p.label))
+            (Dragged::Parameter(value), handle) => {
+                let label = self.parameter.map_or("", |(p, _)| p.label);
+                match handle {
+                    Handle::Extent(..) => format!("{label} {} m", metres(value)),
+                    Handle::Roll => format!("{label} {value:.0}°"),
+                    _ => format!("{label} {value:.1}°"),
+                }
             }
         };
         text.replace('-', "−")
@@ -337,7 +368,8 @@ mod tests {
     fn grasp(session: &Session, mode: HandleMode, handle: Handle) -> (Grasp, Placed) {
         let registry = Registry::builtin();
         let target = Target::of(session, &registry, Vec::new).expect("selected");
-        let all = placed(&target, mode, session, &lens(session));
+        let mut all = placed(&target, mode, session, &lens(session));
+        all.extend(lamp::placed(&target, mode, &lens(session)));
         let handle = all.iter().find(|p| p.handle == handle).expect("it is there").clone();
         let start = handle.lines.first().map_or(handle.end, |line| line[line.len() / 2]);
         (Grasp::of(&handle, &target, &lens(session), start), handle)
@@ -513,11 +545,11 @@ mod tests {
             lens.project(grasp.at + arm.length() * (cos * grasp.direction + sin * side)).expect("seen")
         };
         for degrees in [10.0, 35.0, 60.0] {
-            let Dragged::Cone(angle) = drag(&session, &grasp, to(degrees), false) else { panic!() };
+            let Dragged::Parameter(angle) = drag(&session, &grasp, to(degrees), false) else { panic!() };
             assert!((angle - degrees).abs() < 1.0, "{angle} for {degrees}");
         }
-        let Dragged::Cone(angle) = drag(&session, &grasp, to(170.0), false) else { panic!() };
-        assert!(grasp.cone.is_some_and(|(p, _)| p.allows(&Value::Number(angle))), "{angle}");
+        let Dragged::Parameter(angle) = drag(&session, &grasp, to(170.0), false) else { panic!() };
+        assert!(grasp.parameter.is_some_and(|(p, _)| p.allows(&Value::Number(angle))), "{angle}");
     }
 
     #[test]

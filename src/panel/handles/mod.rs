@@ -1,5 +1,5 @@
 //! The handles of what is selected: arrows that move it, rings that turn it, one for its size; for a light one for its
-//! direction and one for its cone.
+//! direction and one for its cone, and those for the sizes and the roll that its type declares.
 //!
 //! Bevy's `TransformGizmo` does not serve here. It takes the cursor of the window for one in the target of its camera,
 //! but the cameras of the window draw into textures that are shown beside panels and beside each other; and it draws
@@ -23,6 +23,7 @@ use paint::State;
 use shape::{Handle, Placed, Target, placed};
 
 mod grasp;
+mod lamp;
 mod paint;
 mod shape;
 
@@ -73,7 +74,8 @@ pub(super) fn handles(
         return (actions, places);
     };
     let hold = hold.filter(|hold| hold.grasp.part == target.part);
-    let all = placed(&target, session.view.handles, session, &lens);
+    let mut all = placed(&target, session.view.handles, session, &lens);
+    all.extend(lamp::placed(&target, session.view.handles, &lens));
     let under = free_pointer(ui, rect, written, session).and_then(|at| under(&all, at));
     let mine = hold.as_ref().filter(|hold| hold.view == view);
     let is_down = ui.input(|i| i.pointer.any_down());
@@ -91,7 +93,7 @@ pub(super) fn handles(
     if opacity > 0.0 {
         paint::handles(ui, lens, &all, opacity, state);
     }
-    nodes(ui, view, rect, &all, session, registry);
+    nodes(ui, view, rect, &all, &target, &session.name_of(target.part, registry));
     places.extend(all.iter().flat_map(|placed| {
         let side = Vec2::splat(2.0 * placed.half());
         placed.points().filter(|p| rect.contains(*p)).map(move |p| Rect::from_center_size(p, side))
@@ -189,12 +191,11 @@ fn under(all: &[Placed], at: Pos2) -> Option<&Placed> {
 }
 
 /// The handles for screen readers, and their tooltips.
-fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], session: &Session, registry: &Registry) {
-    let part = session.name_of(session.selection, registry);
+fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], target: &Target, part: &str) {
     for placed in all {
         let place = Rect::from_center_size(placed.end, Vec2::splat(2.0 * placed.radius)).intersect(rect);
         let response = ui.interact(place, view.with(placed.handle), Sense::hover());
-        let name = placed.handle.name(&part);
+        let name = target.name(placed.handle, part);
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &name));
     }
 }
@@ -209,8 +210,8 @@ fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
         (shape::Body::Object(object, _), Handle::Size) => Dragged::Size(object.size),
         (shape::Body::Light(light, _), Handle::Axis(_) | Handle::Plane) => Dragged::Position(light.position?),
         (shape::Body::Light(light, _), Handle::Direction) => Dragged::Direction(light.direction?),
-        (shape::Body::Light(light, entry), Handle::Cone) => {
-            Dragged::Cone(entry.cone_angle(&light.parameters)?)
+        (shape::Body::Light(light, _), handle) => {
+            Dragged::Parameter(light.parameters.number(target.parameter(handle)?))
         }
         _ => return None,
     };
@@ -263,7 +264,7 @@ fn drag(
         if let Handle::Axis(axis) = grasp.handle {
             paint::guide(ui, *lens, target.at, axis, room);
         }
-        if let Handle::Ring(_) = grasp.handle {
+        if let Handle::Ring(_) | Handle::Roll = grasp.handle {
             paint::angle(ui, *lens, target.at, [grasp.pointer, pointer]);
         }
         if let Some(shown) = shown {

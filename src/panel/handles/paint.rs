@@ -79,12 +79,12 @@ pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: 
                     ink.disc(end, DISC, colour);
                     ink.disc(end, DISC - 4.5, OUTLINE.gamma_multiply(f32::from(colour.a()) / 255.0));
                 }
-                Handle::Size => {
+                Handle::Size | Handle::Extent(..) => {
                     let r = if hot { 7.0 } else { 5.5 };
                     let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
                     ink.fill(corners.map(|(x, y)| end + vec2(x, y)).to_vec(), colour);
                 }
-                Handle::Direction | Handle::Cone => {
+                Handle::Direction | Handle::Cone | Handle::Roll => {
                     ink.disc(end, if hot { DISC + 1.0 } else { DISC - 0.5 }, colour);
                 }
             }

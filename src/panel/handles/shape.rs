@@ -12,6 +12,7 @@ use crate::{
         marks::{self, Lens},
         state::{HandleMode, Session},
     },
+    parameter::Parameter,
     registry::Registry,
     scene::{Light, Object, rotation::rotation},
 };
@@ -19,7 +20,7 @@ use crate::{
 /// Length of the arrows, points.
 const ARM: f32 = 76.0;
 /// Radius of the rings, points.
-const RING: f32 = 78.0;
+pub(super) const RING: f32 = 78.0;
 /// Around the middle there is no handle, so that the picture can be turned there.
 const GAP: f32 = 13.0;
 /// The shortest arrow, points: seen from its end, an axis cannot be dragged along.
@@ -62,20 +63,19 @@ pub(super) enum Handle {
     Direction,
     /// Opens the cone of a light.
     Cone,
+    /// Changes a size of a light: which of those that its type declares, and at which of its ends.
+    Extent(usize, End),
+    /// Turns a light about its direction.
+    Roll,
 }
 
-impl Handle {
-    /// Its name for people, with that of its part.
-    pub(super) fn name(self, part: &str) -> String {
-        match self {
-            Self::Axis(i) => format!("Handle: move {part} along {}", LETTERS[i]),
-            Self::Plane => format!("Handle: move {part} in the plane of the picture"),
-            Self::Ring(i) => format!("Handle: turn {part} about {}", LETTERS[i]),
-            Self::Size => format!("Handle: size of {part}"),
-            Self::Direction => format!("Handle: direction of {part}"),
-            Self::Cone => format!("Handle: cone of {part}"),
-        }
-    }
+/// An end of a size of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum End {
+    /// The end to which its axis points.
+    First,
+    /// The end opposite.
+    Second,
 }
 
 /// The names of the axes.
@@ -118,6 +118,32 @@ impl<'a> Target<'a> {
                 Some(Self { part, at, body: Body::Light(light, entry) })
             }
             Selection::Room | Selection::Observer => None,
+        }
+    }
+
+    /// The parameter that a handle changes.
+    pub(super) fn parameter(&self, handle: Handle) -> Option<&'static Parameter> {
+        let Body::Light(_, entry) = self.body else { return None };
+        match handle {
+            Handle::Cone => entry.cone_parameter(),
+            Handle::Roll => entry.roll_parameter(),
+            Handle::Extent(i, _) => entry.parameter(entry.declaration.sizes.get(i)?.parameter()),
+            _ => None,
+        }
+    }
+
+    /// The name of a handle for people; `part` is that of what it belongs to.
+    pub(super) fn name(&self, handle: Handle, part: &str) -> String {
+        let label = || self.parameter(handle).map_or("size", |p| p.label);
+        match handle {
+            Handle::Axis(i) => format!("Handle: move {part} along {}", LETTERS[i]),
+            Handle::Plane => format!("Handle: move {part} in the plane of the picture"),
+            Handle::Ring(i) => format!("Handle: turn {part} about {}", LETTERS[i]),
+            Handle::Size => format!("Handle: size of {part}"),
+            Handle::Direction => format!("Handle: direction of {part}"),
+            Handle::Cone => format!("Handle: cone of {part}"),
+            Handle::Extent(_, End::First) | Handle::Roll => format!("Handle: {} of {part}", label()),
+            Handle::Extent(_, End::Second) => format!("Handle: {} of {part}, at the other end", label()),
         }
     }
 }
@@ -183,13 +209,17 @@ fn apart(p: Pos2, a: Pos2, b: Pos2) -> f32 {
     p.distance(a + t * along)
 }
 
-/// The handles of a target in a mode, in the order in which they are painted.
+/// The size of handles in a view: in a small one they are small.
+pub(super) fn part_of(lens: &Lens) -> f32 {
+    (0.0034 * lens.rect().size().min_elem()).min(1.0)
+}
+
+/// The handles of a target in a mode, but for those of sizes and rolls of lights, in the order in which they are painted.
 pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens: &Lens) -> Vec<Placed> {
     let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
         return Vec::new();
     };
-    // In a small view they are small.
-    let part = (0.0034 * lens.rect().size().min_elem()).min(1.0);
+    let part = part_of(lens);
     let extent = Extent::of(target, middle, lens);
     let clear = extent.filter(|extent| extent.leaves_room(part, lens));
     let mut all = Vec::new();
@@ -216,6 +246,8 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
         (Body::Light(..), _) => {}
     }
     if let Body::Light(light, entry) = target.body
+        // Sizes may end where it is.
+        && (mode != HandleMode::Size || entry.declaration.sizes.is_empty())
         && let Some(direction) = light.direction.and_then(Vec3::try_normalize)
     {
         let reach = marks::reach(lens, target.at, &session.document);
@@ -359,10 +391,8 @@ fn arrows(
     all
 }
 
-/// A ring about an axis of the room.
-fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
-    let [first, second] = [Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]];
-    let length = lens.metres(at, radius);
+/// The lines of a circle from the first of two directions to the second, those on its near and those on its far side.
+pub(super) fn circle(at: Vec3, [first, second]: [Vec3; 2], length: f32, lens: &Lens) -> [Vec<Vec<Pos2>>; 2] {
     let around = |k: usize| {
         let (y, x) = (k as f32 / SIDES as f32 * TAU).sin_cos();
         at + length * (x * first + y * second)
@@ -381,6 +411,14 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
             }
         }
     }
+    [lines, far]
+}
+
+/// A ring about an axis of the room.
+fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
+    let sides = [Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]];
+    let length = lens.metres(at, radius);
+    let [lines, far] = circle(at, sides, length, lens);
     // Its letter is where it is seen best: at the top, at the right, between them.
     let wanted = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.7, 0.7)][axis];
     let middle = lens.project(at).unwrap_or_default();
@@ -391,7 +429,14 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     };
     let best = best(true).or_else(|| best(false)).unwrap_or(middle);
     let end = best + (best - middle).normalized() * LETTER;
-    Placed { handle: Handle::Ring(axis), lines, far, end, radius: LETTER_RADIUS, point: around(0) }
+    Placed {
+        handle: Handle::Ring(axis),
+        lines,
+        far,
+        end,
+        radius: LETTER_RADIUS,
+        point: at + length * sides[0],
+    }
 }
 
 /// The handle of the size, on the way to the upper right.

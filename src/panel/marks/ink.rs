@@ -52,6 +52,15 @@ impl Ink {
         self.below.push(Shape::line(points, Stroke::new(width + 2.0 * RIM, rim(colour))));
     }
 
+    /// A closed line.
+    pub(super) fn ring(&mut self, points: Vec<Pos2>, colour: Color32) {
+        if points.len() < 2 {
+            return;
+        }
+        self.below.push(Shape::closed_line(points.clone(), Stroke::new(LINE + 2.0 * RIM, rim(colour))));
+        self.above.push(Shape::closed_line(points, Stroke::new(LINE, colour)));
+    }
+
     /// A filled convex shape.
     pub(in crate::panel) fn fill(&mut self, corners: Vec<Pos2>, colour: Color32) {
         let outline = Stroke::new(2.0 * RIM, rim(colour));

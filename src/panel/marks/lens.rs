@@ -15,6 +15,18 @@ pub(in crate::panel) struct Ray {
     pub(in crate::panel) way: Vec3,
 }
 
+impl Ray {
+    /// The place on an axis through a point that is nearest to the line of sight, metres from the point.
+    pub(in crate::panel) fn along(self, from: Vec3, axis: Vec3) -> Option<f32> {
+        let cos = axis.dot(self.way);
+        let (to, less) = (self.eye - from, 1.0 - cos * cos);
+        let t = (to.dot(axis) - cos * to.dot(self.way)) / less;
+        // Beyond the vanishing point the two meet behind the camera.
+        let ahead = (from + t * axis - self.eye).dot(self.way) > 0.0;
+        (less > 1e-5 && ahead).then_some(t)
+    }
+}
+
 /// The way from the room to the picture, and back: what the camera of the window shows in a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
@@ -99,6 +111,16 @@ impl Lens {
         if sideways.length() > 1e-4 { sideways.normalized() } else { vec2(0.0, 1.0) }
     }
 
+    /// The convex hull of points of the room in the picture, of which nothing behind the camera counts.
+    pub(in crate::panel) fn hull(&self, points: &[Vec3]) -> Vec<Pos2> {
+        let seen = points.iter().map(|p| self.seen(*p));
+        let (mut ahead, behind): (Vec<_>, Vec<_>) = seen.partition(|p| p.z < -NEAR);
+        let border = |a: &Vec3, b: &Vec3| a.lerp(*b, (-NEAR - a.z) / (b.z - a.z)).with_z(-NEAR);
+        let borders: Vec<_> = ahead.iter().flat_map(|a| behind.iter().map(|b| border(a, b))).collect();
+        ahead.extend(borders);
+        convex(ahead.into_iter().map(|p| self.flat(p)).collect())
+    }
+
     /// A line through the room as lines in the picture, without what is behind the camera.
     pub(in crate::panel) fn path(&self, points: &[Vec3]) -> Vec<Vec<Pos2>> {
         let mut runs = vec![Vec::new()];
@@ -123,6 +145,37 @@ impl Lens {
         runs.retain(|run| run.len() > 1);
         runs
     }
+}
+
+/// The convex hull of points: A. Andrew (1979), *Another Efficient Algorithm for Convex Hulls in Two Dimensions*.
+fn convex(mut points: Vec<Pos2>) -> Vec<Pos2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let turns = |a: Pos2, b: Pos2, c: Pos2| {
+        let way = |p: Pos2| [f64::from(p.x) - f64::from(a.x), f64::from(p.y) - f64::from(a.y)];
+        let ([bx, by], [cx, cy]) = (way(b), way(c));
+        bx * cy - by * cx > 0.0
+    };
+    let half = |points: &mut dyn Iterator<Item = Pos2>| {
+        let mut hull: Vec<Pos2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = hull[..]
+                && !turns(a, b, p)
+            {
+                hull.pop();
+            }
+            hull.push(p);
+        }
+        // It is the first one of the other half.
+        hull.pop();
+        hull
+    };
+    let mut hull = half(&mut points.iter().copied());
+    hull.extend(half(&mut points.iter().rev().copied()));
+    hull
 }
 
 #[cfg(test)]
@@ -184,5 +237,22 @@ mod tests {
             assert!(lens.project(light).is_none_or(|at| !lens.rect.contains(at)));
             assert!((lens.towards(light) - way).length() < 1e-3, "{light}");
         }
+    }
+
+    #[test]
+    fn a_hull_is_around_its_points_and_ends_at_the_camera() {
+        let lens = lens(Scene::default());
+        let square = [(4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0), (5.0, 5.0), (5.5, 4.2)];
+        let points = square.map(|(x, y)| Vec3::new(x, y, 5.0));
+        let hull = lens.hull(&points);
+        assert_eq!(hull.len(), 4, "{hull:?}");
+        assert!(points[..4].iter().all(|p| hull.contains(&lens.project(*p).expect("seen"))), "{hull:?}");
+        // A strip on the floor that goes on behind the camera reaches below the picture.
+        let strip = [(4.0, 2.0), (6.0, 2.0), (6.0, 12.0), (4.0, 12.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
+        let hull = lens.hull(&strip);
+        let far = lens.project(strip[0]).expect("seen");
+        assert!(hull.contains(&far) && hull.iter().all(|p| p.y >= far.y), "{hull:?}");
+        assert!(hull.iter().any(|p| p.y > 1e4), "{hull:?}");
+        assert!(lens.hull(&[Vec3::new(5.0, 5.0, 9.9)]).is_empty(), "behind the camera");
     }
 }

@@ -23,6 +23,7 @@ use place::{CROWD, SHORT};
 mod edge;
 mod ink;
 mod lens;
+mod outline;
 mod place;
 
 pub(super) use ink::{Ink, OUTLINE};
@@ -85,6 +86,9 @@ pub fn marks(
     order.sort_by_key(|i| chosen(*i));
     for i in order {
         let light = &scene.lights[i];
+        if chosen(i) {
+            outline::outline(&mut ink, light, scene, registry);
+        }
         let (Some(at), Some(entry)) = (places[i], registry.light(&light.light_type)) else {
             continue;
         };
@@ -204,6 +208,10 @@ fn lamp(
                 if size == Size::Long {
                     ink.arrow(position, position + direction * reach * AXIS, colour);
                 }
+            }
+            // Several would look like light from a direction.
+            None if !entry.declaration.sizes.is_empty() => {
+                ink.arrow(position, position + direction * reach, colour);
             }
             None => {
                 let sides = [Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y];

@@ -1,14 +1,17 @@
 //! Steps by which the keys move, turn and resize what is selected.
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use glam::{Quat, Vec3};
 
 use super::{HandleMode, Session, Severity};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection},
+    light::LightEntry,
     parameter::Value,
     registry::Registry,
     scene::{
-        limits,
+        Light, limits,
         rotation::{rotation, turned},
     },
 };
@@ -21,6 +24,34 @@ const DEGREES: f32 = 5.0;
 /// A sum without the digits that are noise.
 fn tidy(v: Vec3) -> Vec3 {
     (v * 10_000.0).round() / 10_000.0 + Vec3::ZERO
+}
+
+/// A light turned about its direction by one step about an axis, if it shines along that rather than across it.
+fn rolled(light: &Light, entry: &LightEntry, axis: Vec3) -> Option<LightField> {
+    let parameter = entry.roll_parameter()?;
+    let along = light.direction?.normalize_or_zero().dot(axis);
+    let degrees = light.parameters.number(parameter) + DEGREES * along.signum();
+    let roll = parameter.nearest_angle(degrees).filter(|_| along.abs() > FRAC_1_SQRT_2)?;
+    Some(LightField::Parameter(parameter.name, roll))
+}
+
+/// A light with a cone or a size that is larger by one step, or smaller: the way to the side is for the first of its sizes, other ways
+/// are for the second.
+fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<LightField> {
+    let sizes = entry.declaration.sizes;
+    let size = sizes.get(if way.x == 0.0 { 1 } else { 0 }).or(sizes.last());
+    let parameter = size.map_or(entry.cone_parameter(), |size| entry.parameter(size.parameter()))?;
+    let before = light.parameters.number(parameter);
+    let wanted = match size {
+        None => before + DEGREES * sign,
+        Some(_) => {
+            // Small ones in small steps; the smallest stay as they are.
+            let step = if before + 0.001 * sign > 2.0 * METRES { METRES } else { 0.1 * METRES };
+            (before + step * sign).max(before.min(step))
+        }
+    };
+    let nearest = parameter.nearest(&Value::Number(tidy(Vec3::splat(wanted)).x))?;
+    Some(LightField::Parameter(parameter.name, nearest))
 }
 
 impl Session {
@@ -65,23 +96,21 @@ impl Session {
             Selection::Light(i) if self.exists(self.selection) => {
                 let light = &self.document.lights[i];
                 let entry = registry.light(&light.light_type);
-                let cone = entry.and_then(|entry| Some((entry.cone_parameter()?, entry)));
                 let field = match (self.view.handles, light.position, light.direction) {
                     (HandleMode::Move, Some(at), _) => {
                         LightField::Position(room.nearest(tidy(at + METRES * way)))
                     }
                     (HandleMode::Move, None, _) => return has_no("position"),
-                    (HandleMode::Turn, _, Some(direction)) => LightField::Direction(tidy(turn * direction)),
+                    (HandleMode::Turn, _, Some(direction)) => match entry.and_then(|e| rolled(light, e, way))
+                    {
+                        Some(field) => field,
+                        None => LightField::Direction(tidy(turn * direction)),
+                    },
                     (HandleMode::Turn, _, None) => return has_no("direction"),
-                    (HandleMode::Size, ..) => {
-                        let Some((parameter, entry)) = cone else { return has_no("size") };
-                        let angle = entry.cone_angle(&light.parameters).unwrap_or_default();
-                        let wanted = Value::Number(tidy(Vec3::splat(angle + DEGREES * sign)).x);
-                        match parameter.nearest(&wanted) {
-                            Some(nearest) => LightField::Parameter(parameter.name, nearest),
-                            None => return has_no("size"),
-                        }
-                    }
+                    (HandleMode::Size, ..) => match entry.and_then(|e| resized(light, e, way, sign)) {
+                        Some(field) => field,
+                        None => return has_no("size"),
+                    },
                 };
                 Ok(Edit::Light(i, field))
             }
@@ -95,7 +124,7 @@ mod tests {
     use super::*;
     use crate::{
         panel::state::{Action, HandleChange, ViewChange},
-        scene::{Light, Scene},
+        scene::Scene,
     };
 
     fn session() -> (Session, Registry) {
@@ -164,5 +193,40 @@ mod tests {
         session.apply(Action::Nudge(Vec3::Y), &registry);
         let said = session.messages.iter().last().map(|note| note.text.clone()).unwrap_or_default();
         assert!(said.ends_with("has no size."), "{said}");
+    }
+
+    #[test]
+    fn a_lamp_grows_by_each_of_its_sizes_and_rolls_about_its_direction() {
+        let (mut session, registry) = session();
+        let light = |light_type: &str| Light {
+            light_type: light_type.to_owned(),
+            position: Some(Vec3::new(2.0, 3.0, 4.0)),
+            direction: (light_type != "sphere").then_some(Vec3::new(0.1, 0.0, -1.0)),
+            ..Light::default()
+        };
+        session.apply(Action::Select(Selection::Light(0)), &registry);
+        let mut after = |light_type: &str, mode_of: HandleMode, ways: &[Vec3], name: &str| {
+            session.document.amend(|scene| scene.lights[0] = light(light_type));
+            session.apply(mode(mode_of), &registry);
+            ways.iter().for_each(|way| drop(session.apply(Action::Nudge(*way), &registry)));
+            let light = &session.document.lights[0];
+            let parameter = registry.light(light_type).and_then(|entry| entry.parameter(name));
+            (parameter.map_or(f32::NAN, |p| light.parameters.number(p)), light.direction)
+        };
+        let size = HandleMode::Size;
+        assert_eq!(after("rectangle", size, &[Vec3::X], "width").0, 2.1);
+        assert_eq!(after("rectangle", size, &[Vec3::X], "height").0, 1.0);
+        assert_eq!(after("rectangle", size, &[Vec3::NEG_Y], "height").0, 0.9);
+        assert_eq!(after("cylinder", size, &[Vec3::NEG_X], "length").0, 1.9);
+        assert_eq!(after("cylinder", size, &[Vec3::Y], "radius").0, 0.06);
+        assert_eq!(after("sphere", size, &[Vec3::X, Vec3::Y], "radius").0, 0.7);
+        // In small steps, and never to nothing.
+        assert_eq!(after("disc", size, &[Vec3::NEG_X; 60], "radius").0, 0.01);
+        let turn = HandleMode::Turn;
+        let start = light("rectangle").direction;
+        assert_eq!(after("rectangle", turn, &[Vec3::Z], "roll"), (-5.0, start));
+        assert_eq!(after("rectangle", turn, &[Vec3::NEG_Z; 73], "roll"), (5.0, start));
+        let (roll, direction) = after("rectangle", turn, &[Vec3::Y], "roll");
+        assert!(roll == 0.0 && direction != start);
     }
 }

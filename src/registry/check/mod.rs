@@ -263,11 +263,22 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     })?;
     positive("its default intensity", d.default_intensity)?;
     positive("the end of the slider for its intensity", d.slider_max)?;
-    if let Some(cone) = d.cone_parameter {
+    let sizes = d.sizes.iter().map(|size| ("size", size.parameter()));
+    let others = [("cone", d.cone_parameter), ("roll", d.roll_parameter)];
+    for (what, name) in others.into_iter().filter_map(|(what, name)| Some((what, name?))).chain(sizes) {
         let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
-        ensure(entry.parameter(cone).is_some_and(number), || {
-            format!("its cone is parameter `{cone}`, but must be one of its numbers")
+        ensure(entry.parameter(name).is_some_and(number), || {
+            format!("its {what} is parameter `{name}`, but must be one of its numbers")
         })?;
+    }
+    ensure(d.sizes.is_empty() || d.has_position, || {
+        "it has sizes, but no position around which they lie; `.at_position()` gives it one".to_owned()
+    })?;
+    let directed = d.sizes.iter().find(|size| size.needs_direction()).map(|size| size.parameter());
+    if let Some(name) = directed.or(d.roll_parameter).filter(|_| !d.has_direction) {
+        return Err(format!(
+            "`{name}` is measured by its direction, but it has none; `.with_direction()` gives it one"
+        ));
     }
     let known = registry.light(d.id).is_some();
     ensure(known || registry.lights().len() < MAX_LIGHT_TYPES, || {

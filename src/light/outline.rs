@@ -1,0 +1,92 @@
+//! The outline of a light with extent, from what its type declares.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use glam::{Vec2, Vec3};
+
+use super::{LightEntry, LightRecord, Size, extent};
+use crate::{
+    optics::{colour::Encoding, sampling},
+    parameter::Values,
+};
+
+/// Corners of a circle.
+const CORNERS: usize = 96;
+
+/// A circle about an axis.
+fn circle(middle: Vec3, axis: Vec3, radius: f32) -> impl Iterator<Item = Vec3> {
+    (0..CORNERS).map(move |k| {
+        let (y, x) = (k as f32 / CORNERS as f32 * TAU).sin_cos();
+        middle + radius * sampling::about(axis, Vec3::new(x, y, 0.0))
+    })
+}
+
+/// What is seen of the edge of a ball: a circle nearer to the eye than its middle. None from within.
+fn limb(middle: Vec3, radius: f32, eye: Vec3) -> Option<impl Iterator<Item = Vec3>> {
+    let to_eye = eye - middle;
+    let squared = to_eye.length_squared();
+    let near = radius * radius / squared;
+    (near < 1.0)
+        .then(|| circle(middle + near * to_eye, to_eye / squared.sqrt(), radius * (1.0 - near).sqrt()))
+}
+
+impl LightEntry {
+    /// The [sides](extent::sides) of a light with these parameters that shines in a direction.
+    #[must_use]
+    pub fn sides(&self, values: &Values, direction: Vec3) -> [Vec3; 2] {
+        let roll = self.roll_parameter().map_or(0.0, |p| values.number(p));
+        extent::sides(direction, Vec2::from(roll.to_radians().sin_cos()))
+    }
+
+    /// The outlines of a light with extent as seen from a place: points of the room, of which each list has its convex hull in the
+    /// picture for an outline. From the [sizes](super::Declaration::sizes) of its type: a width and a height are a rectangle, a
+    /// radius is a circle, or a ball where there is no direction, a length with a radius is a tube. A type that declares none has
+    /// the circle of its [bounds](super::LightType::bounds). None where it is all around.
+    #[must_use]
+    pub fn outlines(&self, values: &Values, light: &LightRecord, eye: Vec3) -> Vec<Vec<Vec3>> {
+        let declaration = self.declaration;
+        if !declaration.extent {
+            return Vec::new();
+        }
+        if declaration.sizes.is_empty() {
+            let cone = (self.instantiate)(values, Encoding::default()).bounds(light, eye);
+            let cone = cone.filter(|cone| cone.half_angle < FRAC_PI_2);
+            let rim =
+                |cone: extent::Cone| circle(eye + cone.axis, cone.axis, cone.half_angle.tan()).collect();
+            return cone.map(rim).into_iter().collect();
+        }
+        let (mut half, mut radii) = (Vec3::ZERO, Vec::new());
+        for size in declaration.sizes {
+            let Some(metres) = self.parameter(size.parameter()).map(|p| size.part() * values.number(p))
+            else {
+                continue;
+            };
+            match size {
+                Size::Width(_) => half.x = metres,
+                Size::Height(_) => half.y = metres,
+                Size::Length(_) => half.z = metres,
+                Size::Radius(_) => radii.push(metres),
+            }
+        }
+        if radii.is_empty() {
+            radii.push(0.0);
+        }
+        let [x, y] = self.sides(values, light.direction);
+        let corners =
+            (0..8).filter(|k: &u32| (0..3).all(|axis| half[axis] > 0.0 || k >> axis & 1 == 0)).map(|k| {
+                let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
+                let [a, b, c] = (half * Vec3::new(sign(1), sign(2), sign(4))).to_array();
+                light.position + a * x + b * y + c * light.direction
+            });
+        let corners: Vec<_> = corners.collect();
+        let around = |radius: f32| -> Vec<Vec3> {
+            let one = |middle: &Vec3| match radius {
+                0.0 => vec![*middle],
+                _ if declaration.has_direction => circle(*middle, light.direction, radius).collect(),
+                _ => limb(*middle, radius, eye).into_iter().flatten().collect(),
+            };
+            corners.iter().flat_map(one).collect()
+        };
+        radii.into_iter().map(around).collect()
+    }
+}
