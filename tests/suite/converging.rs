@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use bevy::{ecs::entity::Entity, prelude::Transform};
 use lights_camera_models::{
     optics::colour::Encoding,
+    progress::Progress,
     reference::{self, Settings, Until},
     registry::Registry,
     render::{
@@ -164,7 +165,9 @@ fn the_noise_of_a_picture_is_measured_as_it_converges() {
     // The CPU renderer estimates it from blocks of 16 samples, which are spread more evenly than frames of up to 8.
     let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
     let (registry, odd) = (Registry::builtin(), AtomicBool::default());
-    let (_, reached) = reference::render_until(&scene, &registry, &settings, Until::default(), &odd);
+    let until = Until::default();
+    let (_, reached) = reference::render_until(&scene, &registry, &settings, until, &odd, &Progress::NONE)
+        .expect("nobody cancels");
     let ratio = last.1 / reached.noise.expect("enough blocks");
     assert!((0.7..3.0).contains(&ratio), "{ratio} {told:?} {reached:?}");
     // A change begins anew, and says nothing of what was before.
