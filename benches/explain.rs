@@ -37,10 +37,13 @@ fn crowd() -> Scene {
 /// The pointer goes over the middle of a picture of 1280×720.
 fn pixels(c: &mut Criterion) {
     let registry = Registry::builtin();
-    let gouraud = Scene { shading_model: "gouraud".to_owned(), ..example("portrait.json", &registry) };
+    // Under two directional lights and an ambient one.
+    let lights = example("gouraud_misses_highlight.json", &registry).lights;
+    let teapot = Scene { lights, ..example("portrait.json", &registry) };
+    let gouraud = Scene { shading_model: "gouraud".to_owned(), ..teapot.clone() };
     let scenes = [
         ("default", Scene::default()),
-        ("teapot, Phong shading", example("portrait.json", &registry)),
+        ("teapot, Phong shading", teapot),
         ("teapot, Gouraud shading", gouraud),
         ("240 lights", example("many_lights.json", &registry)),
         ("matrix of models", example("model_matrix.json", &registry)),

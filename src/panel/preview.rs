@@ -16,7 +16,7 @@ use bevy_egui::egui::{
 use super::theme::Palette;
 use crate::{
     caught::catch,
-    reference,
+    reference::{self, LightSamples},
     registry::Registry,
     scene::{
         Scene,
@@ -28,6 +28,8 @@ use crate::{
 
 /// Pixels across and down.
 const SIZE: [u32; 2] = [320, 180];
+/// Of light with extent: noise is hardly seen in a small picture.
+const LIGHT_SAMPLES: LightSamples = LightSamples::of(32);
 /// The longest that a picture may take.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// More pictures are not kept.
@@ -150,7 +152,8 @@ fn make(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
     };
     let [width, height] = SIZE;
     let settings = reference::Settings { width, height, ..reference::Settings::default() };
-    let picture = reference::render_rgb8_until(&scene, registry, &settings, Instant::now() + PATIENCE);
+    let end = Instant::now() + PATIENCE;
+    let picture = reference::render_rgb8_until(&scene, registry, &settings, LIGHT_SAMPLES, end);
     let picture = picture.map(|pixels| {
         let image = ColorImage::from_rgb(SIZE.map(|n| n as usize), &pixels);
         ctx.load_texture("preview", image, TextureOptions::LINEAR)

@@ -183,17 +183,18 @@ pub fn render_rgb8_noting(
     .into_flattened()
 }
 
-/// The same, unless it is not finished by then.
+/// The same with some of the samples of lights with extent, unless it is not finished by then.
 #[must_use]
 pub fn render_rgb8_until(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
+    samples: LightSamples,
     end: Instant,
 ) -> Option<Vec<u8>> {
     let display = DisplayTransform::new(&scene.display);
     let background = display.apply(Vec4::ZERO);
-    let until = (Some(end), &AtomicBool::default(), LightSamples::default());
+    let until = (Some(end), &AtomicBool::default(), samples);
     let pixels = draw(scene, registry, settings, None, until, background, |pixel| display.apply(pixel));
     (Instant::now() < end).then(|| pixels.into_flattened())
 }

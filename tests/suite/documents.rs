@@ -33,6 +33,7 @@ use serde_json::Value as Json;
 
 use crate::{
     golden::{SAME_RENDERER, read_png, updating},
+    pictures::sampled,
     plugins::window::toon as example,
     support::root,
 };
@@ -638,7 +639,7 @@ fn the_gallery_shows_every_model_as_it_is() {
     let mut portraits = Vec::new();
     for model in registry.models() {
         scene.reflection_model = model.declaration.id.to_owned();
-        let picture = reference::render_rgb8(&scene, &registry, &settings);
+        let picture = sampled(&scene, &registry, &settings, 64);
         let path = root().join(format!("docs/images/models/{}.png", model.declaration.id));
         let agrees = || {
             read_png(&path).is_ok_and(|(width, height, old)| {

@@ -9,7 +9,7 @@ use lights_camera_models::{
         preview::{self, Preview, Source},
         state::{Action, Answer, Effect, Question, Session, ViewChange},
     },
-    reference::{self, Settings},
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
 };
@@ -222,8 +222,9 @@ fn a_picture_that_takes_too_long_is_given_up() {
     let settings = Settings { width: 64, height: 36, ..Settings::default() };
     let whole = reference::render_rgb8(&scene, &registry, &settings);
     let end = Instant::now() + Duration::from_secs(600);
-    assert_eq!(reference::render_rgb8_until(&scene, &registry, &settings, end), Some(whole));
-    assert_eq!(reference::render_rgb8_until(&scene, &registry, &settings, Instant::now()), None);
+    let until = |end| reference::render_rgb8_until(&scene, &registry, &settings, LightSamples::of(1), end);
+    assert_eq!(until(end), Some(whole));
+    assert_eq!(until(Instant::now()), None);
 }
 
 #[cfg(target_os = "linux")]

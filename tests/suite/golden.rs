@@ -21,7 +21,10 @@ use lights_camera_models::{
     },
 };
 
-use crate::support::{root, shipped_scenes};
+use crate::{
+    pictures::sampled,
+    support::{root, shipped_scenes},
+};
 
 const WIDTH: u32 = 192;
 const HEIGHT: u32 = 108;
@@ -81,10 +84,11 @@ fn views() -> Vec<(String, Scene)> {
     all
 }
 
+const SETTINGS: reference::Settings =
+    reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
+
 fn on_cpu(scene: &Scene) -> Vec<u8> {
-    let settings =
-        reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
-    reference::render_rgb8(scene, &Registry::builtin(), &settings)
+    reference::render_rgb8(scene, &Registry::builtin(), &SETTINGS)
 }
 
 pub fn updating() -> bool {
@@ -184,8 +188,10 @@ fn shipped_scenes_look_as_accepted_on_the_gpu() {
 
 #[test]
 fn the_comparison_notices_one_light_changed() {
+    // Noise is the same in both.
+    let drawn = |scene: &Scene| sampled(scene, &Registry::builtin(), &SETTINGS, 16);
     for (name, mut scene) in scenes() {
-        let right = on_cpu(&scene);
+        let right = drawn(&scene);
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);
         // One of the middle: the outer ones of many may lie beside the picture.
         let count = scene.lights.len();
@@ -199,7 +205,7 @@ fn the_comparison_notices_one_light_changed() {
             // Uniform light cannot be moved.
             None => scene.lights.iter_mut().for_each(|l| l.intensity *= 0.95),
         }
-        let wrong = on_cpu(&scene);
+        let wrong = drawn(&scene);
         assert!(SAME_RENDERER.broken(&wrong, &right).is_some(), "{name}: a changed light goes unnoticed");
     }
 }

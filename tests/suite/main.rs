@@ -11,6 +11,7 @@ mod clipping;
 mod command_line;
 mod compare;
 mod comparing;
+mod contact_sheet;
 mod converging;
 mod cost;
 mod custom_curves;

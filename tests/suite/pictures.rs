@@ -1,12 +1,21 @@
 //! Helpers of several tests.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
-    reference,
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     render::capture::gpu::GpuRenderer,
     scene::{Light, Object, Observer, Scene},
 };
+
+/// The picture of a scene for a display from the CPU, with so many samples of lights with extent.
+pub fn sampled(scene: &Scene, registry: &Registry, settings: &Settings, count: u32) -> Vec<u8> {
+    let samples = LightSamples::of(count);
+    reference::render_samples(scene, registry, settings, samples, &AtomicBool::default())
+        .to_rgb8(&scene.display)
+}
 
 /// The picture of a scene from the GPU, in linear light.
 pub fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
