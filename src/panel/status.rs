@@ -101,7 +101,7 @@ fn samples(ui: &mut Ui, session: &Session) {
         );
         ui.label(
             "Noise: how far pixels are from their final value, as the root mean square of their standard errors, over the \
-             mean luminance of what is seen.",
+             mean luminance of what is seen. The estimate is rather too large.",
         );
         for line in lines {
             ui.label(line);

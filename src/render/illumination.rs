@@ -80,7 +80,8 @@ pub struct LightBuffers {
 impl LightBuffers {
     /// Buffers that have no lights yet.
     fn new(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Self {
-        let (lights, _) = illumination_bytes(&[], TermSelection::All, &Display::default(), None);
+        let (lights, _) =
+            illumination_bytes(&[], TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
         let mut lights = ShaderBuffer::new(&lights, RenderAssetUsages::default());
         lights.buffer_description.usage |= BufferUsages::UNIFORM;
         let words = ShaderBuffer::new(&vec![0; 4 * room], RenderAssetUsages::default());
@@ -199,26 +200,27 @@ pub fn word_count(lights: &[Lit]) -> usize {
     Places::of(&lights[..lights.len().min(MAX_LIGHTS)]).count
 }
 
-/// The bytes of the samples at [`SAMPLES_AT`]: those of a frame that is a part of a mean, or all.
-pub(super) fn sample_bytes(part: Option<Part>) -> [u8; SAMPLE_BYTES] {
-    let Part { first, count } = part.unwrap_or(Part { first: 0, count: LightSamples::DEFAULT });
-    let words = [first, count, u32::from(part.is_some())];
+/// The bytes of the samples at [`SAMPLES_AT`]: those of a frame that is a part of a mean, or all so many.
+pub(super) fn sample_bytes(part: Result<Part, u32>) -> [u8; SAMPLE_BYTES] {
+    let Part { first, count } = part.unwrap_or_else(|all| Part { first: 0, count: all });
+    let words = [first, count, u32::from(part.is_ok())];
     std::array::from_fn(|i| words[i / 4].to_le_bytes()[i % 4])
 }
 
 /// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use. Lights beyond
-/// [`MAX_LIGHTS`] are left out; the checker refuses such scenes.
+/// [`MAX_LIGHTS`] are left out; the checker refuses such scenes. A frame takes so many samples of lights with extent.
 #[must_use]
 pub fn illumination_bytes(
     lights: &[Lit],
     terms: TermSelection,
     display: &Display,
     channel: Option<&Setting>,
+    samples: u32,
 ) -> (Vec<u8>, Vec<u8>) {
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
     let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
-    bytes[SAMPLES_AT..][..SAMPLE_BYTES].copy_from_slice(&sample_bytes(None));
+    bytes[SAMPLES_AT..][..SAMPLE_BYTES].copy_from_slice(&sample_bytes(Err(samples)));
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
     put(4, terms.code().to_le_bytes());
@@ -256,7 +258,8 @@ mod tests {
     #[test]
     fn more_lights_than_fit_are_left_out() {
         let lights = vec![Lit { words: vec![7], ..Lit::default() }; MAX_LIGHTS + 5];
-        let (bytes, words) = illumination_bytes(&lights, TermSelection::All, &Display::default(), None);
+        let (bytes, words) =
+            illumination_bytes(&lights, TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
         assert_eq!(bytes[..4], (MAX_LIGHTS as u32).to_le_bytes());
         assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES);
         assert_eq!(words.len(), 4 * MAX_LIGHTS);
@@ -266,7 +269,8 @@ mod tests {
     fn the_lights_fit_the_smallest_uniform_buffer_that_there_is() {
         let limits = [wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Limits::default()];
         let smallest = limits.into_iter().map(|l| l.max_uniform_buffer_binding_size).min();
-        let (bytes, _) = illumination_bytes(&[], TermSelection::All, &Display::default(), None);
+        let (bytes, _) =
+            illumination_bytes(&[], TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
         assert!(smallest.is_some_and(|most| bytes.len() as u64 <= most), "{} of {smallest:?}", bytes.len());
     }
 }

@@ -31,7 +31,7 @@ use bevy::{
 };
 
 use super::{
-    converge::{Converged, Part},
+    converge::{Converged, Convergence, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
     noise::{Grown, Measuring, Noise},
     stage::Stage,
@@ -113,6 +113,8 @@ impl Mean {
 /// The samples of this frame, for buffers of lights; none are all.
 #[derive(Default, Resource)]
 struct Samples {
+    /// All of a picture.
+    all: u32,
     wanted: HashMap<AssetId<ShaderBuffer>, Part>,
     /// Buffers that have not all samples.
     written: HashSet<AssetId<ShaderBuffer>>,
@@ -127,8 +129,10 @@ fn extract(
     known: Query<(), With<Joins>>,
     mut samples: ResMut<Samples>,
     noise: Res<Noise>,
+    convergence: Extract<Res<Convergence>>,
     mut commands: Commands,
 ) {
+    samples.all = convergence.target;
     noise.keep(|view| views.contains(view));
     for (view, entity, drawing, stage) in &views {
         let Some(part) = drawing.part() else {
@@ -151,17 +155,17 @@ fn extract(
 
 /// Writes the samples of this frame into the buffers of lights, and all into those whose pictures have converged.
 fn write(mut samples: ResMut<Samples>, buffers: Res<RenderAssets<GpuShaderBuffer>>, queue: Res<RenderQueue>) {
-    let Samples { wanted, written } = &mut *samples;
+    let Samples { all, wanted, written } = &mut *samples;
     written.retain(|buffer| {
         let done = !wanted.contains_key(buffer);
         if done && let Some(gpu) = buffers.get(*buffer) {
-            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(None));
+            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(Err(*all)));
         }
         !done
     });
     for (buffer, part) in wanted.drain() {
         if let Some(gpu) = buffers.get(buffer) {
-            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(Some(part)));
+            queue.write_buffer(&gpu.buffer, SAMPLES_AT as u64, &sample_bytes(Ok(part)));
             written.insert(buffer);
         }
     }

@@ -1,5 +1,6 @@
 //! The noise of pictures that converge, measured on the GPU: the standard error of the luminance of pixels, as the root of
-//! its mean square over those in which something is seen, divided by their mean luminance.
+//! its mean square over those in which something is seen, divided by their mean luminance. Frames are spread more evenly
+//! together than alone, so it is rather too large.
 //!
 //! The pass that joins a frame to the mean keeps the sum of the squares about the mean, after B. Welford (1962). Now and then
 //! these are added up over the picture, and read back when the GPU has them, which nobody waits for.

@@ -10,6 +10,7 @@ use bevy::{
 use super::{
     absorb::absorb,
     camera::follow_scene,
+    converge::Convergence,
     entities::{CurrentScene, SceneEntities, reconcile},
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
@@ -107,6 +108,7 @@ fn upload_lights(
     terms: Res<ShownTerms>,
     registry: Res<Registry>,
     shared: Res<IlluminationBuffer>,
+    convergence: Res<Convergence>,
     stages: Query<(Ref<Stage>, Ref<Overrides>)>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
@@ -123,7 +125,7 @@ fn upload_lights(
         let lights = shown.shining().enumerate().filter(|(i, _)| shines(*i));
         let lights: Vec<_> = lights.map(|(_, l)| Lit::new(l, &registry, display.encoding)).collect();
         let terms = overrides.terms.unwrap_or(terms.0);
-        let (illumination, words) = illumination_bytes(&lights, terms, &display, channel);
+        let (illumination, words) = illumination_bytes(&lights, terms, &display, channel, convergence.target);
         for (handle, mut bytes) in [(&known.lights, illumination), (&known.words, words)] {
             let Some(old) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
             // Materials would not notice a buffer of another size.

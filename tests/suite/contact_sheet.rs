@@ -4,7 +4,7 @@ use glam::Vec3;
 use lights_camera_models::{
     lettering::Lettering,
     optics::TermSelection,
-    reference::{self, Settings},
+    reference::Settings,
     registry::Registry,
     render::capture::{
         gpu::{GpuRenderer, Output},
@@ -51,7 +51,7 @@ const LIGHTS: [(&str, &str); 4] = [
 
 /// Blocks beside each other, and their measures: the column of names, the row of lights, the gap between cells.
 const BLOCKS: u32 = 2;
-const NAMES: u32 = 206;
+const NAMES: u32 = 216;
 const HEAD: u32 = 34;
 const GAP: u32 = 4;
 const TEXT: f32 = 17.0;
@@ -150,6 +150,7 @@ fn the_renderers_draw_the_same_contact_sheet() {
     let registry = Registry::builtin();
     let mut renderer =
         GpuRenderer::new(CELL, CELL, 4, Output::Display).expect("software Vulkan is installed");
+    renderer.set_light_samples(SAMPLES);
     let mut rows = Vec::new();
     let (mut beyond, mut largest, mut count) = (0, 0, 0);
     for (name, scenes) in scenes(&registry) {
@@ -158,7 +159,7 @@ fn the_renderers_draw_the_same_contact_sheet() {
             renderer.set_scene(scene.clone());
             renderer.settle().expect("the GPU draws");
             let gpu = renderer.read_rgb8().expect("the picture can be read");
-            let cpu = reference::render_rgb8(scene, &registry, &SETTINGS);
+            let cpu = sampled(scene, &registry, &SETTINGS, SAMPLES);
             let far = |(a, b): (&[u8], &[u8])| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
             let all: Vec<u8> = gpu.chunks(3).zip(cpu.chunks(3)).map(far).collect();
             let off = all.iter().filter(|far| **far > 2).count();

@@ -162,14 +162,14 @@ fn the_noise_of_a_picture_is_measured_as_it_converges() {
     let (first, last) = (told[0], *told.last().expect("it is told"));
     assert!(first.0 < 64 && last.0 == 256, "{told:?}");
     assert!(last.1 < 0.5 * first.1, "{told:?}");
-    // The CPU renderer estimates it from blocks of 16 samples, which are spread more evenly than frames of up to 8.
+    // The CPU renderer estimates it from blocks of 16 samples, which are spread more evenly than frames of 1 to 8.
     let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
     let (registry, odd) = (Registry::builtin(), AtomicBool::default());
     let until = Until::default();
     let (_, reached) = reference::render_until(&scene, &registry, &settings, until, &odd, &Progress::NONE)
         .expect("nobody cancels");
     let ratio = last.1 / reached.noise.expect("enough blocks");
-    assert!((0.7..3.0).contains(&ratio), "{ratio} {told:?} {reached:?}");
+    assert!((0.7..5.0).contains(&ratio), "{ratio} {reached:?}");
     // A change begins anew, and says nothing of what was before.
     let world = renderer.app().world_mut();
     world.query::<&mut Drawing>().iter_mut(world).for_each(|mut drawing| drawing.redraw());

@@ -42,6 +42,7 @@ use crate::{
     registry::Registry,
     render::{
         camera::{PictureCamera, picture_camera},
+        converge::Convergence,
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
@@ -280,6 +281,12 @@ impl GpuRenderer {
     /// Shows another scene from the next frame on.
     pub fn set_scene(&mut self, scene: Scene) {
         self.app.world_mut().resource_mut::<CurrentScene>().set_if_neq(CurrentScene(scene));
+    }
+
+    /// Takes so many samples of lights with extent in the pictures of scenes that are set from now on, at least 1. Each frame
+    /// takes them all, so many of them need a fast GPU.
+    pub fn set_light_samples(&mut self, count: u32) {
+        self.app.world_mut().resource_mut::<Convergence>().target = count.max(1);
     }
 
     /// Shows only some terms from the next frame on.
