@@ -25,7 +25,10 @@
 //! [`Stage::Polygon`]: crate::shading::Stage::Polygon
 
 use std::{
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     time::Instant,
 };
 
@@ -44,6 +47,7 @@ mod converge;
 mod display;
 mod edits;
 mod extended;
+mod instead;
 mod lighting;
 pub(crate) mod meshes;
 mod nearest;
@@ -62,6 +66,8 @@ use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
 pub use edits::ignored_edits;
 pub use extended::LightSamples;
+use instead::Instead;
+pub(crate) use instead::Leaving;
 use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
@@ -160,6 +166,20 @@ pub fn render_samples(
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
+/// Renders the objects of a scene, each point as bright as `leaving` says.
+pub(crate) fn render_instead(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    leaving: Arc<Leaving>,
+) -> Picture {
+    let instead = Instead(leaving);
+    let seen: &Seen<'_> = &|draw| instead.on(draw);
+    let ever = (None, &AtomicBool::default(), LightSamples::default());
+    let pixels = draw(scene, registry, settings, Some(seen), ever, Vec4::ZERO, |pixel| pixel);
+    Picture { width: settings.width, height: settings.height, pixels }
+}
+
 /// Renders a scene with its display settings: the same bytes as [`render`] and [`Picture::to_rgb8`], without ever
 /// holding the whole picture in floating point.
 #[must_use]
@@ -224,7 +244,8 @@ pub fn render_channel_by(
     let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
     let finish = |pixel| display.apply(pixel);
     let ever = (None, &AtomicBool::default(), samples);
-    let mut rgb8 = draw(scene, registry, settings, Some(&sight), ever, background, finish).into_flattened();
+    let seen: &Seen<'_> = &|draw| sight.seen(draw);
+    let mut rgb8 = draw(scene, registry, settings, Some(seen), ever, background, finish).into_flattened();
     if wires {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
     }
@@ -233,13 +254,17 @@ pub fn render_channel_by(
 
 /// Polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
+
+/// An object that is shown in another way than by its light.
+type Seen<'s> = dyn for<'a> Fn(Draw<'a>) -> Draw<'a> + Sync + 's;
+
 /// Draws a scene: `background` where there is no object and no visible light, and elsewhere the result of `finish` on the light. Anything
 /// not done by `end` is skipped; `odd` is set if light was not finite.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
-    sight: Option<&Sight>,
+    sight: Option<&Seen<'_>>,
     (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
@@ -255,7 +280,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
-    sight: Option<&Sight>,
+    sight: Option<&Seen<'_>>,
     (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
@@ -272,7 +297,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
-    // Channels show objects alone.
+    // Other ways to be shown are those of objects alone.
     let visible = sight.is_none().then(|| VisibleLights::new(scene, registry, settings));
 
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
@@ -299,7 +324,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             .into_par_iter()
             .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
             .map(|draw| match sight {
-                Some(sight) => sight.seen(draw),
+                Some(seen) => seen(draw),
                 None => draw,
             })
             .collect();

@@ -75,7 +75,7 @@ fn dip(material: &Measured) -> Option<(f64, f64)> {
 
 /// Mean luminance of the brightest hundredth of the pixels that objects cover fully. A single pixel would depend on the
 /// sample positions.
-fn brightest(picture: &Picture) -> f64 {
+pub(super) fn brightest(picture: &Picture) -> f64 {
     let mut all: Vec<f64> =
         picture.pixels.iter().filter(|p| p.w > 0.999).map(|p| f64::from(luminance(p.truncate()))).collect();
     all.sort_by(|a, b| b.total_cmp(a));

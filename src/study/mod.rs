@@ -1,8 +1,8 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
-//! reproduce and Blinn–Phong does not, and of the layers of OpenPBR.
+//! reproduce and Blinn–Phong does not, of the layers of OpenPBR, and of light with extent.
 //!
 //! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe` (the shape of
-//! the highlight), `layers`; their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
+//! the highlight), `layers`, `extent`; their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
 //! Every sentence of a conclusion that depends on a number is chosen by that number.
 
 use std::{fmt::Write as _, fs, io, iter, path::Path, sync::Arc};
@@ -25,6 +25,7 @@ use crate::{
     },
 };
 
+mod extent;
 pub mod fit;
 mod fresnel;
 mod furnace;
@@ -34,7 +35,7 @@ mod lobe;
 mod report;
 
 /// The number of steps reported by [`run`].
-pub const STEPS: u64 = 6;
+pub const STEPS: u64 = 7;
 
 /// The file name of the report in its folder.
 pub const PAGE: &str = "index.html";
@@ -104,7 +105,7 @@ impl Table {
     }
 }
 
-/// A phenomenon, or the layers: its section of the report, the finding, and the numbers.
+/// A phenomenon, or what goes beyond them: its section of the report, the finding, and the numbers.
 struct Chapter {
     title: &'static str,
     body: Markup,
@@ -289,10 +290,15 @@ fn image(rgb8: &[u8], (width, height): (u32, u32), alt: &str) -> Result<Markup, 
     })
 }
 
-/// Pictures side by side, each with a short caption.
+/// Pictures side by side, at most three in a row, each with a short caption.
 fn pictures(all: &[(Markup, &str)]) -> Markup {
+    row(all.len().min(3), all)
+}
+
+/// The same with this many in a row.
+fn row(columns: usize, all: &[(Markup, &str)]) -> Markup {
     html! {
-        div .pictures style=(format!("--columns:{}", all.len().min(3))) {
+        div .pictures style=(format!("--columns:{columns}")) {
             @for (picture, words) in all { div { (picture) p { (words) } } }
         }
     }
@@ -347,8 +353,12 @@ pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Resu
     let lobe = lobe::chapter(&mut lab)?;
     tell("layers of OpenPBR");
     let layers = layers::chapter(&mut lab)?;
+    tell("light with extent");
+    let extent = extent::chapter(&mut lab)?;
     tell("writing the report");
     let phenomena = [fresnel, furnace, gold, lobe];
-    let html = report::page(&phenomena, &layers, settings);
-    Ok(Study { html, tables: phenomena.into_iter().chain([layers]).flat_map(|c| c.tables).collect() })
+    let beyond = [("layers", layers), ("extent", extent)];
+    let html = report::page(&phenomena, &beyond, settings);
+    let beyond = beyond.into_iter().map(|(_, chapter)| chapter);
+    Ok(Study { html, tables: phenomena.into_iter().chain(beyond).flat_map(|c| c.tables).collect() })
 }

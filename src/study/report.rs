@@ -86,6 +86,10 @@ const GLOSSARY: &[(&str, &str)] = &[
         "a way to find the parameters that minimise a sum of squares (K. Levenberg 1944): steps of the Gauss–Newton method, shortened until the sum falls.",
     ),
     (
+        "Light with extent",
+        "light that fills a part of the directions from which a point is lit: a softbox, a sky. What it does to a surface is an integral over them.",
+    ),
+    (
         "Log error",
         "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10\u{a0}% off, 0.7 a factor of two. Where the text gives it in per cent, that is 100 (exp(error) − 1).",
     ),
@@ -96,11 +100,15 @@ const SOURCES: &[&str] = &[
     "Z. Andersson and others (2026). OpenPBR Surface specification 1.1.1. Academy Software Foundation.",
     "M. Bagher, C. Soler, N. Holzschuch (2012). Accurate Fitting of Measured Reflectances Using a Shifted Gamma Micro-Facet Distribution. Computer Graphics Forum 31(4), 1509–1518. Parameters as in dj_brdf (J. Dupuy, public domain).",
     "J. F. Blinn (1977). Models of Light Reflection for Computer Synthesized Pictures. SIGGRAPH ’77, 192–198.",
+    "Commission Internationale de l’Éclairage (2003). Spatial Distribution of Daylight: CIE Standard General Sky. CIE S 011, ISO 15469.",
     "R. L. Cook, K. E. Torrance (1982). A Reflectance Model for Computer Graphics. ACM Transactions on Graphics 1(1), 7–24.",
     "Cornell University Program of Computer Graphics. Measured reflectance of paints, as distributed with pbrt-v2 (BSD 2-Clause).",
     "E. Heitz (2014). Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs. Journal of Computer Graphics Techniques 3(2), 48–107.",
+    "E. Heitz, J. Dupuy, S. Hill, D. Neubelt (2016). Real-Time Polygonal-Light Shading with Linearly Transformed Cosines. ACM Transactions on Graphics 35(4), 41.",
     "E. James (2022). Physically Based Shading Models in Real-time Rendering. Final report, University of Leeds.",
+    "B. Karis (2013). Real Shading in Unreal Engine 4. SIGGRAPH course.",
     "C. Kulla, A. Conty (2017). Revisiting Physically Based Shading at Imageworks. SIGGRAPH course.",
+    "J. H. Lambert (1760). Photometria sive de mensura et gradibus luminis, colorum et umbrae. Augsburg.",
     "K. Levenberg (1944). A Method for the Solution of Certain Non-Linear Problems in Least Squares. Quarterly of Applied Mathematics 2(2), 164–168.",
     "J. Löw, J. Kronander, A. Ynnerman, J. Unger (2012). BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces. ACM Transactions on Graphics 31(1), 9.",
     "W. Matusik, H. Pfister, M. Brand, L. McMillan (2003). A Data-Driven Reflectance Model. ACM Transactions on Graphics 22(3), 759–769 (the MERL database).",
@@ -109,12 +117,13 @@ const SOURCES: &[&str] = &[
     "M. N. Polyanskiy. Refractiveindex.info database of optical constants (CC0). Each constant names its measurement in the program.",
     "C. Schlick (1994). An Inexpensive BRDF Model for Physically-based Rendering. Computer Graphics Forum 13(3), 233–246.",
     "E. Turquin (2019). Practical Multiple Scattering Compensation for Microfacet Models. Industrial Light & Magic.",
+    "E. Veach, L. Guibas (1995). Optimally Combining Sampling Techniques for Monte Carlo Rendering. SIGGRAPH ’95, 419–428.",
     "B. Walter, S. Marschner, H. Li, K. Torrance (2007). Microfacet Models for Refraction through Rough Surfaces. EGSR 2007, 195–206.",
     "G. J. Ward (1992). Measuring and Modeling Anisotropic Reflection. SIGGRAPH ’92, 265–272.",
 ];
 
-/// The whole page.
-pub(super) fn page(chapters: &[Chapter], layers: &Chapter, settings: Settings) -> String {
+/// The whole page: the phenomena, and the chapters beyond them with their ids.
+pub(super) fn page(chapters: &[Chapter], beyond: &[(&str, Chapter)], settings: Settings) -> String {
     let shown = chapters.iter().filter(|c| c.shown).count();
     let threads = rayon::current_num_threads();
     let page = html! {
@@ -133,11 +142,11 @@ pub(super) fn page(chapters: &[Chapter], layers: &Chapter, settings: Settings) -
                     h1 { "What physically based shading reproduces and Blinn–Phong does not" }
                     p .meta {
                         "Version " (env!("CARGO_PKG_VERSION")) " · " (today())
-                        @if settings.quick { " · quick run: small pictures, a tenth of the materials" }
+                        @if settings.quick { " · quick run: small pictures, a tenth of the materials, fewer samples" }
                     }
                 }
                 main {
-                    (summary(chapters, layers, shown))
+                    (summary(chapters, beyond, shown))
                     @for (i, chapter) in chapters.iter().enumerate() {
                         section #(format!("phenomenon-{}", i + 1)) {
                             h2 { (i + 1) ". " (chapter.title) }
@@ -145,11 +154,14 @@ pub(super) fn page(chapters: &[Chapter], layers: &Chapter, settings: Settings) -
                         }
                     }
                     (discussion(chapters, shown))
-                    section #layers {
-                        h2 { "6. " (layers.title) }
-                        (layers.body)
+                    @for (i, (id, chapter)) in beyond.iter().enumerate() {
+                        section id=(id) {
+                            // The discussion of the phenomena is between.
+                            h2 { (chapters.len() + 2 + i) ". " (chapter.title) }
+                            (chapter.body)
+                        }
                     }
-                    (appendix(settings, threads, chapters.iter().chain([layers])))
+                    (appendix(settings, threads, chapters.iter().chain(beyond.iter().map(|(_, c)| c))))
                 }
             }
         }
@@ -157,7 +169,7 @@ pub(super) fn page(chapters: &[Chapter], layers: &Chapter, settings: Settings) -
     page.into_string()
 }
 
-fn summary(chapters: &[Chapter], layers: &Chapter, shown: usize) -> Markup {
+fn summary(chapters: &[Chapter], beyond: &[(&str, Chapter)], shown: usize) -> Markup {
     html! {
         section #summary {
             h2 { "Summary" }
@@ -179,9 +191,11 @@ fn summary(chapters: &[Chapter], layers: &Chapter, shown: usize) -> Markup {
                     }
                 }
             }
-            p {
-                "Beyond the comparison, a last chapter takes a standard of today apart: "
-                a href="#layers" { (layers.title) } ". " (layers.finding)
+            p { "Two more chapters go beyond the comparison: one takes a standard of today apart, one lights three materials by more than points." }
+            ul {
+                @for (id, chapter) in beyond {
+                    li { a href=(format!("#{id}")) { (chapter.title) } ". " (chapter.finding) }
+                }
             }
         }
         section #method {
@@ -197,7 +211,7 @@ fn summary(chapters: &[Chapter], layers: &Chapter, shown: usize) -> Markup {
                 "Pictures are calculated by the program’s CPU renderer with four samples per pixel and shading per pixel. "
                 "It shares no code with the shaders of the GPU, and tests compare the pictures of both. "
                 "Numbers taken from pictures are linear light, before the display’s encoding. There are no shadows and no light "
-                "from one object to another: the comparison covers only the reflection at a surface. Raw numbers lie beside "
+                "from one object to another: the study covers only the reflection at a surface. Raw numbers lie beside "
                 "this page as CSV files."
             }
         }
@@ -241,7 +255,7 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
             }
             h3 { "Limits" }
             ul {
-                li { "Local reflection only: no shadows, no interreflection, no environment with detail. Uniform light is uniform." }
+                li { "Local reflection only: no shadows, no interreflection. In the chapters up to here all light comes from points, from one direction, or equally from everywhere." }
                 li { "Three wavelengths stand for the spectrum. Optical constants are those of clean, smooth samples; real gold objects are alloys." }
                 li { "Phenomenon 3 takes the physically based picture as reference, not a photograph. Its last part repeats the question with measured paints, for which neither model is the reference." }
                 li { "The 100 MERL materials enter as published fits of another model (SGD), not as measurements. A model that resembles SGD has an advantage. The three Cornell paints are measurements, but only three." }
@@ -263,7 +277,7 @@ fn appendix<'a>(settings: Settings, threads: usize, chapters: impl Iterator<Item
                     tr { th scope="row" { "Date" } td { (today()) } }
                     tr { th scope="row" { "Machine" } td { (std::env::consts::ARCH) ", " (std::env::consts::OS) ", " (threads) @if threads == 1 { " thread" } @else { " threads" } } }
                     tr { th scope="row" { "Renderer" } td { "CPU, four samples per pixel, Phong shading (normals interpolated, colour per pixel)" } }
-                    tr { th scope="row" { "Pictures" } td { @if settings.quick { "a quarter of the usual size" } @else { "480 × 320 pixels; rows of objects 960 or 1200 pixels wide" } "; sRGB, no tone mapping" } }
+                    tr { th scope="row" { "Pictures" } td { @if settings.quick { "a quarter of the usual size" } @else { "480 × 320 pixels; rows of objects 960 or 1200 pixels wide; balls 200 × 200" } "; sRGB, no tone mapping" } }
                     tr { th scope="row" { "Precision" } td { "models in 32-bit floating point; fits and integrals in 64-bit" } }
                     tr { th scope="row" { "Scenes" } td { code { "scenes/fresnel_effect.json" } ", " code { "white_furnace.json" } ", " code { "gold_three_lights.json" } ", " code { "lobe_shape.json" } ": " code { "lcm view" } " opens them" } }
                     tr { th scope="row" { "Numbers" } td {

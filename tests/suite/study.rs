@@ -57,6 +57,30 @@ fn layers_add_up(html: &str, folder: &Path) {
     assert!(html.contains("Film of index 2 over a body of index 1.1”"), "the one that gains is named");
 }
 
+/// The numbers of the chapter on light with extent.
+fn approximations_have_errors(html: &str, folder: &Path) {
+    assert!(html.contains("<section id=\"extent\">") && html.contains("href=\"#extent\""));
+    let text = fs::read_to_string(folder.join("extent_errors.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 9);
+    let rms = |row: &[&str]| row[3].parse::<f64>().unwrap();
+    for row in &rows {
+        let [mean, largest, noise] = [4, 5, 8].map(|i| row[i].parse::<f64>().unwrap());
+        // More than noise, and less than a picture that has nothing to do with the other.
+        assert!(rms(row) > noise && rms(row) < 1.0 && noise < 0.05, "{row:?}");
+        assert!((0.8..1.2).contains(&mean) && largest.abs() > rms(row), "{row:?}");
+        let percent = format!("{:.1}\u{a0}%", 100.0 * rms(row));
+        assert!(html.contains(&format!("difference, {percent}")), "{row:?}");
+    }
+    // One roughness for two is a worse guess than for one.
+    let of = |material: &str, approximation: &str| {
+        let row = rows.iter().find(|row| row[0].contains(material) && row[2] == approximation).unwrap();
+        rms(row)
+    };
+    assert!(of("brushed", "LTC") > 1.5 * of("gold", "LTC"), "{rows:?}");
+    assert!(html.contains("the highlight is round where it should be stretched"));
+}
+
 #[test]
 fn the_study_writes_a_report_that_stands_alone() {
     let (folder, html) = quick();
@@ -64,7 +88,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         assert!(html.contains(&format!("<section id=\"phenomenon-{i}\">")), "section {i}");
     }
     for part in ["Question", "Method", "Results", "Conclusion"] {
-        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 5, "{part}");
+        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 6, "{part}");
     }
     // The content of the numbers, and not only their presence.
     assert!(html.contains("All four phenomena are shown"), "{}", &html[..4000.min(html.len())]);
@@ -88,6 +112,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         assert!(columns.len() > 2 && columns.iter().all(|c| *c == columns[0]), "{}", table.display());
     }
     layers_add_up(&html, &folder.path().join("new/report"));
+    approximations_have_errors(&html, &folder.path().join("new/report"));
     // A quick run is marked as such.
     assert!(html.contains("quick run"));
 }

@@ -1,0 +1,124 @@
+//! The error of an approximated picture.
+
+use glam::Vec3;
+
+use crate::{optics::colour::luminance, reference::Picture};
+
+/// The angles of view over which the error is a mean, degrees.
+const BIN: f64 = 10.0;
+
+/// The distance of a picture from the converged one, by the luminance of the pixels that objects cover fully and that
+/// are lit in either. All but the angles are relative to the mean of the converged one there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Measured {
+    /// The root mean square of the difference.
+    pub(super) rms: f64,
+    /// The mean of the picture.
+    pub(super) mean: f64,
+    /// The largest difference with its sign.
+    pub(super) largest: f64,
+    /// Where it is: the angle of view, degrees, and the direction from the middle of the ball as on a clock.
+    pub(super) at: (f64, u32),
+    /// The root mean square by angle of view, degrees.
+    pub(super) by_angle: Vec<(f64, f64)>,
+}
+
+/// What [`Measured`] has to know of a point: the cosine of its angle of view, and its normal to the right and up.
+pub(super) fn place(observer: Vec3, p: Vec3, n: Vec3) -> Vec3 {
+    Vec3::new(n.dot((observer - p).normalize_or_zero()), n.x, n.y)
+}
+
+/// The hour on a clock face in this direction.
+fn hour([right, up]: [f32; 2]) -> u32 {
+    let hour = (right.atan2(up).to_degrees() / 30.0).round().rem_euclid(12.0) as u32;
+    if hour == 0 { 12 } else { hour }
+}
+
+/// The mean luminance of the pixels that objects cover fully, where there is light.
+pub(super) fn mean_luminance(picture: &Picture) -> f64 {
+    let lit = || {
+        let covered = picture.pixels.iter().filter(|p| p.w > 0.999);
+        covered.map(|p| f64::from(luminance(p.truncate()))).filter(|y| *y > 0.0)
+    };
+    lit().sum::<f64>() / lit().count().max(1) as f64
+}
+
+/// Measures a picture, with a picture of [`place`]s.
+pub(super) fn measure(picture: &Picture, converged: &Picture, places: &Picture) -> Measured {
+    let light = |p: &glam::Vec4| f64::from(luminance(p.truncate()));
+    let lit: Vec<_> = picture
+        .pixels
+        .iter()
+        .zip(&converged.pixels)
+        .zip(&places.pixels)
+        .filter(|((_, c), _)| c.w > 0.999)
+        .map(|((a, c), place)| (light(a), light(c), *place))
+        .filter(|(a, c, _)| *a > 0.0 || *c > 0.0)
+        .collect();
+    let mean = lit.iter().map(|(_, c, _)| c).sum::<f64>() / lit.len().max(1) as f64;
+    let off: Vec<_> = lit
+        .iter()
+        .map(|(a, c, place)| {
+            let angle = f64::from(place.x).clamp(0.0, 1.0).acos().to_degrees();
+            ((a - c) / mean.max(1e-12), angle, hour([place.y, place.z]))
+        })
+        .collect();
+    let rms = |of: &dyn Fn(f64) -> bool| {
+        let squares: Vec<f64> = off.iter().filter(|o| of(o.1)).map(|o| o.0 * o.0).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    let (largest, angle, hour) =
+        off.iter().copied().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).unwrap_or_default();
+    let bins = (0..(90.0 / BIN) as u32).map(|i| BIN * f64::from(i));
+    Measured {
+        rms: rms(&|_| true),
+        mean: lit.iter().map(|(a, ..)| a).sum::<f64>() / lit.len().max(1) as f64 / mean.max(1e-12),
+        largest,
+        at: (angle, hour),
+        by_angle: bins
+            .map(|from| (from + 0.5 * BIN, rms(&|angle| (from..from + BIN).contains(&angle))))
+            .filter(|(_, rms)| rms.is_finite())
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec4;
+
+    fn picture(pixels: &[[f32; 2]]) -> Picture {
+        let pixels: Vec<_> = pixels.iter().map(|[y, w]| Vec4::new(*y, *y, *y, *w)).collect();
+        Picture { width: pixels.len() as u32, height: 1, pixels }
+    }
+
+    #[test]
+    fn errors_are_those_of_the_definition() {
+        // A rim and what is dark in both do not count.
+        let converged = picture(&[[1.0, 1.0], [3.0, 1.0], [9.0, 0.5], [0.0, 1.0]]);
+        let other = picture(&[[1.5, 1.0], [2.0, 1.0], [0.0, 0.5], [0.0, 1.0]]);
+        let view = |degrees: f32, right: f32, up: f32| Vec4::new(degrees.to_radians().cos(), right, up, 1.0);
+        let places = Picture {
+            pixels: vec![
+                view(5.0, 0.0, 0.1),
+                view(45.0, 0.7, 0.0),
+                view(85.0, 0.0, 1.0),
+                view(5.0, 0.0, 0.0),
+            ],
+            ..converged.clone()
+        };
+        let found = measure(&other, &converged, &places);
+        // Differences of ¼ and −½ of the mean 2.
+        assert!((found.rms - (0.5f64 * (0.0625 + 0.25)).sqrt()).abs() < 1e-6, "{found:?}");
+        assert!((found.mean - 0.875).abs() < 1e-6 && (found.largest + 0.5).abs() < 1e-6, "{found:?}");
+        assert!((found.at.0 - 45.0).abs() < 1e-3 && found.at.1 == 3, "{found:?}");
+        assert_eq!(found.by_angle.iter().map(|(a, _)| *a).collect::<Vec<_>>(), [5.0, 45.0]);
+        assert!((found.by_angle[0].1 - 0.25).abs() < 1e-6);
+        assert_eq!(measure(&converged, &converged, &places).rms, 0.0);
+        assert_eq!(
+            [[0.0, 1.0], [1.0, 1.8], [0.0, -1.0], [-1.0, 0.0]].map(hour),
+            [12, 1, 6, 9],
+            "12 is up, 3 right"
+        );
+    }
+}
