@@ -125,7 +125,7 @@ impl Browser {
             if wanted(&value) {
                 return value;
             }
-            assert!(begin.elapsed() < Duration::from_secs(30), "{script}: {value}");
+            assert!(begin.elapsed() < Duration::from_secs(90), "{script}: {value}");
             thread::sleep(Duration::from_millis(20));
         }
     }

@@ -123,9 +123,13 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
                 assert!(html.contains(&format!("title=\"{ambient}\"")), "{name}: I_a = {ambient}");
             }
             // All digits of the command are under the pointer.
-            let all = explain::triple(lit.contribution);
+            let error = lit.integral.map(|integral| integral.error);
+            let all = match error {
+                Some(error) => explain::measured(lit.contribution, error),
+                None => explain::triple(lit.contribution),
+            };
             assert!(run.out.contains(&all) && html.contains(&format!("title=\"{all}\"")), "{name}: {all}");
-            let short = explain::rounded_triple(lit.contribution, 3);
+            let short = explain::triple_within(lit.contribution, error, 3);
             let shown = numbers(&read(&html)).join(" ");
             assert!(shown.contains(&numbers(&short).join(" ")), "{name}: {short}");
         }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     document::{Document, Selection},
-    explain::{self, Explanation, Line, Lit, Place, Seen, Spot, of_value, rounded_triple, triple},
+    explain::{self, Explanation, Line, Lit, Place, Seen, Spot, measured, of_value, triple, triple_within},
     export::{ExportError, Request},
     optics::{TermSelection, colour::srgb_encode8},
     reference::{Settings, ignored_edits},
@@ -94,8 +94,8 @@ fn paragraph(class: &str, text: &str) -> String {
 }
 
 /// A paragraph that ends with a colour.
-fn ending(class: &str, text: &str, light: Vec3) -> String {
-    format!("<p class=\"{class}\"><span>{}</span> {}</p>", escaped(text), colour(light))
+fn ending(class: &str, text: &str, light: Vec3, error: Option<Vec3>) -> String {
+    format!("<p class=\"{class}\"><span>{}</span> {}</p>", escaped(text), estimate(light, error))
 }
 
 /// Mathematics in which no line ends within the three numbers of a colour, unless they are longer than a line.
@@ -141,12 +141,18 @@ fn chip([r, g, b]: [u8; 3]) -> String {
 
 /// A sample of linear light, beyond the display's range cut off, with its numbers; crossed out where it is no number.
 fn colour(light: Vec3) -> String {
+    estimate(light, None)
+}
+
+/// The same with no digit beyond the standard error, if there is one.
+fn estimate(light: Vec3, error: Option<Vec3>) -> String {
     let chip = if light.is_finite() {
         chip(light.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(srgb_encode8))
     } else {
         "<span class=\"chip none\"></span>".to_owned()
     };
-    let (shown, all) = (rounded_triple(light, DIGITS), triple(light));
+    let shown = triple_within(light, error, DIGITS);
+    let all = error.map_or_else(|| triple(light), |error| measured(light, error));
     format!("<span class=\"colour\" title=\"{}\">{chip}{}</span>", escaped(&all), equation(&shown))
 }
 
@@ -197,7 +203,8 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
     let all = spot.brightest();
     for (i, lit) in all.iter().take(MOST).enumerate() {
         let open = if i == 0 { " open" } else { "" };
-        let (name, sum) = (escaped(&name(lit.light.index)), colour(lit.contribution));
+        let error = lit.integral.map(|integral| integral.error);
+        let (name, sum) = (escaped(&name(lit.light.index)), estimate(lit.contribution, error));
         *out += &format!("<details{open}><summary><b>{name}</b>{sum}</summary><div class=\"equation\">");
         light(out, seen, lit);
         *out += "</div></details>";
@@ -205,16 +212,21 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
     if all.len() > MOST {
         let rest: Vec3 = all[MOST..].iter().map(|lit| lit.contribution).sum();
         let count = plural(all.len() - MOST, "more light");
-        *out += &ending("rest", &format!("{count}, none brighter:"), rest);
+        *out += &ending("rest", &format!("{count}, none brighter:"), rest, spot.error());
     }
     if all.len() > 1 {
-        *out += &ending("rest", &format!("Sum over {}:", plural(all.len(), "light")), spot.sum);
+        *out += &ending("rest", &format!("Sum over {}:", plural(all.len(), "light")), spot.sum, spot.error());
     }
     if spot.is_replaced() {
-        *out += &ending("rest", "What is no number counts as 0, and nothing beyond ±10³⁰:", spot.colour);
+        *out += &ending(
+            "rest",
+            "What is no number counts as 0, and nothing beyond ±10³⁰:",
+            spot.colour,
+            spot.error(),
+        );
     }
     if matches!(spot.place, Place::Vertex { .. }) {
-        *out += &ending("rest", "Mixed from the vertices:", seen.light);
+        *out += &ending("rest", "Mixed from the vertices:", seen.light, seen.error());
     }
 }
 

@@ -108,7 +108,7 @@ fn shoot(lab: &Lab, scene: &Scene, subject: Subject, fits: &mut Table) -> Result
     let (width, height) = lab.size(200, 200);
     let settings = reference::Settings { width, height, samples: 4, terms: TermSelection::All };
     // Of a light and of the lobes for each pixel: of the converged picture, and of each mean of an approximation.
-    let (many, few) = if lab.settings.quick { (64, 64) } else { (256, 256) };
+    let (many, few) = if lab.settings.quick { (512, 64) } else { (2048, 256) };
     let scene = subject.put(scene);
     let known = Arc::new(subject.known(lab, few)?);
     for (angle, m, off) in known.ltc.all() {
