@@ -109,7 +109,7 @@ fn scene(model: &str, registry: &Registry) -> Scene {
     } else {
         vec![("roughness", Value::Number(0.3f32.sqrt())), ("base_colour", Value::Colour([200, 120, 60]))]
     };
-    values.into_iter().for_each(|(name, value)| _ = object.material.set(name, value));
+    values.into_iter().for_each(|(name, value)| object.material.set(name, value));
     Scene {
         reflection_model: model.into(),
         shading_model: "phong".into(),

@@ -87,7 +87,9 @@ fn the_share_of_a_polygon_is_that_of_the_closed_forms() {
 #[test]
 fn the_identity_is_lamberts_law() {
     let registry = Registry::builtin();
-    let lambert = lab(&registry).surface("lambert", &[("base_colour", Value::Colour([255; 3]))]).unwrap();
+    let lambert = lab(&registry)
+        .surface("lambert", &[("base_colour", Value::Colour([255; 3]))])
+        .expect("it can be made");
     let v = direction(40.0, 0.0);
     let identity = Fitted::of(DMat3::IDENTITY);
     for (i, softbox) in softboxes(&registry).iter().enumerate() {
@@ -134,7 +136,7 @@ fn fitted_lobes_are_near_to_ggx_and_far_from_another_width() {
     let ggx = |alpha: f64| {
         let settings =
             [super::super::choice("fresnel", "none"), number("alpha_x", alpha), number("alpha_y", alpha)];
-        lab.surface("microfacet", &settings).unwrap()
+        lab.surface("microfacet", &settings).expect("it can be made")
     };
     let (right, wrong) = (Fitted::new(&*ggx(0.25), 0.25), Fitted::new(&*ggx(0.35), 0.35));
     let misplaced: Vec<f64> = right.all().map(|(_, _, off)| off).collect();
@@ -143,7 +145,7 @@ fn fitted_lobes_are_near_to_ggx_and_far_from_another_width() {
     assert!(misplaced[11..].iter().all(|off| *off < 0.3), "{misplaced:?}");
     let surface = ggx(0.25);
     // Along the normal the lobe is round, and it slants towards a grazing view.
-    let (_, first, _) = right.all().next().unwrap();
+    let (_, first, _) = right.all().next().expect("there is one");
     assert!((first.x_axis.x / first.y_axis.y - 1.0).abs() < 0.02 && first.z_axis.x.abs() < 0.01, "{first}");
     let (mut off, mut twin) = (0.0f64, 0.0f64);
     for softbox in &softboxes(&registry)[..2] {
@@ -176,8 +178,8 @@ fn the_split_sum_is_exact_in_uniform_surroundings() {
     let (_, lamp) = uniform(&registry);
     let lab = lab(&registry);
     for subject in subject::all() {
-        let surface = subject.surface(&lab).unwrap();
-        let mut known = subject.known(&lab, 1024).unwrap();
+        let surface = subject.surface(&lab).expect("it can be made");
+        let mut known = subject.known(&lab, 1024).expect("it can be made");
         let error = |known: &Arc<subject::Known>| {
             let mut most = 0.0f64;
             for degrees in [0.0, 30.0, 60.0, 75.0] {
