@@ -974,6 +974,29 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
 }
 
 #[test]
+fn a_lamp_with_extent_is_as_bright_as_its_luminance_or_lumen_say_and_its_unit_has_room() {
+    for scale in [100, 150] {
+        let mut bench = Bench::new(Session::default());
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::Edit(Edit::Light(0, LightField::Type("disc".to_owned()))));
+        bench.apply(Action::Edit(Edit::Light(0, LightField::Intensity(100.0))));
+        bench.apply(Action::Select(Selection::Light(0)));
+        bench.settle();
+        // π times the area of a disc with the radius 0.5 m.
+        assert!(bench.says("= 246.7 lm"), "{scale}");
+        let unit = bench.find("unit: candela per square metre").expect("it has one").rect;
+        assert!(
+            unit.left() >= bench.field("intensity").rect.right() && unit.width() > 25.0,
+            "{scale}: {unit}"
+        );
+        bench.click("unit: candela per square metre");
+        bench.click("lm  lumen");
+        assert_eq!(bench.session.document.lights[0].luminous_flux, Some(246.74));
+        assert!(bench.says(" cd/m²"), "{scale}");
+    }
+}
+
+#[test]
 fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
     let mut bench = Bench::new(Session::default());
     let mut now = |field: LightField| {

@@ -128,8 +128,12 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
     let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
     let as_flux = light.luminous_flux.is_some();
     let rounded = |v: f64| limits::number(limits::significant(v, 4));
-    // A factor multiplies lumens, candelas spread over steradians.
-    let (of, unit) = if d.unit == "cd" { ("sr", " cd") } else { ("lm", "") };
+    // A factor multiplies lumens, candelas spread over steradians, and a luminance over an area too.
+    let (of, unit, word) = match d.unit {
+        "cd" => ("sr", " cd", "candela"),
+        "cd/m²" => ("sr m²", " cd/m²", "candela per square metre"),
+        _ => ("lm", "", "factor"),
+    };
     let conversion = if as_flux {
         format!("I = Φ / ({} {of}) = {}{unit}", rounded(solid_angle), rounded(intensity))
     } else {
@@ -141,7 +145,7 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
         _ => None,
     });
     let mut other_unit = None;
-    let units = [[d.unit, if d.unit == "cd" { "candela" } else { "factor" }], ["lm", "lumen"]];
+    let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
     let out = if as_flux {
         let caption =
@@ -230,6 +234,9 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
 fn unit_help(unit: &str) -> &'static str {
     match unit {
         "cd" => "In candela: the light sent into each direction. At 1 m, 1 cd gives an illuminance of 1 lx.",
+        "cd/m²" => {
+            "In candela per square metre: the luminance, as bright as it looks from wherever it is seen."
+        }
         "lm" => "In lumen: the light sent out in all directions together, as printed on light bulbs.",
         "×" => "A factor: 1 is the lamp as it is, 0.5 the lamp dimmed to half.",
         "lx" => "In lux: the light that arrives on a surface that faces it.",

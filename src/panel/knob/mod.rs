@@ -101,7 +101,9 @@ pub fn parameter_knob(
                 .filter(|v| parameter.allows(v))
         }
         (ParameterKind::Choice { .. }, value) if parameter.is_flag() => {
-            flag_knob(ui, salt, &caption, value.truth()?).map(Value::flag)
+            // A name in files is a word, not a symbol of an equation.
+            let symbol = if parameter.symbol == parameter.name { "" } else { parameter.symbol };
+            flag_knob(ui, salt, &Caption { symbol, ..caption }, value.truth()?).map(Value::flag)
         }
         (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {
             let chosen = options.iter().position(|(o, _)| *o == id.as_ref()).unwrap_or(0);

@@ -17,12 +17,13 @@ use crate::{
 pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
     let palette = Palette::here(ui);
     let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
-    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0), Sense::click());
+    let font = TextStyle::Small.resolve(ui.style());
+    let width = ui.painter().layout_no_wrap(sign.to_owned(), font.clone(), palette.text).size().x;
+    let (rect, response) = ui.allocate_exact_size(vec2(width.max(18.0), 22.0), Sense::click());
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
     let hot = response.hovered() || response.has_focus();
     let colour = if hot { palette.accent } else { palette.text };
-    let font = TextStyle::Small.resolve(ui.style());
     let at = rect.center() - vec2(0.0, 3.0);
     ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
     let tip = rect.center_bottom() - vec2(0.0, 2.0);
