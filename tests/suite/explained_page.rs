@@ -129,6 +129,11 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
                 None => explain::triple(lit.contribution),
             };
             assert!(run.out.contains(&all) && html.contains(&format!("title=\"{all}\"")), "{name}: {all}");
+            // An integral has no equation with numbers, but its samples.
+            if let Some(integral) = &lit.integral {
+                assert!(html.contains(&integral.basis()), "{name}: {}", integral.basis());
+                found += 1;
+            }
             let short = explain::triple_within(lit.contribution, error, 3);
             let shown = numbers(&read(&html)).join(" ");
             assert!(shown.contains(&numbers(&short).join(" ")), "{name}: {short}");

@@ -88,7 +88,7 @@ const SETTINGS: reference::Settings =
     reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
 
 /// Samples of lights with extent: both renderers take the same, and software Vulkan is slow.
-const LIGHT_SAMPLES: u32 = 32;
+const LIGHT_SAMPLES: u32 = 8;
 
 fn on_cpu(scene: &Scene) -> Vec<u8> {
     sampled(scene, &Registry::builtin(), &SETTINGS, LIGHT_SAMPLES)

