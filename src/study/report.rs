@@ -277,7 +277,7 @@ fn appendix<'a>(settings: Settings, threads: usize, chapters: impl Iterator<Item
                     tr { th scope="row" { "Date" } td { (today()) } }
                     tr { th scope="row" { "Machine" } td { (std::env::consts::ARCH) ", " (std::env::consts::OS) ", " (threads) @if threads == 1 { " thread" } @else { " threads" } } }
                     tr { th scope="row" { "Renderer" } td { "CPU, four samples per pixel, Phong shading (normals interpolated, colour per pixel)" } }
-                    tr { th scope="row" { "Pictures" } td { @if settings.quick { "a quarter of the usual size" } @else { "480 × 320 pixels; rows of objects 960 or 1200 pixels wide; balls 200 × 200" } "; sRGB, no tone mapping" } }
+                    tr { th scope="row" { "Pictures" } td { @if settings.quick { "a quarter of the usual size" } @else { "480 × 320 pixels; rows of objects 960 or 1200 pixels wide; balls 160 × 160" } "; sRGB, no tone mapping" } }
                     tr { th scope="row" { "Precision" } td { "models in 32-bit floating point; fits and integrals in 64-bit" } }
                     tr { th scope="row" { "Scenes" } td { code { "scenes/fresnel_effect.json" } ", " code { "white_furnace.json" } ", " code { "gold_three_lights.json" } ", " code { "lobe_shape.json" } ": " code { "lcm view" } " opens them" } }
                     tr { th scope="row" { "Numbers" } td {

@@ -1,6 +1,6 @@
 //! The error of an approximated picture.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use crate::{optics::colour::luminance, reference::Picture};
 
@@ -8,12 +8,12 @@ use crate::{optics::colour::luminance, reference::Picture};
 const BIN: f64 = 10.0;
 
 /// The distance of a picture from the converged one, by the luminance of the pixels that objects cover fully and that
-/// are lit in either. All but the angles are relative to the mean of the converged one there.
+/// are lit in either. Differences are relative to the root mean square of the converged one there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Measured {
     /// The root mean square of the difference.
     pub(super) rms: f64,
-    /// The mean of the picture.
+    /// The mean of the picture, relative to that of the converged one.
     pub(super) mean: f64,
     /// The largest difference with its sign.
     pub(super) largest: f64,
@@ -34,18 +34,27 @@ fn hour([right, up]: [f32; 2]) -> u32 {
     if hour == 0 { 12 } else { hour }
 }
 
-/// The mean luminance of the pixels that objects cover fully, where there is light.
+/// The luminance of the pixels that objects cover fully, where there is light.
+fn lit(picture: &Picture) -> Vec<f64> {
+    let covered = picture.pixels.iter().filter(|p| p.w > 0.999);
+    covered.map(|p| f64::from(luminance(p.truncate()))).filter(|y| *y > 0.0).collect()
+}
+
+/// Its mean.
 pub(super) fn mean_luminance(picture: &Picture) -> f64 {
-    let lit = || {
-        let covered = picture.pixels.iter().filter(|p| p.w > 0.999);
-        covered.map(|p| f64::from(luminance(p.truncate()))).filter(|y| *y > 0.0)
-    };
-    lit().sum::<f64>() / lit().count().max(1) as f64
+    let lit = lit(picture);
+    lit.iter().sum::<f64>() / lit.len().max(1) as f64
+}
+
+/// Its root mean square.
+pub(super) fn rms_luminance(picture: &Picture) -> f64 {
+    let lit = lit(picture);
+    (lit.iter().map(|y| y * y).sum::<f64>() / lit.len().max(1) as f64).sqrt()
 }
 
 /// Measures a picture, with a picture of [`place`]s.
 pub(super) fn measure(picture: &Picture, converged: &Picture, places: &Picture) -> Measured {
-    let light = |p: &glam::Vec4| f64::from(luminance(p.truncate()));
+    let light = |p: &Vec4| f64::from(luminance(p.truncate()));
     let lit: Vec<_> = picture
         .pixels
         .iter()
@@ -55,12 +64,14 @@ pub(super) fn measure(picture: &Picture, converged: &Picture, places: &Picture) 
         .map(|((a, c), place)| (light(a), light(c), *place))
         .filter(|(a, c, _)| *a > 0.0 || *c > 0.0)
         .collect();
-    let mean = lit.iter().map(|(_, c, _)| c).sum::<f64>() / lit.len().max(1) as f64;
+    let count = lit.len().max(1) as f64;
+    let size = (lit.iter().map(|(_, c, _)| c * c).sum::<f64>() / count).sqrt();
+    let sum = |of: fn(&(f64, f64, Vec4)) -> f64| lit.iter().map(of).sum::<f64>();
     let off: Vec<_> = lit
         .iter()
         .map(|(a, c, place)| {
             let angle = f64::from(place.x).clamp(0.0, 1.0).acos().to_degrees();
-            ((a - c) / mean.max(1e-12), angle, hour([place.y, place.z]))
+            ((a - c) / size.max(1e-12), angle, hour([place.y, place.z]))
         })
         .collect();
     let rms = |of: &dyn Fn(f64) -> bool| {
@@ -72,7 +83,7 @@ pub(super) fn measure(picture: &Picture, converged: &Picture, places: &Picture) 
     let bins = (0..(90.0 / BIN) as u32).map(|i| BIN * f64::from(i));
     Measured {
         rms: rms(&|_| true),
-        mean: lit.iter().map(|(a, ..)| a).sum::<f64>() / lit.len().max(1) as f64 / mean.max(1e-12),
+        mean: sum(|(a, ..)| *a) / sum(|(_, c, _)| *c).max(1e-12),
         largest,
         at: (angle, hour),
         by_angle: bins
@@ -85,7 +96,6 @@ pub(super) fn measure(picture: &Picture, converged: &Picture, places: &Picture) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec4;
 
     fn picture(pixels: &[[f32; 2]]) -> Picture {
         let pixels: Vec<_> = pixels.iter().map(|[y, w]| Vec4::new(*y, *y, *y, *w)).collect();
@@ -108,12 +118,17 @@ mod tests {
             ..converged.clone()
         };
         let found = measure(&other, &converged, &places);
-        // Differences of ¼ and −½ of the mean 2.
-        assert!((found.rms - (0.5f64 * (0.0625 + 0.25)).sqrt()).abs() < 1e-6, "{found:?}");
-        assert!((found.mean - 0.875).abs() < 1e-6 && (found.largest + 0.5).abs() < 1e-6, "{found:?}");
+        // Differences of ½ and −1, where the root mean square is √5.
+        let size = 5f64.sqrt();
+        assert!((found.rms - (0.5f64 * (0.25 + 1.0)).sqrt() / size).abs() < 1e-6, "{found:?}");
+        assert!((found.mean - 0.875).abs() < 1e-6 && (found.largest + 1.0 / size).abs() < 1e-6, "{found:?}");
+        assert!(
+            (rms_luminance(&converged) - size).abs() < 1e-6
+                && (mean_luminance(&converged) - 2.0).abs() < 1e-6
+        );
         assert!((found.at.0 - 45.0).abs() < 1e-3 && found.at.1 == 3, "{found:?}");
         assert_eq!(found.by_angle.iter().map(|(a, _)| *a).collect::<Vec<_>>(), [5.0, 45.0]);
-        assert!((found.by_angle[0].1 - 0.25).abs() < 1e-6);
+        assert!((found.by_angle[0].1 - 0.5 / size).abs() < 1e-6);
         assert_eq!(measure(&converged, &converged, &places).rms, 0.0);
         assert_eq!(
             [[0.0, 1.0], [1.0, 1.8], [0.0, -1.0], [-1.0, 0.0]].map(hour),

@@ -31,7 +31,7 @@ const SCENE: &str = include_str!("scene.json");
 const LIGHTS: [&str; 3] = ["point light", "softbox", "sky"];
 /// Light and approximation of it.
 const WAYS: [(usize, Way); 3] = [(1, Way::Ltc), (1, Way::SplitSum), (2, Way::SplitSum)];
-/// The difference, as a share of the mean luminance, that has the last colour of the maps.
+/// The difference, as a share of the root mean square luminance, that has the last colour of the maps.
 const FULL: f64 = 0.5;
 /// Approximations whose errors are no larger are called close.
 const CLOSE: f64 = 0.05;
@@ -105,10 +105,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
 
 /// Draws a model under all lights and by all approximations.
 fn shoot(lab: &Lab, scene: &Scene, subject: Subject, fits: &mut Table) -> Result<Shot, StudyError> {
-    let (width, height) = lab.size(200, 200);
+    let (width, height) = lab.size(160, 160);
     let settings = reference::Settings { width, height, samples: 4, terms: TermSelection::All };
     // Of a light and of the lobes for each pixel: of the converged picture, and of each mean of an approximation.
-    let (many, few) = if lab.settings.quick { (512, 64) } else { (2048, 256) };
+    let (many, few) = if lab.settings.quick { (256, 128) } else { (512, 1024) };
     let scene = subject.put(scene);
     let known = Arc::new(subject.known(lab, few)?);
     for (angle, m, off) in known.ltc.all() {
@@ -169,10 +169,10 @@ fn method(noise: f64) -> Markup {
         p {
             "Both know one number of a highlight, the roughness α of an isotropic GGX lobe. Gold (microfacet model) has α = " (GOLD_ALPHA) " and is what they were made for. The brushed metal (Disney’s model, roughness " (BRUSHED) ", anisotropy " (ANISOTROPY)
             ") has GGX of two widths; the mean of its model’s scale is taken, α = r² = √(" (words("α_x")) " " (words("α_y")) ") = " (fixed(BRUSHED * BRUSHED, 2)) ". The plastic (normalised Blinn–Phong, exponent n = " (EXPONENT) ") has no GGX at all; by the correspondence that this program uses everywhere, α = √(2/(n + 2)) = "
-            (fixed((2.0 / (EXPONENT as f64 + 2.0)).sqrt(), 3)) ". Its diffuse part obeys Lambert’s law, for which both are exact: irradiance times albedo."
+            (fixed((2.0 / (EXPONENT as f64 + 2.0)).sqrt(), 3)) ". Its diffuse part obeys Lambert’s law, for which both have the exact answer: irradiance times albedo."
         }
         p {
-            "The error is the root mean square difference in luminance from the converged picture, over the pixels that the ball covers fully and that light reaches in either, divided by the mean luminance of the converged picture there."
+            "The error is the root mean square difference in luminance from the converged picture, over the pixels that the ball covers fully and that light reaches in either, as a share of the root mean square luminance of the converged picture there."
         }
     }
 }
@@ -243,7 +243,7 @@ fn comparison(lab: &mut Lab, scene: &Scene, shots: &[Shot], ways: &[usize]) -> R
             let (picture, measured) = &shot.approximated[way];
             let method = WAYS[way].1.name();
             all.push((shown(picture, scene, &name(method))?, method.to_owned()));
-            let full = FULL * measure::mean_luminance(converged);
+            let full = FULL * measure::rms_luminance(converged);
             let map = image(
                 &map(picture, converged, scene, full)?,
                 (picture.width, picture.height),
@@ -259,7 +259,7 @@ fn comparison(lab: &mut Lab, scene: &Scene, shots: &[Shot], ways: &[usize]) -> R
     Ok(lab.figure(
         &html! { div class=(wide) { @for row in &rows { (row) } (key()?) } },
         &html! {
-            "The " (LIGHTS[light]) ", converged and by " (methods.join(" and by ")) ". The maps show the difference in luminance as a share of the mean: blue where the approximation is too dark, orange where it is too bright, light grey where it is right. The number is the root mean square of it."
+            "The " (LIGHTS[light]) ", converged and by " (methods.join(" and by ")) ". The maps show the difference in luminance, as a share of the picture’s root mean square: blue where the approximation is too dark, orange where it is too bright, light grey where it is right. The number is the root mean square of it."
         },
     ))
 }
@@ -287,7 +287,7 @@ fn errors(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
         }
     }
     let table = lab.table(
-        &html! { "The errors of both approximations: root mean square, mean, and the largest with its place: the angle between normal and view, and the direction from the middle of the ball as on a clock. All are shares of the mean luminance." },
+        &html! { "The errors of both approximations: root mean square, mean, and the largest with its place: the angle between normal and view, and the direction from the middle of the ball as on a clock. The first and the third are shares of the root mean square luminance of the converged picture, the second is one of its mean." },
         &["Light, approximation, material", "RMS", "mean", "largest", "where"],
         &rows,
     );
@@ -334,7 +334,7 @@ fn plots(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
     }
     let figure = lab.figure(
         &html! { div .stack { @for (name, plot) in &plots { div { p .over { (name) } (plot) } } } },
-        &html! { "The error by the angle between normal and view, in steps of 10°, as a share of the mean luminance of the whole ball." },
+        &html! { "The error by the angle between normal and view, in steps of 10°, as a share of the root mean square luminance of the whole ball." },
     );
     (figure, raw)
 }
@@ -389,7 +389,7 @@ fn conclusion(shots: &[Shot], noise: f64) -> Markup {
                 } @else {
                     "it is off by " (share(under_sky[0])) ", " (share(under_sky[1])) " and " (share(under_sky[2])) ": the highlight that it assumes is neither longer at a grazing view nor cut off at the horizon of the surface, where sky and ground meet."
                 }
-                " Its largest error there is " (percent(worst(2).approximated[2].1.largest)) " (" (worst(2).subject.short) ", at " (fixed(worst(2).approximated[2].1.at.0, 0)) "° from the view)."
+                " Its largest error there is " (percent(worst(2).approximated[2].1.largest)) " (" (worst(2).subject.short) ", where normal and view are " (fixed(worst(2).approximated[2].1.at.0, 0)) "° apart)."
             }
             p {
                 "Both are exact in uniform light, and both keep the energy of the model, since its own directional albedo is their height. They are good answers to another question: how to draw one family of materials quickly. A laboratory that compares families cannot use them, as their error "

@@ -193,7 +193,7 @@ fn the_split_sum_is_exact_in_uniform_surroundings() {
             most
         };
         let right = Arc::new(known);
-        // The albedo comes from a curve, whose steepest piece is off by half a per cent.
+        // Curves of albedos are interpolated to 0.002, of an albedo of about 0.3.
         assert!(error(&right) < 8e-3, "{}: {}", subject.name, error(&right));
         // The wrong twin: weights that are not divided by their sum.
         known = Arc::into_inner(right).expect("no one else has it");
