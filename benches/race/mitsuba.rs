@@ -197,7 +197,7 @@ fn theirs(
     }
     let mask = folder.path().join("inner");
     fs::write(&mask, inner.iter().map(|is| u8::from(*is)).collect::<Vec<_>>()).expect("a place");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/race/mitsuba.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/race/again.py");
     let output = Command::new(python)
         .arg(script)
         .args([&file, &mask])

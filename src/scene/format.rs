@@ -99,7 +99,7 @@ pub(super) struct LightFile<'a> {
     #[schemars(range(min = 1000, max = 40000))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour_temperature: Option<f32>,
-    /// Intensity: candela for point and spot lights, lux for directional and ambient ones, a factor for photometric lamps. Conflicts with `luminous_flux`.
+    /// Intensity: candela for point and spot lights; lux for directional and ambient ones and the sun; cd/m² for rectangles, discs, spheres and cylinders; a factor for photometric lamps and environments, which of a uniform one is its luminance in cd/m². Conflicts with `luminous_flux`.
     #[schemars(range(min = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     intensity: Option<f32>,
