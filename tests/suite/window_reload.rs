@@ -253,7 +253,10 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     let text = fs::read_to_string(&file).expect("there");
     save_in_place(&file, &text.replace("fn illuminate(", "fn illuminate(("));
     assert!(shows(2)(&window.until("a badge", stale)));
-    save_by_renaming(&file, &text.replace("return colour;", "return colour.zyx;"));
+    let turned =
+        text.replace("return colour +", "return (colour +").replace("v, frame);\n}", "v, frame)).zyx;\n}");
+    assert!(turned.contains(".zyx;") && turned.contains("(colour +"), "the loop ends as the test expects");
+    save_by_renaming(&file, &turned);
     let picture = window.until("a red sphere", shows(0));
     assert!(!stale(&picture) || !stale(&window.until("no badge", |p| !stale(p))));
     // A file that is gone is missed, and the picture stays.
