@@ -17,6 +17,17 @@ impl Progress<'_> {
     /// Nobody watches.
     pub const NONE: Progress<'static> = Progress { tell: &|_, _| (), cancelled: &|| false };
 
+    /// Does one of several equal parts of the work, which tells how far it is by itself; `name` makes its steps those of the whole.
+    pub fn part<T>(
+        &self,
+        (number, count): (usize, usize),
+        name: impl Fn(&str) -> String,
+        work: impl FnOnce(&Progress) -> T,
+    ) -> T {
+        let tell = |done: f32, step: &str| (self.tell)((number as f32 + done) / count as f32, &name(step));
+        work(&Progress { tell: &tell, cancelled: self.cancelled })
+    }
+
     /// Begins a step, after this fraction of the work.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! What the light of a picture rests on, in words: the samples of lights with extent, and their noise.
 
 use super::Part;
-use crate::scene::limits::number;
+use crate::scene::limits::{number, significant};
 
 /// The rank of these parts: as those of the display.
 const RANK: u8 = 1;
@@ -45,8 +45,7 @@ fn per_cent(fraction: f32) -> String {
     if percent < 0.01 {
         return "below 0.01".to_owned();
     }
-    let unit = 10f64.powi(1 - percent.log10().floor() as i32);
-    number((percent * unit).round() / unit)
+    number(significant(percent, 2))
 }
 
 #[cfg(test)]

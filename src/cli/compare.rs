@@ -186,14 +186,6 @@ struct Drawing<'a> {
     count: usize,
 }
 
-impl Drawing<'_> {
-    /// Draws one of the pictures, whose progress is a part of the whole.
-    fn part<T>(&self, number: usize, whole: &Progress, draw: impl FnOnce(&Progress) -> T) -> T {
-        let tell = |done: f32, step: &str| (whole.tell)((number as f32 + done) / self.count as f32, step);
-        draw(&Progress { tell: &tell, cancelled: whole.cancelled })
-    }
-}
-
 /// A view that is compared: one of a scene, or a picture.
 #[derive(Clone, Copy)]
 struct View<'a> {
@@ -210,12 +202,13 @@ impl View<'_> {
         }
     }
 
-    /// The picture of the view, and what was reached for lights with extent. Pictures keep their size.
+    /// The picture of the view, and what was reached for lights with extent. Pictures keep their size. Of those that are drawn,
+    /// it has a number.
     fn shown(
         &self,
         [width, height]: [u32; 2],
         drawing: &Drawing,
-        progress: &Progress,
+        (number, whole): (usize, &Progress),
     ) -> Result<(Shown, Option<Reached>), Failure> {
         let scene = match self.input {
             Input::Picture(_, shown) => return Ok((shown.clone(), None)),
@@ -227,8 +220,10 @@ impl View<'_> {
         let settings = Settings { width, height, samples: drawing.samples, terms };
         let odd = AtomicBool::default();
         let until = drawing.sampling.until();
-        let (light, reached) = reference::render_until(&seen, registry, &settings, until, &odd, progress)
-            .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
+        let drawn = whole.part((number, drawing.count), str::to_owned, |progress| {
+            reference::render_until(&seen, registry, &settings, until, &odd, progress)
+        });
+        let (light, reached) = drawn.map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
         // An endless function of a custom model shows only when it runs.
         self.check(registry)?;
         Ok((Shown::of_light(light, &seen.display), Some(reached).filter(|reached| reached.samples > 0)))
@@ -371,8 +366,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", input.name())));
     }
     let drawn = gauged("drawing the views", options, |progress| {
-        let [first, second] =
-            [(a, 0), (b, 1)].map(|(view, i)| drawing.part(i, progress, |p| view.shown(size, &drawing, p)));
+        let [first, second] = [(a, 0), (b, 1)].map(|(view, i)| view.shown(size, &drawing, (i, progress)));
         let shown = [first?, second?];
         let beside = match beside {
             true => Some(side_by_side(&comparison, size, &views, &drawing, progress)?),
@@ -537,8 +531,7 @@ fn side_by_side(
     let whole = whole.ok_or_else(no_room)?;
     let places = places(whole).ok_or_else(no_room)?;
     let shown = views.iter().zip(&places).enumerate().map(|(i, (view, cell))| {
-        let part = |progress: &Progress| view.shown([cell.width, cell.height], drawing, progress);
-        Ok::<_, Failure>(drawing.part(2 + i, progress, part)?.0)
+        Ok::<_, Failure>(view.shown([cell.width, cell.height], drawing, (2 + i, progress))?.0)
     });
     let shown = shown.collect::<Result<Vec<_>, _>>()?;
     let rgb8 = compose(comparison, whole, &shown).map_err(|error| Failure::Invalid(error.to_string()))?;

@@ -479,14 +479,14 @@ impl Painter {
         let mut all = Vec::with_capacity(count);
         let (mut remarks, mut rests_on) = (Vec::new(), Vec::new());
         for (i, part) in job.plan.parts.iter().enumerate() {
-            let tell = |done: f32, step: &str| {
+            let name = |step: &str| {
                 let letter = LETTERS.get(part.cell.view).filter(|_| count > 1);
-                let step = letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"));
-                (progress.tell)((i as f32 + done) / count as f32, &step);
+                letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"))
             };
-            let progress = Progress { tell: &tell, cancelled: progress.cancelled };
-            let Drawn { shown, reached, remark } =
-                if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry, &progress)? };
+            let Drawn { shown, reached, remark } = match gpu {
+                true => self.on_gpu(job, part, registry)?,
+                false => progress.part((i, count), name, |progress| on_cpu(job, part, registry, progress))?,
+            };
             let outlined = all.is_empty() && job.plan.is_map();
             all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
             remarks.extend(remark);

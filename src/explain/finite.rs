@@ -28,7 +28,7 @@ use crate::{
     reference::Settings,
     reflection::{ModelEntry, Surface, ends::check_that_it_ends},
     registry::Registry,
-    scene::{Light, Object, Scene, emitter, error::Path, record},
+    scene::{Light, Object, Scene, emitter, error::Path},
     text::quoted,
 };
 
@@ -140,9 +140,7 @@ fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
         if !scope.has(entry.declaration.wgsl.path, registry) {
             continue;
         }
-        let encoding = scene.display.encoding;
-        let emitter = (entry.instantiate)(&light.parameters, encoding);
-        let record = record(light, registry, encoding);
+        let Some((_, emitter, record)) = emitter(light, registry, scene.display.encoding) else { continue };
         let odd = places.iter().find_map(|p| {
             let (of, value) = if entry.declaration.extent {
                 with_extent(&*emitter, &record, *p)?

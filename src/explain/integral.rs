@@ -93,10 +93,7 @@ impl Lit {
     /// The light to the observer as it is to be written: with so many digits, or with those that its standard error allows.
     #[must_use]
     pub fn outcome(&self, digits: usize) -> String {
-        match &self.integral {
-            Some(integral) => measured(self.contribution, integral.error),
-            None => super::rounded_triple(self.contribution, digits),
-        }
+        super::told(self.contribution, self.error(), digits)
     }
 }
 

@@ -3,18 +3,25 @@
 use glam::Vec3;
 
 use super::{
-    Corner, Explanation, Place, Seen, Spot,
+    Corner, Explanation, Lit, Place, Seen, Spot,
     integral::with_error,
-    numbers::{DIGITS, rounded},
+    numbers::{DIGITS, measured, rounded, rounded_triple},
 };
 use crate::reference::{DisplaySteps, Picture};
+
+impl Lit {
+    /// The standard error of the light to the observer; none if the light has no extent.
+    #[must_use]
+    pub fn error(&self) -> Option<Vec3> {
+        self.integral.map(|integral| integral.error)
+    }
+}
 
 impl Spot {
     /// The standard error of the sum over the lights; none where no light has extent.
     #[must_use]
     pub fn error(&self) -> Option<Vec3> {
-        let errors = self.lights.iter().filter_map(|lit| Some(lit.integral?.error));
-        root_of_squares(errors)
+        root_of_squares(self.lights.iter().filter_map(Lit::error))
     }
 }
 
@@ -74,6 +81,12 @@ pub fn within(v: f32, error: Option<f32>, digits: usize) -> String {
 pub fn triple_within(v: Vec3, error: Option<Vec3>, digits: usize) -> String {
     let [r, g, b] = [0, 1, 2].map(|i| within(v[i], error.map(|error| error[i]), digits));
     format!("({r}, {g}, {b})")
+}
+
+/// Red, green and blue with so many digits, or with their standard errors and the digits that these allow.
+#[must_use]
+pub fn told(v: Vec3, error: Option<Vec3>, digits: usize) -> String {
+    error.map_or_else(|| rounded_triple(v, digits), |error| measured(v, error))
 }
 
 /// Four digits, as explanations have them.

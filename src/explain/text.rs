@@ -7,8 +7,7 @@ use glam::Vec3;
 use super::{
     Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
     lines::{self, calculation, reading},
-    measured,
-    noise::{estimated, within},
+    noise::{estimated, told, within},
     number,
     numbers::{DIGITS, colour, of_value},
     pairs, rounded, rounded_number_or_triple, rounded_triple, triple,
@@ -192,7 +191,7 @@ impl Explanation {
         }
         if spot.lights.len() > 1 {
             let lights = plural(spot.lights.len(), "light");
-            let sum = spot.error().map_or_else(|| triple(spot.sum), |error| measured(spot.sum, error));
+            let sum = told(spot.sum, spot.error(), DIGITS);
             out.line(1, format_args!("sum over {lights} = {sum}"));
         }
         if spot.is_replaced() {
@@ -267,8 +266,7 @@ impl Explanation {
         let say = |step: fn(&DisplaySteps) -> Vec3| estimated(step(steps), self.error_of(step));
         out.heading("From light to the code on the display");
         if self.seen.is_some() || self.lamp.is_some() {
-            let error = self.error_of(|steps| steps.light);
-            let light = error.map_or_else(|| triple(steps.light), |error| measured(steps.light, error));
+            let light = told(steps.light, self.error_of(|steps| steps.light), DIGITS);
             out.line(1, format_args!("light {light}"));
             let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
             out.line(

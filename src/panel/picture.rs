@@ -173,8 +173,7 @@ pub fn views(
             stale_in = Some((cell.view, covered)).filter(|_| covered.is_positive());
         });
     }
-    let why = session.incomparable().or_else(|| session.unconverged());
-    if let Some((map, reason)) = arrangement.map.zip(why) {
+    if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
         let font = TextStyle::Body.resolve(ui.style());
         all.written.push(plate(ui, map, Align2::CENTER_CENTER, map.center(), &reason, font, 0.0));
     }

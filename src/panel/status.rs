@@ -78,11 +78,11 @@ impl Panel for StatusLine {
 /// are several. None while no view has such light.
 fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
     let shown: Vec<_> = converged.iter().enumerate().filter(|(_, view)| view.total > 0).collect();
-    let words = |Converging { done, total, noise }: Converging| {
-        let noise = noise.map(|noise| format!(" · noise {}", per_cent(noise))).unwrap_or_default();
-        format!("{done} of {total} samples{noise}")
+    let words = |view: Converging| {
+        let noise = view.noise.map(|noise| format!(" · noise {}", per_cent(noise))).unwrap_or_default();
+        view.samples() + &noise
     };
-    let (_, least) = shown.iter().min_by_key(|(_, view)| view.done)?;
+    let (_, least) = shown.iter().max_by_key(|(_, view)| view.missing())?;
     let most_noise = shown.iter().filter_map(|(_, view)| view.noise).reduce(f32::max);
     let lines = shown.iter().filter(|_| shown.len() > 1).map(|(view, converging)| {
         format!("{}: {}", LETTERS.get(*view).copied().unwrap_or_default(), words(**converging))

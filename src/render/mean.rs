@@ -256,7 +256,7 @@ fn join(
     mut context: RenderContext,
 ) {
     let (target, joins, Mean { frames, textures: [known, next], .. }) = view.into_inner();
-    let Joins { view, frame: number, converged: Converged { done, total }, count, .. } = *joins;
+    let Joins { view, frame: number, converged, count, .. } = *joins;
     let Some(illumination) = buffers.get(joins.illumination) else { return };
     if target.main_texture_format() != FRAME {
         error_once!(
@@ -266,7 +266,7 @@ fn join(
         return;
     }
     let Pass { layout, pipeline } = pass.get_or_insert_with(|| Pass::new(&device));
-    let share = [count as f32 / done as f32, count as f32, 0.0, 0.0];
+    let share = [count as f32 / converged.done as f32, count as f32, 0.0, 0.0];
     let share = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("mean"),
         contents: &share.map(f32::to_le_bytes).concat(),
@@ -304,6 +304,6 @@ fn join(
     pass.set_bind_group(0, &*group, &[]);
     pass.draw(0..3, 0..1);
     drop(pass);
-    let grown = Grown { view, frame: number, frames: *frames, done, total, count };
+    let grown = Grown { view, frame: number, frames: *frames, converged, count };
     measuring.measure(grown, next.each_ref(), &device, context.command_encoder(), &noise);
 }

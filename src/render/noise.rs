@@ -25,7 +25,7 @@ use bevy::{
     },
 };
 
-use super::view::Drawing;
+use super::{converge::Converged, view::Drawing};
 
 /// The workgroups that add up, each for some rows.
 const GROUPS: u32 = 64;
@@ -106,20 +106,16 @@ pub(super) struct Grown {
     /// The frames in the mean.
     pub(super) frames: u32,
     /// Its samples, those of the frame included, and those it will have.
-    pub(super) done: u32,
-    pub(super) total: u32,
+    pub(super) converged: Converged,
     /// Those of the frame.
     pub(super) count: u32,
 }
 
 impl Grown {
-    fn is_last(self) -> bool {
-        self.done >= self.total
-    }
-
     fn is_measured(self) -> bool {
         let step = |samples: u32| samples / BETWEEN;
-        self.frames >= ENOUGH && (self.is_last() || step(self.done) > step(self.done - self.count))
+        let done = self.converged.done;
+        self.frames >= ENOUGH && (self.converged.is_done() || step(done) > step(done - self.count))
     }
 }
 
@@ -175,7 +171,7 @@ impl Measuring {
         noise: &Noise,
     ) {
         if !grown.is_measured() {
-            if grown.is_last() {
+            if grown.converged.is_done() {
                 noise.tell(grown.view, Known { frame: grown.frame, noise: None });
             }
             return;
@@ -206,7 +202,7 @@ fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
         let (noise, mapped) = (noise.clone(), buffer.clone());
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             let sums = result.is_ok().then(|| mapped.slice(..).get_mapped_range().to_vec());
-            let known = sums.and_then(|bytes| relative_error(&bytes, grown.frames, grown.done));
+            let known = sums.and_then(|bytes| relative_error(&bytes, grown.frames, grown.converged.done));
             noise.tell(grown.view, Known { frame: grown.frame, noise: known });
         });
     }
@@ -244,7 +240,10 @@ mod tests {
     #[test]
     fn it_is_measured_now_and_then_and_at_the_end() {
         let entity = Entity::PLACEHOLDER;
-        let grown = |frames, done, count| Grown { view: entity, frame: 1, frames, done, total: 100, count };
+        let grown = |frames, done, count| {
+            let converged = Converged { done, total: 100 };
+            Grown { view: entity, frame: 1, frames, converged, count }
+        };
         for (frames, done, count, is) in [
             (1, 1, 1, false),
             (9, 15, 8, false),

@@ -123,7 +123,7 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
                 assert!(html.contains(&format!("title=\"{ambient}\"")), "{name}: I_a = {ambient}");
             }
             // All digits of the command are under the pointer.
-            let error = lit.integral.map(|integral| integral.error);
+            let error = lit.error();
             let all = match error {
                 Some(error) => explain::measured(lit.contribution, error),
                 None => explain::triple(lit.contribution),

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     document::{Document, Selection},
-    explain::{self, Explanation, Line, Lit, Place, Seen, Spot, measured, of_value, triple, triple_within},
+    explain::{self, Explanation, Line, Lit, Place, Seen, Spot, of_value, told, triple, triple_within},
     export::{ExportError, Request},
     optics::{TermSelection, colour::srgb_encode8},
     reference::{Settings, ignored_edits},
@@ -22,6 +22,8 @@ use crate::{
 const MOST: usize = 8;
 /// Digits of values; those in equations have as many as it takes.
 const DIGITS: usize = 3;
+/// Those under the pointer: as many as the command prints.
+const ALL: usize = 4;
 
 /// What a page has more that explains a point.
 #[derive(Debug, Default)]
@@ -152,7 +154,7 @@ fn estimate(light: Vec3, error: Option<Vec3>) -> String {
         "<span class=\"chip none\"></span>".to_owned()
     };
     let shown = triple_within(light, error, DIGITS);
-    let all = error.map_or_else(|| triple(light), |error| measured(light, error));
+    let all = told(light, error, ALL);
     format!("<span class=\"colour\" title=\"{}\">{chip}{}</span>", escaped(&all), equation(&shown))
 }
 
@@ -203,8 +205,7 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
     let all = spot.brightest();
     for (i, lit) in all.iter().take(MOST).enumerate() {
         let open = if i == 0 { " open" } else { "" };
-        let error = lit.integral.map(|integral| integral.error);
-        let (name, sum) = (escaped(&name(lit.light.index)), estimate(lit.contribution, error));
+        let (name, sum) = (escaped(&name(lit.light.index)), estimate(lit.contribution, lit.error()));
         *out += &format!("<details{open}><summary><b>{name}</b>{sum}</summary><div class=\"equation\">");
         light(out, seen, lit);
         *out += "</div></details>";

@@ -167,12 +167,11 @@ const SPACE: f32 = 14.0;
 fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
     let palette = Palette::here(ui);
     // Once, where the usual numbers would be.
-    let later = "The difference is calculated once both pictures have all samples of light with extent.";
-    let unconverged = || session.unconverged().map(|reason| (reason, later.to_owned()));
-    if let Some((reason, help)) =
-        session.incomparable().map(|reason| (reason.clone(), reason)).or_else(unconverged)
-    {
+    if let Some(reason) = session.no_difference() {
         if wanted("RMSE") {
+            let later =
+                "The difference is calculated once both pictures have all samples of light with extent.";
+            let help = if session.incomparable().is_some() { &reason } else { later };
             let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
             let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
             ui.painter().galley(rect.min, galley, palette.weak);

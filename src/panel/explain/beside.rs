@@ -69,7 +69,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         }
         halves(ui, first.contribution != second.contribution, |ui, i| {
             rows::note(ui, "light to the observer");
-            match lit[i].and_then(|lit| Some((lit.contribution, lit.integral?.error))) {
+            match lit[i].and_then(|lit| Some((lit.contribution, lit.error()?))) {
                 Some((light, error)) => rows::measured(ui, "=", light, error, true),
                 None => {
                     drop(rows::light(ui, "=", lit[i].map_or(glam::Vec3::ZERO, |lit| lit.contribution), true))

@@ -68,7 +68,7 @@ pub(super) fn lights(
         // A light without a name of its own is called by its type.
         let kind = if lit.light.name.is_some() { lit.light.type_name } else { "" };
         let id = Id::new(("light of an explanation", lit.light.index));
-        let shown = (lit.contribution, lit.integral.map(|integral| integral.error));
+        let shown = (lit.contribution, lit.error());
         if rows::fold(ui, id, (&name, kind), open, shown).clicked() {
             let light = if open { Unfolded::None } else { Unfolded::Light(lit.light.index) };
             probe::choose(ui.ctx(), Choice { light, ..choice });

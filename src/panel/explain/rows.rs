@@ -213,7 +213,7 @@ fn short_within(v: Vec3, error: Option<Vec3>) -> String {
 
 /// Three numbers with all digits, and their standard errors.
 fn all_within(v: Vec3, error: Option<Vec3>) -> String {
-    error.map_or_else(|| rounded_triple(v, ALL), |error| explain::measured(v, error))
+    explain::told(v, error, ALL)
 }
 
 /// A step on the way to the display, and its result with its standard error, if it has one.

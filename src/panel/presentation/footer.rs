@@ -185,7 +185,7 @@ fn equations(
 fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
-    if let Some(reason) = session.incomparable().or_else(|| session.unconverged()) {
+    if let Some(reason) = session.no_difference() {
         return reason;
     }
     let Some(numbers) = &session.facts.comparison else { return line + " …" };

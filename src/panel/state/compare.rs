@@ -96,9 +96,14 @@ impl Session {
     #[must_use]
     pub fn unconverged(&self) -> Option<String> {
         let views = [0, self.compared_with()].map(|view| self.facts.converged[view.min(MAX_VARIANTS)]);
-        let Converging { done, total, .. } =
-            views.into_iter().max_by_key(|view| view.total.saturating_sub(view.done))?;
-        (done < total).then(|| format!("Not converged yet: {done} of {total} samples"))
+        let least = views.into_iter().max_by_key(Converging::missing)?;
+        (least.missing() > 0).then(|| format!("Not converged yet: {}", least.samples()))
+    }
+
+    /// The reason why numbers and map of the difference are not those of the pictures, if there is one.
+    #[must_use]
+    pub fn no_difference(&self) -> Option<String> {
+        self.incomparable().or_else(|| self.unconverged())
     }
 
     /// Takes over into the scene which view is compared with view A, before the scene is written. This is no step of the

@@ -67,6 +67,20 @@ pub struct Converging {
     pub noise: Option<f32>,
 }
 
+impl Converging {
+    /// The samples that it lacks.
+    #[must_use]
+    pub fn missing(&self) -> u32 {
+        self.total.saturating_sub(self.done)
+    }
+
+    /// "63 of 256 samples".
+    #[must_use]
+    pub fn samples(&self) -> String {
+        format!("{} of {} samples", self.done, self.total)
+    }
+}
+
 /// The state of an export that runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exporting {
