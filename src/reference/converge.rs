@@ -93,15 +93,19 @@ pub fn render_until(
         let samples = LightSamples { first: taken, count };
         let block = render_samples(scene, registry, settings, samples, odd);
         taken += count;
-        blocks += 1;
+        // A last block with fewer samples tells less, and is left out of the estimate.
+        let is_whole = count == AT_ONCE;
+        blocks += u32::from(is_whole);
         let share = count as f32 / taken as f32;
         for ((mean, squares), pixel) in mean.iter_mut().zip(&mut squares).zip(block.pixels) {
             let [before, new] = [*mean, pixel].map(|p| luminance(p.truncate()));
             *mean += (pixel - *mean) * share;
-            *squares += (new - before) * (new - luminance(mean.truncate()));
+            if is_whole {
+                *squares += (new - before) * (new - luminance(mean.truncate()));
+            }
         }
         if blocks >= ENOUGH {
-            noise = Some(relative_error(&mean, &squares, blocks));
+            noise = Some(noise_of(&mean, &squares, blocks, taken));
         }
         let (done, said) = until.progress(Reached { samples: taken, noise });
         progress.step(done, &said)?;
@@ -114,17 +118,24 @@ pub fn render_until(
 }
 
 /// See [`Reached::noise`].
-fn relative_error(mean: &[Vec4], squares: &[f32], blocks: u32) -> f32 {
-    let (mut variance, mut sum, mut lit) = (0.0f64, 0.0f64, 0.0f64);
+fn noise_of(mean: &[Vec4], squares: &[f32], blocks: u32, samples: u32) -> f32 {
+    let mut sums = [0.0f64; 3];
     for (mean, squares) in mean.iter().zip(squares) {
         let here = f64::from(luminance(mean.truncate()));
         if here > 0.0 {
-            variance += f64::from(*squares) / f64::from(blocks - 1) / f64::from(blocks);
-            sum += here;
-            lit += 1.0;
+            let of = [f64::from(AT_ONCE) * f64::from(*squares), here, 1.0];
+            sums.iter_mut().zip(of).for_each(|(sum, part)| *sum += part);
         }
     }
-    if sum > 0.0 { ((variance / lit).sqrt() / (sum / lit)) as f32 } else { 0.0 }
+    if sums[1] > 0.0 { relative_error(sums, blocks, samples) } else { 0.0 }
+}
+
+/// The noise of a picture from sums over its pixels that are lit: the squares about the mean luminance, counted once for each
+/// sample of their block; the mean luminance; the number of pixels. That of a picture of several blocks with so many samples
+/// together.
+pub(crate) fn relative_error([squares, luminance, pixels]: [f64; 3], blocks: u32, samples: u32) -> f32 {
+    let variance = squares / f64::from(blocks - 1) / f64::from(samples);
+    ((variance / pixels).sqrt() / (luminance / pixels)) as f32
 }
 
 #[cfg(test)]
@@ -197,9 +208,23 @@ mod tests {
     fn noise_is_the_standard_error_over_the_mean() {
         // Two pixels of the mean luminance 2, four blocks with the sums of squares 12 and 0: variances of the mean 1 and 0.
         let mean = [Vec4::new(2.0, 2.0, 2.0, 1.0); 2];
-        let noise = relative_error(&mean, &[12.0, 0.0], 4);
+        let noise = noise_of(&mean, &[12.0, 0.0], 4, 4 * AT_ONCE);
         assert!((noise - 0.5f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
-        assert_eq!(relative_error(&[Vec4::ZERO], &[0.0], 4), 0.0, "darkness has no noise");
+        assert_eq!(noise_of(&[Vec4::ZERO], &[0.0], 4, 4 * AT_ONCE), 0.0, "darkness has no noise");
+    }
+
+    #[test]
+    fn a_few_samples_more_tell_no_more_noise() {
+        let registry = Registry::builtin();
+        let scene = lit(&registry);
+        let noise = |samples: u32| until(&scene, &registry, samples, None).1.noise.expect("enough samples");
+        let whole = noise(64);
+        for samples in [65, 72, 79] {
+            let ratio = noise(samples) / (whole * (64.0 / samples as f32).sqrt());
+            assert!((0.95..1.05).contains(&ratio), "{samples}: {ratio}");
+        }
+        // A block more is another estimate.
+        assert_ne!(noise(80), whole * 0.8f32.sqrt());
     }
 
     #[test]

@@ -26,6 +26,7 @@ use bevy::{
 };
 
 use super::{converge::Converged, view::Drawing};
+use crate::reference::relative_error;
 
 /// The workgroups that add up, each for some rows.
 const GROUPS: u32 = 64;
@@ -202,25 +203,21 @@ fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
         let (noise, mapped) = (noise.clone(), buffer.clone());
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             let sums = result.is_ok().then(|| mapped.slice(..).get_mapped_range().to_vec());
-            let known = sums.and_then(|bytes| relative_error(&bytes, grown.frames, grown.converged.done));
+            let known = sums.and_then(|bytes| noise_of(&bytes, grown.frames, grown.converged.done));
             noise.tell(grown.view, Known { frame: grown.frame, noise: known });
         });
     }
 }
 
 /// The noise from the sums of the workgroups; `None` where nothing is seen.
-fn relative_error(bytes: &[u8], frames: u32, samples: u32) -> Option<f32> {
+fn noise_of(bytes: &[u8], frames: u32, samples: u32) -> Option<f32> {
     let mut sums = [0.0f64; 3];
     for [squares, luminance, pixels, _] in bytes.as_chunks::<4>().0.as_chunks::<4>().0 {
         for (sum, part) in sums.iter_mut().zip([squares, luminance, pixels]) {
             *sum += f64::from(f32::from_le_bytes(*part));
         }
     }
-    let [squares, luminance, pixels] = sums;
-    // Squares count once for each sample of their frame.
-    let variance = squares / f64::from(frames - 1) / f64::from(samples);
-    let noise = (variance / pixels).sqrt() / (luminance / pixels);
-    noise.is_finite().then_some(noise as f32)
+    Some(relative_error(sums, frames, samples)).filter(|noise| noise.is_finite())
 }
 
 #[cfg(test)]
@@ -232,9 +229,9 @@ mod tests {
         // Two groups with a pixel each of the luminance 2, four frames of two samples, squares 12 and 0 in each frame.
         let group = |squares: f32| [2.0 * squares, 2.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
         let bytes = [group(12.0), group(0.0)].concat();
-        let noise = relative_error(&bytes, 4, 8).expect("something is seen");
+        let noise = noise_of(&bytes, 4, 8).expect("something is seen");
         assert!((noise - 0.5f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
-        assert_eq!(relative_error(&[0; 32], 4, 8), None, "nothing is seen");
+        assert_eq!(noise_of(&[0; 32], 4, 8), None, "nothing is seen");
     }
 
     #[test]

@@ -171,7 +171,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
 fn noise() -> String {
     let (path, registry) = (root().join("scenes/softbox_and_lamps.json"), Registry::builtin());
     let scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
-    let settings = Settings { width: 80, height: 45, samples: 1, ..Settings::default() };
+    let settings = Settings { width: 80, height: 45, samples: 4, ..Settings::default() };
     let row = |samples: u32| {
         let (odd, until) = (AtomicBool::default(), Until { samples, noise: None });
         let reached = reference::render_until(&scene, &registry, &settings, until, &odd, &Progress::NONE)
