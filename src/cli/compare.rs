@@ -19,6 +19,7 @@ use super::{
 };
 use crate::files::Shown as _;
 use crate::{
+    caption::{self, Sampled},
     compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     export::write::inputs,
     failure::Failure,
@@ -364,6 +365,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let idle = scenes.map(|scene| arguments.sampling.idle(scene, registry)).collect::<Option<Vec<_>>>();
         let idle = idle.and_then(|idle| idle.into_iter().next());
         idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", input.name())));
+    } else if let Some(idle) = arguments.sampling.idle_for_pictures() {
+        options.tell(idle);
     }
     let drawn = gauged("drawing the views", options, |progress| {
         let [first, second] = [(a, 0), (b, 1)].map(|(view, i)| view.shown(size, &drawing, (i, progress)));
@@ -412,7 +415,15 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let broken = broken(arguments, &measured, differences.largest)?;
     // The numbers matter even if the picture cannot be written.
     if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {
-        write(output, size, &rgb8, &about(&read, comparison, registry))?;
+        let about = about(&read, comparison, registry);
+        let rests_on: Vec<_> = [reached_a, reached_b]
+            .into_iter()
+            .flatten()
+            .map(|Reached { samples, noise }| Sampled { samples, noise })
+            .collect();
+        let light = caption::line(&caption::sampled(&rests_on));
+        let about = if light.is_empty() { about } else { about.with("Light", light) };
+        write(output, size, &rgb8, &about)?;
         options.tell(format_args!("wrote {}", output.shown()));
     }
     // Limits matter even if nobody reads the numbers.

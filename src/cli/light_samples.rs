@@ -44,11 +44,21 @@ impl Sampling {
         }
     }
 
+    /// The options that are given and change nothing, in words.
+    fn nothing(self) -> Option<String> {
+        let verb = if self.light_samples.is_some() && self.noise.is_some() { "change" } else { "changes" };
+        Some(format!("{} {verb} nothing", self.given()?))
+    }
+
     /// A remark on options that change nothing in a scene.
     pub(super) fn idle(self, scene: &Scene, registry: &Registry) -> Option<String> {
-        let given = self.given().filter(|_| !has_extent(scene.shining(), registry))?;
-        let verb = if self.light_samples.is_some() && self.noise.is_some() { "change" } else { "changes" };
-        Some(format!("no light has extent, so the picture has no noise, and {given} {verb} nothing"))
+        let nothing = self.nothing().filter(|_| !has_extent(scene.shining(), registry))?;
+        Some(format!("no light has extent, so the picture has no noise, and {nothing}"))
+    }
+
+    /// A remark on options that change nothing, as pictures are compared as they are.
+    pub(super) fn idle_for_pictures(self) -> Option<String> {
+        self.nothing().map(|nothing| format!("both files are pictures, already rendered: {nothing}"))
     }
 
     /// A remark on a picture that is noisier than was asked for, or may be.

@@ -425,7 +425,8 @@ struct Drawn {
     shown: Shown,
     /// What was reached for lights with extent; none without them.
     reached: Option<Reached>,
-    remark: Option<String>,
+    /// Remarks on light that is not finite, or noisier than was asked for.
+    remarks: Vec<String>,
 }
 
 /// Renders pictures, one after the other, with the chosen renderer.
@@ -483,13 +484,13 @@ impl Painter {
                 let letter = LETTERS.get(part.cell.view).filter(|_| count > 1);
                 letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"))
             };
-            let Drawn { shown, reached, remark } = match gpu {
+            let Drawn { shown, reached, remarks: of_part } = match gpu {
                 true => self.on_gpu(job, part, registry)?,
                 false => progress.part((i, count), name, |progress| on_cpu(job, part, registry, progress))?,
             };
             let outlined = all.is_empty() && job.plan.is_map();
             all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
-            remarks.extend(remark);
+            remarks.extend(of_part);
             rests_on.extend(reached.map(|Reached { samples, noise }| Sampled { samples, noise }));
         }
         let mut shown = all;
@@ -563,13 +564,13 @@ impl Painter {
             .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
         // What ships with the program is always finite.
         if !has_untested(registry) {
-            return Ok(Drawn { shown, reached, remark: None });
+            return Ok(Drawn { shown, reached, remarks: Vec::new() });
         }
         renderer.set_channel(Some(finite::channel(&part.scene, registry)));
         renderer.settle().map_err(failed)?;
         let channel = renderer.read_rgb8().map_err(failed)?;
         let remark = finite::remark_on_gpu(part, registry, &channel, &mut self.tried);
-        Ok(Drawn { shown, reached, remark })
+        Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
     }
 }
 
@@ -652,9 +653,9 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
     };
     // An endless function shows only when it runs.
     can_draw()?;
-    let remark = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
-    let remark = remark.or_else(|| job.sampling.remark(reached?));
-    Ok(Drawn { shown, reached, remark })
+    let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
+    let noisy = reached.and_then(|reached| job.sampling.remark(reached));
+    Ok(Drawn { shown, reached, remarks: odd.into_iter().chain(noisy).collect() })
 }
 
 /// The views that the picture of a scene shows.

@@ -142,50 +142,74 @@ fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
         }
         let Some((_, emitter, record)) = emitter(light, registry, scene.display.encoding) else { continue };
         let odd = places.iter().find_map(|p| {
-            let (of, value) = if entry.declaration.extent {
+            let odd = if entry.declaration.extent {
                 with_extent(&*emitter, &record, *p)?
             } else {
                 of_direction(&*emitter, &record, *p)?
             };
-            Some((*p, of, value))
+            Some((*p, odd))
         });
-        found.extend(odd.map(|(p, of, value)| of_light(i, light, of, p, &value)));
+        found.extend(odd.map(|(p, odd)| of_light(i, light, p, &odd)));
     }
     found
 }
 
-fn of_light(index: usize, light: &Light, of: &str, p: Vec3, value: &str) -> NotFinite {
+fn of_light(index: usize, light: &Light, p: Vec3, Odd { of, value, must_be }: &Odd) -> NotFinite {
     let (name, id, p) = (named(light.name.as_deref()), &light.light_type, triple(p));
-    let what = format!("{name}is of the type {id}, whose {of} at {p} m is {value}; it must be finite");
+    let what = format!("{name}is of the type {id}, whose {of} at {p} m is {value}; it must be {must_be}");
     NotFinite { path: part("lights", index), what }
 }
 
-/// What is not finite of a light without extent at a point, and its value.
-fn of_direction(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<(&'static str, String)> {
+/// A quantity of a light that has no legal value.
+struct Odd {
+    of: &'static str,
+    value: String,
+    must_be: &'static str,
+}
+
+impl Odd {
+    /// A quantity whose value is not finite.
+    fn infinite(of: &'static str, value: String) -> Option<Self> {
+        Some(Self { of, value, must_be: "finite" })
+    }
+
+    /// A density, unless it is finite and not negative.
+    fn density(of: &'static str, pdf: f32) -> Option<Self> {
+        match pdf {
+            _ if !pdf.is_finite() => Self::infinite(of, number(pdf)),
+            _ if pdf < 0.0 => Some(Self { of, value: number(pdf), must_be: "0 or more" }),
+            _ => None,
+        }
+    }
+}
+
+/// The first quantity that is not finite of a light without extent at a point.
+fn of_direction(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<Odd> {
     let (value, l) = match emitter.incident(record, p) {
         Incident::From { l, intensity } => (intensity, l),
         Incident::Uniform { intensity } => (intensity, Vec3::Z),
     };
     if !value.is_finite() {
-        return Some(("intensity", triple(value)));
+        return Odd::infinite("intensity", triple(value));
     }
-    (value != Vec3::ZERO && !l.is_finite()).then(|| ("direction", triple(l)))
+    if value != Vec3::ZERO && !l.is_finite() { Odd::infinite("direction", triple(l)) } else { None }
 }
 
-/// What is not finite of a light with extent at a point: in samples, or seen in their directions and in some others.
-fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<(&'static str, String)> {
+/// The first quantity without a legal value of a light with extent at a point: in samples, or seen in their directions and
+/// in some others.
+fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<Odd> {
     let mut directions = directions();
     for u in grid() {
         let Sample { l, radiance, pdf } = emitter.sample(record, p, u);
         if !radiance.is_finite() {
-            return Some(("radiance in sample", triple(radiance)));
+            return Odd::infinite("radiance in sample", triple(radiance));
         }
-        if !pdf.is_finite() {
-            return Some(("density in sample", number(pdf)));
+        if let Some(odd) = Odd::density("density in sample", pdf) {
+            return Some(odd);
         }
         if radiance != Vec3::ZERO && pdf > 0.0 {
             if !l.is_finite() {
-                return Some(("direction in sample", triple(l)));
+                return Odd::infinite("direction in sample", triple(l));
             }
             directions.push(l);
         }
@@ -193,11 +217,10 @@ fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<(
     directions.into_iter().find_map(|l| {
         let Seen { radiance, pdf, distance } = emitter.seen(record, p, l);
         match () {
-            () if !radiance.is_finite() => Some(("radiance in seen", triple(radiance))),
-            () if !pdf.is_finite() => Some(("density in seen", number(pdf))),
+            () if !radiance.is_finite() => Odd::infinite("radiance in seen", triple(radiance)),
             // Infinite is far away.
-            () if distance.is_nan() => Some(("distance in seen", number(distance))),
-            () => None,
+            () if distance.is_nan() => Odd::infinite("distance in seen", number(distance)),
+            () => Odd::density("density in seen", pdf),
         }
     })
 }
@@ -337,8 +360,8 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
             let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
             let of = light.and_then(|light| {
                 let (_, emitter, record) = emitter(light, registry, scene.display.encoding)?;
-                let (of, value) = with_extent(&*emitter, &record, spot.position)?;
-                Some(of_light(lit.light.index, light, of, spot.position, &value))
+                let odd = with_extent(&*emitter, &record, spot.position)?;
+                Some(of_light(lit.light.index, light, spot.position, &odd))
             });
             if let Some(of) = of {
                 found.push(of);

@@ -45,18 +45,23 @@ impl Seen {
 }
 
 impl Explanation {
-    /// The way to the code of light that is one standard error brighter; none where no light has extent.
+    /// The steps to the codes of light one standard error brighter and one standard error darker; none where no light has
+    /// extent.
     #[must_use]
-    pub fn brighter(&self) -> Option<DisplaySteps> {
+    pub fn brighter_and_darker(&self) -> Option<[DisplaySteps; 2]> {
         let error = self.seen.as_ref()?.error()?;
-        let light = self.steps.light + error;
-        Some(Picture::display_steps(light.extend(self.steps.coverage), &self.display))
+        Some([error, -error].map(|error| {
+            let light = (self.steps.light + error).max(self.steps.light.min(Vec3::ZERO));
+            Picture::display_steps(light.extend(self.steps.coverage), &self.display)
+        }))
     }
 
-    /// The standard error of a step on the way to the code; none where no light has extent.
+    /// The standard error of a step on the way to the code: the larger change towards brighter or darker light, as one of
+    /// them is clipped near white; none where no light has extent.
     #[must_use]
     pub fn error_of(&self, step: impl Fn(&DisplaySteps) -> Vec3) -> Option<Vec3> {
-        self.brighter().map(|brighter| (step(&brighter) - step(&self.steps)).abs())
+        let change = |to: &DisplaySteps| (step(to) - step(&self.steps)).abs();
+        self.brighter_and_darker().map(|[brighter, darker]| change(&brighter).max(change(&darker)))
     }
 }
 
@@ -172,7 +177,21 @@ mod tests {
             .sum();
         let error = seen.error().expect("noise");
         assert!((error * error - squares).abs().max_element() < 1e-9);
-        assert_eq!(explained("point", "phong").brighter(), None);
+        assert_eq!(explained("point", "phong").brighter_and_darker(), None);
+    }
+
+    #[test]
+    fn near_white_darker_light_tells_the_error() {
+        let mut explanation = explained("rectangle", "phong");
+        let encoded = |steps: &DisplaySteps| steps.encoded;
+        let light = explanation.steps.light;
+        // The exposure at which red is just white.
+        explanation.display.exposure = -light.x.log2();
+        explanation.steps = Picture::display_steps(light.extend(1.0), &explanation.display);
+        let [brighter, _] = explanation.brighter_and_darker().expect("noise");
+        assert!((brighter.encoded.x - explanation.steps.encoded.x).abs() < 1e-4, "clipped");
+        let error = explanation.error_of(encoded).expect("noise");
+        assert!(error.x > 1e-4, "{error}");
     }
 
     #[test]

@@ -275,8 +275,8 @@ impl<'a> Lit<'a> {
         let mut notes: Vec<_> = edited.then(|| note.to_owned()).into_iter().collect();
         if self.lights.has_extent() {
             notes.push(format!(
-                "Light with extent is taken by {LIGHT_SAMPLES} samples, of which some noise stays; the lights themselves are not to \
-                 be seen."
+                "Lights with extent are sampled {LIGHT_SAMPLES} times per pixel, which leaves some noise; the lights themselves are not \
+                 visible."
             ));
         }
         notes

@@ -86,7 +86,7 @@ pub fn render_until(
     let pixels = settings.width as usize * settings.height as usize;
     let mut mean = vec![Vec4::ZERO; pixels];
     // Of the luminance of blocks: the sum of squares about the mean, after B. Welford (1962).
-    let mut squares = vec![0.0f32; pixels];
+    let mut squares = vec![0.0f64; pixels];
     let (mut taken, mut blocks, mut noise) = (0, 0u32, None);
     while taken < until.samples.max(1) {
         let count = AT_ONCE.min(until.samples.max(1) - taken);
@@ -98,10 +98,11 @@ pub fn render_until(
         blocks += u32::from(is_whole);
         let share = count as f32 / taken as f32;
         for ((mean, squares), pixel) in mean.iter_mut().zip(&mut squares).zip(block.pixels) {
-            let [before, new] = [*mean, pixel].map(|p| luminance(p.truncate()));
+            let of = |p: Vec4| f64::from(luminance(p.truncate()));
+            let [before, new] = [*mean, pixel].map(of);
             *mean += (pixel - *mean) * share;
             if is_whole {
-                *squares += (new - before) * (new - luminance(mean.truncate()));
+                *squares += (new - before) * (new - of(*mean));
             }
         }
         if blocks >= ENOUGH {
@@ -118,12 +119,12 @@ pub fn render_until(
 }
 
 /// See [`Reached::noise`].
-fn noise_of(mean: &[Vec4], squares: &[f32], blocks: u32, samples: u32) -> f32 {
+fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     let mut sums = [0.0f64; 3];
     for (mean, squares) in mean.iter().zip(squares) {
         let here = f64::from(luminance(mean.truncate()));
         if here > 0.0 {
-            let of = [f64::from(AT_ONCE) * f64::from(*squares), here, 1.0];
+            let of = [f64::from(AT_ONCE) * squares, here, 1.0];
             sums.iter_mut().zip(of).for_each(|(sum, part)| *sum += part);
         }
     }
@@ -225,6 +226,18 @@ mod tests {
         }
         // A block more is another estimate.
         assert_ne!(noise(80), whole * 0.8f32.sqrt());
+    }
+
+    #[test]
+    fn noise_does_not_depend_on_the_strength_of_light() {
+        let registry = Registry::builtin();
+        let noise = |strength: f32| {
+            let mut scene = lit(&registry);
+            scene.lights[0].intensity *= strength;
+            until(&scene, &registry, 64, None).1.noise.expect("enough samples")
+        };
+        let usual = noise(1.0);
+        assert!((noise(1e22) / usual - 1.0).abs() < 1e-3, "{} {usual}", noise(1e22));
     }
 
     #[test]

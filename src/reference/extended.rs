@@ -93,10 +93,10 @@ impl Extended {
         self.groups.is_empty()
     }
 
-    /// The sum over the lights.
+    /// The sum over the lights for a surface with its lobes.
     pub(super) fn sum(
         &self,
-        surface: &dyn Surface,
+        (surface, lobes): (&dyn Surface, Lobes),
         p: Vec3,
         v: Vec3,
         frame: &Frame,
@@ -104,7 +104,7 @@ impl Extended {
         seed: u32,
     ) -> Vec3 {
         let mut sum = Vec3::ZERO;
-        let at = At::new(surface.lobes(), p, v, frame, seed);
+        let at = At::new(lobes, p, v, frame, seed);
         let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
         self.arrive(&at, self.samples, &mut take);
         sum / self.samples.count.max(1) as f32
@@ -442,7 +442,9 @@ mod tests {
         let (entry, values, record) = golden_light(light);
         let mut extended = Extended { samples: LightSamples::of(count), ..Extended::default() };
         extended.add((entry.group)(&[(&values, record)], Encoding::Srgb), 0);
-        let sum = |seed| extended.sum(surface, Vec3::ZERO, v, &Frame::LOCAL, TermSelection::All, seed);
+        let sum = |seed| {
+            extended.sum((surface, surface.lobes()), Vec3::ZERO, v, &Frame::LOCAL, TermSelection::All, seed)
+        };
         seeds.map(|seed| sum(seed).element_sum() / 3.0).collect()
     }
 

@@ -1,13 +1,16 @@
 //! The light loop: the sum over all lights, common to all models.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicBool, AtomicU32, Ordering},
+};
 
 use glam::Vec3;
 
 use super::extended::{Extended, Integral, LightSamples};
 use crate::{
     light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
-    optics::{Frame, TermSelection, Terms, radiometry::Arriving, sequence::pixel_seed},
+    optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sequence::pixel_seed},
     reflection::Surface,
     registry::Registry,
     scene::{Light, Scene, emitter, record},
@@ -77,7 +80,7 @@ impl Lights {
 
     /// The lights as they shine on one surface.
     pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface) -> LightsOn<'a> {
-        LightsOn { lights: self, surface, seed: AtomicU32::new(0) }
+        LightsOn { lights: self, surface, lobes: OnceLock::new(), seed: AtomicU32::new(0) }
     }
 }
 
@@ -85,6 +88,8 @@ impl Lights {
 pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
+    /// The lobes of the surface, once they are needed.
+    lobes: OnceLock<Lobes>,
     /// The seed of the pixel, or that of all vertices and polygons: with one seed neighbours get the same points, so that what
     /// is interpolated between them is smooth, and every corner of a polygon the same colour.
     seed: AtomicU32,
@@ -129,7 +134,8 @@ impl LightsOn<'_> {
         }
         if !self.lights.extended.is_empty() {
             let seed = self.seed.load(Ordering::Relaxed);
-            sum += self.lights.extended.sum(self.surface, position, v, frame, terms, seed);
+            let lobes = *self.lobes.get_or_init(|| self.surface.lobes());
+            sum += self.lights.extended.sum((self.surface, lobes), position, v, frame, terms, seed);
         }
         sum
     }

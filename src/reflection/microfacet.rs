@@ -490,6 +490,11 @@ impl Microfacet {
         })
     }
 
+    /// True if nothing lies below the reflecting surface, or no light gets there.
+    fn is_bare(&self) -> bool {
+        self.diffuse == 0 || self.fresnel == 0
+    }
+
     /// The factor of the diffuse base on Lambert's law.
     fn body(&self, l: Vec3, v: Vec3, cos_d: f32) -> f32 {
         let alpha = self.alpha();
@@ -556,6 +561,9 @@ impl ReflectionModel for Microfacet {
             }
             _ => single,
         };
+        if self.is_bare() {
+            return Terms { specular, ..Terms::default() };
+        }
         let entering = (Vec3::ONE - self.f(l.z)) * (Vec3::ONE - self.f(v.z));
         let diffuse = self.base_colour * entering * (self.body(l, v, cos_d) * l.z);
         Terms { ambient: Vec3::ZERO, diffuse, specular }
@@ -563,8 +571,7 @@ impl ReflectionModel for Microfacet {
 
     fn lobes(&self) -> Lobes {
         let gamma = if self.distribution == 3 { self.gamma } else { 2.0 };
-        let bare = self.diffuse == 0 || self.fresnel == 0;
-        let body = if bare { Vec3::ZERO } else { self.base_colour };
+        let body = if self.is_bare() { Vec3::ZERO } else { self.base_colour };
         // Light of several bounces leaves in all directions.
         let bounced = if self.multiple_scattering == 1 { 1.0 - self.lobe.average() } else { 0.0 };
         Lobes::diffuse_and(Lobe::of_gtr(self.alpha(), gamma), body + bounced, self.f(lobes::OBLIQUE))

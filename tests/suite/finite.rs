@@ -116,16 +116,20 @@ pane!(Hole, "hole", |s| s, |s, l: Vec3| Seen {
     ..s
 });
 pane!(Blur, "blur", |s| s, |s, _| Seen { pdf: f32::NAN, ..s });
+pane!(Minus, "minus", |s| Sample { pdf: -1.0, ..s }, |s, _| s);
+pane!(Less, "less", |s| s, |s, _| Seen { pdf: -0.5, ..s });
 pane!(Nowhere, "nowhere", |s| s, |s, _| Seen { distance: f32::NAN, ..s });
 
 /// The panes with what is wrong with them.
-const PANES: [(&str, &str); 6] = [
-    ("glare", "radiance in sample at (1, ∞, 0)"),
-    ("needle", "density in sample at ∞"),
-    ("astray", "direction in sample at (NaN, NaN, NaN)"),
-    ("hole", "radiance in seen at (NaN, NaN, NaN)"),
-    ("blur", "density in seen at NaN"),
-    ("nowhere", "distance in seen at NaN"),
+const PANES: [(&str, &str); 8] = [
+    ("glare", "radiance in sample at (1, ∞, 0); it must be finite"),
+    ("needle", "density in sample at ∞; it must be finite"),
+    ("astray", "direction in sample at (NaN, NaN, NaN); it must be finite"),
+    ("hole", "radiance in seen at (NaN, NaN, NaN); it must be finite"),
+    ("blur", "density in seen at NaN; it must be finite"),
+    ("minus", "density in sample at −1; it must be 0 or more"),
+    ("less", "density in seen at −0.5; it must be 0 or more"),
+    ("nowhere", "distance in seen at NaN; it must be finite"),
 ];
 
 fn panes() -> Registry {
@@ -133,6 +137,7 @@ fn panes() -> Registry {
     registry.add_light_type::<Sound>().add_light_type::<Glare>().add_light_type::<Needle>();
     registry.add_light_type::<Astray>().add_light_type::<Hole>();
     registry.add_light_type::<Blur>().add_light_type::<Nowhere>();
+    registry.add_light_type::<Minus>().add_light_type::<Less>();
     registry
 }
 
@@ -155,7 +160,7 @@ fn a_light_with_extent_is_named_with_what_it_gives() {
             let (of, value) = wrong.split_once(" at ").expect("both");
             let begins = format!("lights[1] (\"Window\") is of the type {pane}, whose {of} at (");
             assert!(said.starts_with(&begins), "{said}");
-            assert!(said.ends_with(&format!(" m is {value}; it must be finite")), "{said}");
+            assert!(said.ends_with(&format!(" m is {value}")), "{said}");
         }
         assert_eq!(probe(&behind("sound"), &registry, scope, &mut Tried::default()), []);
     }

@@ -300,7 +300,10 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
 #[test]
 fn pages_have_light_with_extent() {
     let Some(browser) = Browser::start() else { return };
-    browser.resize(WIDTH, HEIGHT);
+    // Software draws a frame of 64 samples in seconds; a larger one would outlast the patience of the browser on a busy machine.
+    const SIZE: [u32; 2] = [WIDTH / 2, HEIGHT / 2];
+    let [width, height] = SIZE;
+    browser.resize(width, height);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.json");
     let text = json!({
@@ -318,7 +321,7 @@ fn pages_have_light_with_extent() {
     let registry = Registry::builtin();
     let read = scene(&file);
     let rendered = |count: u32, scene: &Scene| {
-        let settings = Settings { width: WIDTH, height: HEIGHT, samples: 1, terms: TermSelection::All };
+        let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
         let samples = LightSamples { first: 0, count };
         let picture = reference::render_samples(scene, &registry, &settings, samples, &AtomicBool::default());
         picture.to_rgb8(&scene.display)
@@ -327,7 +330,7 @@ fn pages_have_light_with_extent() {
     let page_file = folder.path().join("page.html");
     fs::write(&page_file, page(&read).expect("a page")).expect("written");
     for renderer in ["webgpu", "webgl"] {
-        browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+        browser.open(&page_file, &format!("renderer={renderer}&picture={width}x{height}&samples=1"));
         let (shown, _) = browser.look();
         let off = difference(&shown, &expected);
         println!("{renderer}: {off:?}");

@@ -63,6 +63,14 @@ fn drawn(folder: &Path, more: &[&str]) -> (Vec<u8>, String) {
     (read_png(&folder.join("p.png")).expect("a picture").2, run.err)
 }
 
+/// What a PNG file says of its lights with extent.
+fn light_text(file: &Path) -> Option<String> {
+    let bytes = std::io::BufReader::new(fs::File::open(file).expect("a picture"));
+    let picture = png::Decoder::new(bytes).read_info().expect("a PNG file");
+    let texts = &picture.info().uncompressed_latin1_text;
+    texts.iter().find(|text| text.keyword == "Light").map(|text| text.text.clone())
+}
+
 fn converged(scene: &Scene, samples: u32, noise: Option<f32>) -> (reference::Picture, Reached) {
     let (odd, until) = (AtomicBool::default(), Until { samples, noise });
     reference::render_until(scene, &Registry::builtin(), &settings(), until, &odd, &Progress::NONE)
@@ -264,6 +272,16 @@ fn every_view_of_a_comparison_takes_them() {
         b"",
     );
     assert!(run.err.contains("point.json: no light has extent") && !run.out.contains("noise"), "{}", run.err);
+    // The picture of a comparison says what it rests on; pictures that are read are as they are.
+    let run = lcm_in(
+        folder.path(),
+        &["compare", "two.json", "--size", "64x36", "--light-samples", "32", "-o", "c.png"],
+        b"",
+    );
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    assert_eq!(light_text(&folder.path().join("c.png")).as_deref(), Some("32 samples of each light"));
+    let run = lcm_in(folder.path(), &["compare", "c.png", "c.png", "--noise", "1"], b"");
+    assert_eq!(run.err, "both files are pictures, already rendered: --noise changes nothing\n");
 }
 
 #[test]

@@ -96,6 +96,10 @@ fn response(l_room: vec3<f32>, v_room: vec3<f32>, frame: Frame, m: Parameters) -
         let seen = max(lobe_albedo(v.z), 1e-3);
         specular *= vec3(1.0) + microfacet_f0(m) * ((1.0 - seen) / seen);
     }
+    // Nothing lies below the reflecting surface, or no light gets there.
+    if m.diffuse == 0u || m.fresnel == 0u {
+        return Terms(vec3(0.0), vec3(0.0), specular);
+    }
     let entering = (vec3(1.0) - microfacet_f(l.z, m)) * (vec3(1.0) - microfacet_f(v.z, m));
     return Terms(vec3(0.0), m.base_colour * entering * (microfacet_body(l, v, cos_d, m) * l.z), specular);
 }

@@ -55,6 +55,20 @@ impl Hemisphere {
         all.get((all.len().saturating_sub(1)) * 99 / 100).copied().unwrap_or(1.0)
     }
 
+    /// The value that is drawn white in a disc, and the largest where that is brighter.
+    #[must_use]
+    pub fn end_of_scale(&self, disc: &Disc) -> String {
+        let white = self.white(disc.of);
+        let values = self.pixels.iter().flatten().map(|above| (disc.of)(above).max_element());
+        let largest = values.filter(|v| v.is_finite()).fold(white, f32::max);
+        let more = if rounded(largest, 3) == rounded(white, 3) {
+            String::new()
+        } else {
+            format!("; brightest: {}", rounded(largest, 3))
+        };
+        format!("{} {}{more}", rounded(white, 3), disc.unit).replace(" ;", ";").trim_end().to_owned()
+    }
+
     /// The three discs beside each other with their names, scales and marks.
     #[must_use]
     pub fn picture(&self) -> HemispherePicture {
@@ -63,20 +77,19 @@ impl Hemisphere {
         let rgb8 = GROUND.repeat((size[0] * size[1]) as usize);
         let mut canvas = Canvas { rgb8, size };
         let mut whites = Vec::new();
-        for (i, Disc { name: title, unit, of }) in DISCS.into_iter().enumerate() {
+        for (i, disc) in DISCS.iter().enumerate() {
             let left = GAP + i as u32 * (side + GAP);
-            let white = self.white(of);
-            canvas.text(Lettering::Semibold, [left, 12], TITLE, TEXT, title);
-            self.draw(&mut canvas, [left, HEAD], of);
-            let scale = format!("{} {unit}", rounded(white, 3));
-            canvas.scale([left, HEAD + side + 14], side, scale.trim());
-            whites.push(format!("white in “{title}” is {}", scale.trim()));
+            canvas.text(Lettering::Semibold, [left, 12], TITLE, TEXT, disc.name);
+            self.draw(&mut canvas, [left, HEAD], disc.of);
+            let scale = self.end_of_scale(disc);
+            canvas.scale([left, HEAD + side + 14], side, &scale);
+            whites.push(format!("white in “{}” is {scale}", disc.name));
         }
         // From the pixels of the disc, which give two digits.
         let integral = crate::explain::rounded_number_or_triple(self.integral, 2);
         let lines = [
             "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
-             points right. V: to the viewer; R: its mirror direction."
+             points right. V: to the observer; R: its mirror direction."
                 .to_owned(),
             format!("The mean of the product times π is the light to the observer from lights with extent: about {integral}"),
         ];

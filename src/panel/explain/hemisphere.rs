@@ -153,8 +153,7 @@ pub(super) fn hemisphere(
                 ui.set_width(width);
                 rows::note(ui, disc.name);
                 one(ui, &discs, i, width);
-                let white = rows::short(discs.hemisphere.white(disc.of));
-                rows::note(ui, format!("white: {white} {}", disc.unit).trim_end());
+                rows::note(ui, &format!("white: {}", discs.hemisphere.end_of_scale(disc)));
             });
         }
     });

@@ -54,7 +54,7 @@ class Page {
         if (renderer && (await renderer.tryDrawing(this.scene, this.canvas.width, this.canvas.height))) {
           caption.textContent = kind.label;
           const ofLight = this.scene.lightSamples;
-          const noise = ofLight ? `; light with extent by ${ofLight} samples, of which some noise stays` : '';
+          const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains` : '';
           caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
           renderer.lost.then(() => this.renderer === renderer && this.start());
           this.draw();
