@@ -346,7 +346,6 @@ struct Cover {
 /// True if a position, in points of the panels, is over the picture and no panel, menu or dialog is in between; `frame`
 /// is that of the [`PictureArea`]. Uses the most recent layout: a press counts where it was made, even before the next
 /// frame.
-/// also before the next frame.
 #[must_use]
 pub fn is_over_picture(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
     let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
