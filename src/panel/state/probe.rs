@@ -81,8 +81,8 @@ impl Session {
         self.explains() || pinned && self.view.bottom_open && self.view.bottom_tab == EXPLAIN_TAB
     }
 
-    /// Pins the pixel at the centre of the active view, or unpins. A pin made while the panel was closed is shown
-    /// first.
+    /// Pins the pixel at the centre of the active view, or unpins. If the panel is closed, an existing pin is kept and
+    /// shown.
     pub(super) fn toggle_pin(&mut self) {
         let seen = self.explains();
         match self.view.pinned {
