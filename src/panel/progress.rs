@@ -43,7 +43,7 @@ pub fn load(folder: &Path) -> (Progress, Option<String>) {
 /// written.
 ///
 /// # Errors
-/// Returns a sentence if the folder or the file cannot be written.
+/// Returns an error, as a sentence, if the folder or the file cannot be written.
 pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {

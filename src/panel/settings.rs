@@ -121,7 +121,7 @@ fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
 /// Saves the settings to a folder, completely or not at all.
 ///
 /// # Errors
-/// Returns a sentence if the folder or the file cannot be written.
+/// Returns an error, as a sentence, if the folder or the file cannot be written.
 pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {

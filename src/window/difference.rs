@@ -241,7 +241,7 @@ fn likeness(value: f64) -> String {
     if value < 1.0 && text == "1.000" { "> 0.999".to_owned() } else { text }
 }
 
-/// The numbers for people, over the pixels that objects cover; of which views, if there are `several` beside A.
+/// The statistics for display, over the pixels covered by objects; names the views if there are `several` beside A.
 fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Numbers {
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);

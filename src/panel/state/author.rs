@@ -40,7 +40,7 @@ pub struct NameProblem {
 /// The identifier for a new model with the given name.
 ///
 /// # Errors
-/// Returns the rule that the name violates, and a valid alternative if there is one.
+/// Returns an error with the rule that the name violates, and a valid alternative if there is one.
 pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem> {
     let problem = |why: String, instead: Option<String>| Err(NameProblem { why, instead });
     if name.trim().is_empty() {

@@ -75,7 +75,7 @@ impl Session {
     /// Adopts a change of these parts made outside the panels, by a system that changed a component.
     ///
     /// # Errors
-    /// Returns the reason if the change is refused; the document then stays as it is.
+    /// Returns an error with the reason if the change is refused; the document then stays as it is.
     pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
         self.by_system(|document, selection| document.submit(scene, parts, selection, registry))
     }
@@ -83,7 +83,7 @@ impl Session {
     /// Adopts a scene in which systems added, removed or retyped parts: see [`Document::submit_lists`].
     ///
     /// # Errors
-    /// Returns the reason if the change is refused; the document then stays as it is.
+    /// Returns an error with the reason if the change is refused; the document then stays as it is.
     pub fn submit_lists(
         &mut self,
         scene: &Scene,
