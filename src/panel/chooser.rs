@@ -18,7 +18,7 @@ use crate::{
     registry::Registry,
 };
 
-/// True if every word of a search occurs in a text, in any order.
+/// True if every word of a search begins a word of a text, in any order.
 #[must_use]
 pub fn matches(text: &str, search: &str) -> bool {
     let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_', ',', '&', '(', ')'], " ");

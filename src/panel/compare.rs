@@ -96,7 +96,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     };
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
-    // Large enough for the last row.
+    // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
     let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, high), rect.max);
     let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), high));

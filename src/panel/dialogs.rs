@@ -65,7 +65,7 @@ pub struct Dialogs {
     blank: u8,
 }
 
-/// What to export: a file in a format (by its id), the picture of one view or of all, or the plot.
+/// The subject of an export: a file in a format (by its id), the picture of one view or of all, or the plot.
 #[derive(Clone, Copy, Debug)]
 enum Exported {
     Form(&'static str),

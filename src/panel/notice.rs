@@ -56,7 +56,7 @@ fn moment(severity: Option<Severity>) -> f64 {
     if severity.is_some_and(|severity| severity > Severity::Info) { 2.0 * MOMENT } else { MOMENT }
 }
 
-/// Redraws the panels after so many seconds: nothing else wakes an idle window.
+/// Redraws the panels after a number of seconds: nothing else wakes an idle window.
 pub(super) fn wake(ctx: &Context, seconds: f64) {
     let (ctx, wait) = (ctx.clone(), Duration::from_secs_f64(seconds.max(0.0)));
     thread::spawn(move || {

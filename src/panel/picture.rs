@@ -484,7 +484,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
     Rect::from_center_size(centre, vec2(2.0, 2.0) * radius)
 }
 
-/// A hint shown where there is no picture.
+/// Shows a hint in place of a missing picture.
 fn hint(ui: &Ui, rect: Rect, session: &Session) {
     let text = if session.scene().objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."

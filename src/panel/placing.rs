@@ -20,7 +20,7 @@ use block::Block;
 
 mod block;
 
-/// Free space around a light, and between an object and the camera, metres.
+/// Free space around a light, and between an object and the camera, in metres.
 const AIR: f32 = 0.3;
 /// Size of the test pictures that determine the brightness of a light: small ones are enough.
 const PROBE: [u32; 2] = [128, 72];

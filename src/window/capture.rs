@@ -73,7 +73,7 @@ pub(super) struct Countdown {
     left: u32,
     file: Option<PathBuf>,
     no_scene: bool,
-    /// Where to report a failure; `None` to report it here.
+    /// Receiver of a failure; `None` to report it here.
     pub(super) reported: Option<Report>,
     since: Instant,
 }

@@ -39,7 +39,7 @@ impl Plugin for PointerPlugin {
     }
 }
 
-/// Whether the pointer is over the picture, based on the input of this frame.
+/// The relation of the pointer to the picture, based on the input of this frame.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(super) struct OverPicture {
     /// True if the pointer is over the picture.

@@ -126,7 +126,7 @@ pub(super) struct Recovery {
     /// The copy being offered.
     asked: Option<Left>,
     registry: Option<Arc<Registry>>,
-    /// While present, the farewell is said when this resource is dropped.
+    /// While present, dropping this resource runs the farewell.
     guard: Option<Guard>,
 }
 

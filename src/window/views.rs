@@ -152,7 +152,7 @@ pub(super) struct ShownViews<'w, 's> {
 }
 
 impl ShownViews<'_, '_> {
-    /// Their areas; empty if there is only one view.
+    /// Areas of the visible views; empty if there is only one view.
     pub(super) fn cells(&self) -> &[Cell] {
         self.area.as_deref().map_or(&[], |area| &area.cells)
     }

@@ -121,7 +121,7 @@ fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
 fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     let help = "Differences are multiplied by this before they become colours, 1 to 100.";
     ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
-    // Where views are equal, no difference is largest.
+    // Equal views have no largest difference.
     let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
     let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
     let mut factor = used.unwrap_or(*AMPLIFICATIONS.start());

@@ -87,7 +87,7 @@ fn shown(seen: &Seen, choice: Choice) -> Option<&Lit> {
     probe::shown_light(spot, choice).or_else(|| spot.brightest().first().copied())
 }
 
-/// The point that is shown.
+/// The current point.
 fn spot(seen: &Seen, choice: Choice) -> Option<&Spot> {
     probe::spots(seen).get(probe::shown_spot(seen, choice)).copied()
 }

@@ -1,5 +1,5 @@
-//! What would change the pixel: the numbers of the scene that influence it most, by finite differences, each with its
-//! control; and the pixel before and after a change.
+//! The numbers of the scene that influence the pixel most, by finite differences, each with its control; and the pixel
+//! before and after a change.
 
 use bevy_egui::egui::{self, Align, Id, Layout, Ui, vec2};
 

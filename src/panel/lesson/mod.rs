@@ -85,7 +85,7 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     });
 }
 
-/// Scales all text styles to a body size of so many points.
+/// Scales all text styles to a body size in points.
 fn enlarge(ui: &mut Ui, body: f32) {
     let style = ui.style_mut();
     let now = style.text_styles.get(&TextStyle::Body).map_or(body, |font| font.size);

@@ -59,7 +59,7 @@ pub(super) fn paragraph(ui: &mut Ui, runs: &[Run]) {
     ui.add(Label::new(job).wrap());
 }
 
-/// An equation, with one line for each of its own.
+/// An equation, with one typeset line per line of the source.
 fn equation(ui: &mut Ui, text: &str) {
     let parts: Vec<_> =
         text.lines().map(str::trim).filter(|line| !line.is_empty()).map(|line| (Term::Total, line)).collect();

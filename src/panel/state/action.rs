@@ -80,7 +80,7 @@ pub enum Action {
     GoToStep(usize),
     /// Select the n-th recent model, from 0.
     RecentModel(usize),
-    /// Change the exposure by so many EV.
+    /// Change the exposure by this many EV.
     Expose(f32),
     /// Isolate the next term of the equation.
     NextTerms,

@@ -41,7 +41,7 @@ pub enum Effect {
         /// Version of the file.
         version: Stamp,
     },
-    /// What happens to the recovery copy that the user was asked about.
+    /// Apply the user's decision about the recovery copy that was offered.
     Recovery(RecoveryChoice),
     /// Write to standard error.
     Complain(String),
@@ -172,7 +172,7 @@ pub enum Steer {
     },
 }
 
-/// What happens to a recovery copy.
+/// The user's decision about a recovery copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecoveryChoice {
     /// It has become the document.

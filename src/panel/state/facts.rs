@@ -74,7 +74,7 @@ impl Converging {
         self.total.saturating_sub(self.done)
     }
 
-    /// "63 of 256 samples".
+    /// The progress in words: "63 of 256 samples".
     #[must_use]
     pub fn samples(&self) -> String {
         format!("{} of {} samples", self.done, self.total)
