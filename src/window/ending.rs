@@ -28,7 +28,7 @@ thread_local! {
     static ALARM: Alarm = const { Alarm(RefCell::new(None)) };
 }
 
-/// Exits the process properly if something else ends it while the alarm is set.
+/// Preserves unsaved changes and sets the exit status if the process exits while the alarm is set.
 struct Alarm(RefCell<Option<Keeper>>);
 
 impl Drop for Alarm {

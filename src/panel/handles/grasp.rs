@@ -26,7 +26,8 @@ const DEGREES: f32 = 15.0;
 /// Sine of the angle between a ring's plane and the line of sight below which the ring turns like a wheel seen from the
 /// side.
 const EDGE_ON: f32 = 0.2;
-/// Sine of the angle between a cone's plane and the line of sight below which the cone is seen end on.
+/// Sine of the angle between the line of sight and the plane of a cone's axis and handle, below which the cone is seen
+/// end on.
 const SIDEWAYS: f32 = 0.35;
 /// Distance from the centre, in radii, beyond which a handle is off its sphere.
 const OFF: f32 = 1.15;

@@ -14,8 +14,8 @@ use crate::{
 const NEAREST: f32 = 26.0;
 /// Minimum distance of a handle from the edge of the view, in points.
 const INSET: f32 = 14.0;
-/// Projected length of an axis, as a fraction, below which it has no handles at its ends: it could not be dragged
-/// along.
+/// Projected length of an axis, relative to its full length, below which it has no handles at its ends: it could not be
+/// dragged along.
 const FLAT: f32 = 0.2;
 
 /// The direction from the centre of a light to the handle of a size.

@@ -218,7 +218,7 @@ impl Session {
     pub(super) fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.drop_lesson();
         self.document = Document::new(scene);
-        // The pin belongs to the previous document.
+        // Renews the pin, which held a point of the previous document.
         self.view.pin(self.view.pinned);
         self.path = path;
         self.stashed.clear();
