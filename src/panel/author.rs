@@ -1,4 +1,4 @@
-//! Custom models and shaders: the question before a file is written, and the files that an editor can open.
+//! Custom models and shaders: the dialog that names a new file, and the buttons that open files in an editor.
 
 use std::ops::DerefMut;
 
@@ -16,11 +16,11 @@ use super::{
 use crate::files::Shown as _;
 use crate::{custom::source_path, library::status::Trouble, registry::Registry};
 
-/// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it, which
-/// folds itself after the last one, and a model that was asked for is chosen once it is there. `session` is borrowed mutably only when something
+/// Reacts to changes of the shaders since the last frame: unfolds the shader panel for a new problem, folds it after
+/// the last one, and selects a requested model once it is available. Borrows `session` mutably only when something
 /// changes.
 pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &Registry) {
-    // Without line and column: a problem that moves while one types above it is not a new one.
+    // Without line and column: a problem that moves while the user types above it is not a new one.
     let words = |t: &Trouble| (t.problem.file.clone(), t.problem.message.clone());
     let now: Vec<_> = session.shaders.troubles.iter().map(words).collect();
     if now != session.seen_troubles {
@@ -36,7 +36,7 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
         && let Some(id) = session.wanted_model.take()
     {
         let (edit, news) = (session.edit_model(&id), session.has_news());
-        // An edit asks for no file.
+        // An edit never requests a file.
         let _ = session.apply(Action::Edit(edit), registry);
         if news {
             session.keep_news();
@@ -75,7 +75,7 @@ pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Actio
     actions
 }
 
-/// Asks what a new model shall be called, while there is a draft. Stands in nobody's way.
+/// The dialog that asks for the name of a new model, shown while there is a draft. It does not block the window.
 pub fn show(ctx: &egui::Context, session: &Session, area: &PictureArea, registry: &Registry) -> Vec<Action> {
     let Some(draft) = &session.draft else {
         ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
@@ -140,7 +140,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
     });
     if !ui.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default(Id::new(FOCUSED)), true)) {
         response.request_focus();
-        // Typing replaces the proposal.
+        // Typing replaces the suggested name.
         let mut state = edit.state;
         let all = egui::text::CCursorRange::two(
             egui::text::CCursor::new(0),
@@ -153,7 +153,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
         actions.push(Action::Model(ModelCommand::Type(text)));
     }
     ui.add_space(2.0);
-    // The room for either, so that nothing moves between them.
+    // Fixed height for either message, so that nothing below moves.
     let room = vec2(ui.available_width(), SAID);
     ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
         ui.set_min_height(SAID);
@@ -183,10 +183,10 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
     actions
 }
 
-/// The height of what is said of a name, points.
+/// Height of the line about the name, in points.
 const SAID: f32 = 68.0;
 
-/// The identifier made from a name, or the reason why there is none.
+/// Shows the identifier made from a name, or why the name is invalid.
 fn said_of(ui: &mut Ui, session: &Session, checked: &Result<String, NameProblem>) -> Option<Action> {
     let palette = Palette::here(ui);
     match checked {

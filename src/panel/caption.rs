@@ -1,4 +1,4 @@
-//! The picture in words, so that a screenshot says what it shows.
+//! A caption that describes the picture, so that a screenshot says what it shows.
 
 use std::{collections::BTreeSet, sync::Arc};
 
@@ -15,12 +15,12 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// More values would be a list, not a caption.
+/// Maximum number of values in a caption; more would be a list.
 const VALUES: usize = 4;
-/// More lines would hide the picture.
+/// Maximum number of lines; more would hide the picture.
 const LINES: usize = 2;
 
-/// The models, the shading and the display of the picture; with one object, its key values.
+/// The caption of the picture: its models, shading and display, and for a single object the key values.
 #[must_use]
 pub fn caption_text(session: &Session, registry: &Registry) -> String {
     line(&parts(session, registry))
@@ -32,16 +32,16 @@ pub fn models_shown(session: &Session) -> BTreeSet<&str> {
     session.scene().shown().map(|o| session.scene().model_of(o)).collect()
 }
 
-/// The same in parts.
+/// Parts of the caption of the picture.
 #[must_use]
 pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
     let parts = parts_of(session.scene(), session.terms(), registry);
-    // The picture does not agree yet.
+    // The picture is out of date until then.
     let compiling = session.facts.compiling.then(|| Part::new(0, "compiling…"));
     compiling.into_iter().chain(parts).collect()
 }
 
-/// The parts of the caption of a scene of whose equations these terms are shown.
+/// Parts of the caption of a scene that shows the given terms of its equations.
 pub(super) fn parts_of(scene: &Scene, terms: TermSelection, registry: &Registry) -> Vec<Part> {
     let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
     let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
@@ -72,7 +72,7 @@ pub(super) fn parts_of(scene: &Scene, terms: TermSelection, registry: &Registry)
     parts
 }
 
-/// The values that say most of an object's material, in one line.
+/// The most telling values of an object's material, in one line.
 pub(super) fn values(object: &Object, model: &str, registry: &Registry, most: usize) -> String {
     let mut parts = key_values(object, model, registry);
     while parts.len() > most
@@ -83,9 +83,9 @@ pub(super) fn values(object: &Object, model: &str, registry: &Registry, most: us
     line(&parts)
 }
 
-/// The values of the material in the order of their declaration: all of them where they are few, else those that are
-/// not the defaults and then the first. Where there is little room, those that are not the defaults stay longest, and
-/// the later ones longer: coefficients are declared before exponents and roughness, which say more.
+/// Values of the material in declaration order: all of them if there are few, otherwise those that differ from their
+/// defaults, then the first ones. When room runs out, defaults go first, then earlier values before later ones:
+/// coefficients are declared before exponents and roughness, which say more.
 fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     let Some(model) = registry.model(model) else { return Vec::new() };
     let part = |p: &'static Parameter| {
@@ -106,22 +106,22 @@ fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     ranked.collect()
 }
 
-/// A caption in lines.
+/// A caption laid out in lines.
 pub(super) struct Lines {
     runs: Vec<(Vec2, Arc<Galley>)>,
-    /// The room that it takes.
+    /// Size of the laid-out text.
     pub(super) size: Vec2,
     /// True if parts were left out.
     pub(super) cut: bool,
 }
 
 impl Lines {
-    /// Sets parts of a caption in lines of at most this width, broken between parts.
+    /// Lays out parts of a caption within a width, broken between parts.
     pub(super) fn of(ui: &Ui, parts: Vec<Part>, size: f32, colour: Color32, width: f32) -> Self {
         Self::within(ui, parts, size, colour, width, LINES)
     }
 
-    /// The same in so many lines, as far as parts can be left out.
+    /// Lays out parts within `most` lines, leaving out optional parts where necessary.
     pub(super) fn within(
         ui: &Ui,
         mut parts: Vec<Part>,
@@ -141,7 +141,7 @@ impl Lines {
         }
     }
 
-    /// The lines, and how many they are.
+    /// Lays out all parts. Returns the result and the number of lines.
     fn set(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> (Self, usize) {
         let font = FontId::proportional(size);
         let text = |text: &str| theme::elided(ui, text, font.clone(), colour, width);
@@ -154,7 +154,7 @@ impl Lines {
             let symbol = (!part.symbol.is_empty())
                 .then(|| maths::lay_out(ui, &maths::parse_symbol(part.symbol), 1.1 * size, colour));
             let lead = symbol.as_ref().map_or(0.0, |s| s.width + 0.3 * size);
-            // A line that goes on ends with the sign between parts.
+            // A line that continues on the next one ends with the separator.
             let more = parts.get(i + 1).map_or(0.0, |next| text(next.joint(part).trim_end()).size().x);
             let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
             let (dot, open) = (text(joint), text(joint.trim_end()));

@@ -17,7 +17,7 @@ use crate::{
     scene::variant::{LETTERS, MAX_VARIANTS},
 };
 
-/// The entries of the menu.
+/// Adds the entries of the menu.
 pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let shown = session.channel_of(session.active());
     let all = DebugChannel::ALL.map(Some);
@@ -37,7 +37,7 @@ pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>)
     }
 }
 
-/// The channel that a view shows, with its picture's legend.
+/// The debug channel that a view shows, with the legend of its picture.
 #[must_use]
 pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(DebugChannel, Legend)> {
     let channel = session.channel_of(view)?;
@@ -52,8 +52,8 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
     Some((channel, setting.legend(scene, registry)))
 }
 
-/// Paints the legend of a view's channel from a corner on, if the view shows one; a click on it shows the picture again. Returns
-/// its place, and the actions asked for there.
+/// Paints the legend of a view's channel from a corner on, if the view shows one; a click on it shows the picture
+/// again. Returns the legend's rectangle and the requested actions.
 pub(super) fn legend(
     ui: &mut Ui,
     rect: Rect,
@@ -86,7 +86,7 @@ pub(super) fn legend(
     }
     let help =
         format!("{}\n\nClick, or Shift+X: the picture again. X: the next channel.", channel.explanation());
-    // By key there is no other way to its help.
+    // With the keyboard alone, the help can be reached in no other way.
     if response.has_focus() {
         response.show_tooltip_text(&help);
     }
@@ -94,7 +94,7 @@ pub(super) fn legend(
     Some((place, actions))
 }
 
-/// Paints a legend at a side of the picture, and returns its place.
+/// Paints a legend at a side of the picture, and returns its rectangle.
 pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend) -> Rect {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
@@ -153,7 +153,7 @@ pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend
     place
 }
 
-/// The colours of viridis from left to right.
+/// The colours of viridis, from left to right.
 fn gradient(bar: Rect) -> Mesh {
     let mut mesh = Mesh::default();
     let columns = VIRIDIS.len() - 1;

@@ -1,4 +1,4 @@
-//! The chooser of reflection models: families as headings, name, author and year; type to search.
+//! The chooser of reflection models: a searchable list with name, author and year, grouped by family.
 
 use std::cell::RefCell;
 
@@ -18,7 +18,7 @@ use crate::{
     registry::Registry,
 };
 
-/// True if every word of a search occurs in a text, in any order.
+/// True if every word of a search begins a word of a text, in any order.
 #[must_use]
 pub fn matches(text: &str, search: &str) -> bool {
     let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_', ',', '&', '(', ')'], " ");
@@ -26,8 +26,8 @@ pub fn matches(text: &str, search: &str) -> bool {
     plain(search).split_whitespace().all(|word| text.split_whitespace().any(|found| found.starts_with(word)))
 }
 
-/// Everything by which a model is found beside its [`words`]: synonyms, then its parameters and their choices. Each with
-/// what people call it.
+/// Search terms of a model other than its [`words`]: synonyms, then parameters and their choices. Each comes with its
+/// display name.
 fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     let of = |parameter: &'static Parameter| {
         let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
@@ -41,14 +41,14 @@ fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     synonyms.chain(model.parameters.iter().flat_map(of))
 }
 
-/// The words by which the list introduces a model.
+/// The name, author, year and summary by which the list introduces a model.
 fn words(model: &ModelEntry) -> String {
     let d = model.declaration;
     [d.name, d.id, d.author, d.family.name(), d.summary].join(" ")
 }
 
-/// The reason why a model is found, where its name, author, family and summary do not tell: a synonym, a parameter or a
-/// choice, as people call it.
+/// The synonym, parameter or choice that matches a search, by its display name; `None` if the model's [`words`] already
+/// show why it matches.
 fn reason(model: &ModelEntry, search: &str) -> Option<&'static str> {
     let words = words(model);
     let unsaid: Vec<_> = search.split_whitespace().filter(|word| !matches(&words, word)).collect();
@@ -56,9 +56,9 @@ fn reason(model: &ModelEntry, search: &str) -> Option<&'static str> {
     further(model).find(|(text, _)| matches(text, first)).map(|(_, name)| name)
 }
 
-/// The models that a search finds, in the order in which the chooser lists them: those whose name it is
-/// first, then those of which it is a synonym, then by family, then in the order of registration. Every word of the
-/// search must begin a word of name, id, author, family, summary, a synonym, a parameter or one of its choices.
+/// Models that match a search, in the order of the chooser: matching names first, then matching synonyms, then by
+/// family and registration order. Every word of the search must begin a word of the name, id, author, family, summary,
+/// a synonym, a parameter or one of its choices.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     let mut families = Vec::new();
@@ -91,34 +91,34 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
 /// One line of a [`list`].
 #[derive(Clone, Debug, Default)]
 pub struct Entry<'a> {
-    /// The group; a heading stands where it changes. Empty for none.
+    /// Name of the group, shown as a heading where it changes; empty for no group.
     pub heading: &'a str,
-    /// Its name.
+    /// Name of the entry.
     pub name: &'a str,
-    /// More that is worth reading, at the right.
+    /// Additional information, at the right.
     pub note: String,
-    /// The key that chooses it.
+    /// The number key that chooses the entry.
     pub number: Option<usize>,
-    /// Its colour.
+    /// Colour of the entry's swatch.
     pub swatch: Option<Color32>,
-    /// True if it is what is chosen now.
+    /// True if this is the current choice.
     pub current: bool,
 }
 
-/// The words of a [`list`].
+/// Texts of a [`list`].
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// The name of the search, for screen readers: "Search reflection models".
+    /// Name of the search field for screen readers, such as "Search reflection models".
     pub label: &'static str,
-    /// In the empty field.
+    /// Hint in the empty search field.
     pub hint: &'static str,
-    /// The text when nothing was found.
+    /// Text shown when nothing matches.
     pub none: &'static str,
-    /// Below the list.
+    /// Footer of the list.
     pub foot: &'static str,
 }
 
-/// Forgets what was typed into a [`list`], so that it opens fresh.
+/// Forgets the search text of a [`list`], so that the list opens fresh.
 pub fn forget(ctx: &egui::Context, id: Id) {
     ctx.data_mut(|d| {
         d.remove::<String>(id.with("search"));
@@ -126,11 +126,11 @@ pub fn forget(ctx: &egui::Context, id: Id) {
     });
 }
 
-/// The width of what is said beside a list, points.
+/// Width of the text beside a list, in points.
 const TIP: f32 = 320.0;
 
-/// A list that is searched by typing and walked by arrow keys, at most `height` points high. Returns what
-/// was chosen. Call [`forget`] while it is not shown.
+/// A list with a search field and arrow-key navigation, at most `height` points high. Returns the chosen item. Call
+/// [`forget`] while the list is hidden.
 pub fn list<'e, T>(
     ui: &mut Ui,
     id: Id,
@@ -148,9 +148,9 @@ pub fn list<'e, T>(
     let mut row = before.unwrap_or(start).min(found.len().saturating_sub(1));
     let mut moved = before.is_none();
     let mut chosen = None;
-    // A button below that Tab has reached is pressed by Enter itself.
+    // If Tab has reached a button below, Enter presses that button.
     let elsewhere = ui.memory(|m| m.focused()).is_some_and(|focus| focus != id.with("text"));
-    // Taken before the text field sees them.
+    // Consumed before the text field sees them.
     ui.input_mut(|i| {
         if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < found.len() {
             (row, moved) = (row + 1, true);
@@ -201,7 +201,7 @@ pub fn list<'e, T>(
             if response.clicked() {
                 chosen = Some(i);
             }
-            // Beside the list: elsewhere, it would hide what is read next.
+            // Beside the list: anywhere else it would hide the next entries.
             let screen = ui.ctx().content_rect();
             let room = (screen.right() - response.rect.right()).max(response.rect.left() - screen.left());
             if room < TIP + 32.0 {
@@ -273,8 +273,8 @@ const MODELS: Words = Words {
     foot: "↑ ↓ Enter choose · Esc closes · 1–9 without this list",
 };
 
-/// The list of models; `current` is the id of the chosen one. `first` is offered before all of them and
-/// stands for no model in particular: the answer `None` within the answer.
+/// The list of models. `current` is the id of the selected model. `first` labels an entry before all models that stands
+/// for none of them; choosing it returns `Some(None)`.
 pub fn models<'a>(
     ui: &mut Ui,
     id: Id,
@@ -284,7 +284,7 @@ pub fn models<'a>(
     current: Option<&str>,
     first: Option<&'a str>,
 ) -> Option<Option<&'a ModelEntry>> {
-    // What was found is told by the rows.
+    // Each row shows why it matches.
     let search = RefCell::new(String::new());
     let found = |typed: &str| {
         typed.clone_into(&mut search.borrow_mut());
@@ -323,7 +323,7 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     if !d.summary.is_empty() {
         ui.label(d.summary);
     }
-    // A custom model that does not claim a law does not deny it either.
+    // For a custom model, an unclaimed law is unknown rather than violated.
     let own = d.family == Family::Custom;
     for (law, holds) in d.laws.list().into_iter().filter(|(_, holds)| *holds || !own) {
         let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
@@ -334,21 +334,21 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     }
 }
 
-/// Width of the button, points.
+/// Width of the button, in points.
 pub const WIDTH: f32 = 160.0;
 
-/// The id of the list at the top of the window.
+/// Id of the list at the top of the window.
 const CHOOSER: &str = "reflection chooser";
 
-/// Lets the list open fresh the next time, with its button in sight or not.
+/// Resets the closed list so that it opens fresh, even if its button is hidden.
 pub(super) fn closed(ctx: &egui::Context, session: &Session) {
     if !session.view.chooser_open {
         forget(ctx, Id::new(CHOOSER));
     }
 }
 
-/// The button and, when it is open, the list. They are about the model that the selected object has of its
-/// own, else about that of the scene.
+/// Shows the button and, if open, the list. They refer to the selected object's model override if there is one,
+/// otherwise to the model of the scene.
 pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
@@ -359,7 +359,7 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
         .right_text(RichText::new("▾").color(palette.weak))
         .min_size(vec2(132.0, 24.0))
         .truncate();
-    // Also where the bar has no room to say it: this is the model of one object.
+    // Marks the button even where the bar has no room to say that this is the model of one object.
     let of = session.model_override().is_some().then(|| session.name_of(session.selection, registry));
     let button = if of.is_some() { button.stroke(Stroke::new(1.5, palette.accent)) } else { button };
     let response = ui.add_sized(vec2(WIDTH, 24.0), button);
@@ -386,7 +386,7 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
     actions
 }
 
-/// The list alone, in a corner of a presentation, which has no bar: the equation is in the other.
+/// The list alone, in a corner of a presentation, which has no bar; the equation is in the opposite corner.
 pub(super) fn alone(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
     if !session.view.chooser_open {
         return Vec::new();
@@ -397,7 +397,7 @@ pub(super) fn alone(ctx: &egui::Context, session: &Session, registry: &Registry)
     opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, session, registry)
 }
 
-/// The list in its popup, at most so high.
+/// Shows the list in its popup, at most `height` points high.
 fn opened(popup: Popup, height: f32, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let id = Id::new(CHOOSER);
@@ -417,7 +417,7 @@ fn opened(popup: Popup, height: f32, session: &Session, registry: &Registry) -> 
             ui.separator();
             asked = author::buttons(ui, session, registry);
         });
-    // The next question stands on its own.
+    // A clicked button closes the list: the dialog that follows stands alone.
     open &= asked.is_empty();
     actions.extend(asked);
     if let Some(model) = chosen {
@@ -468,7 +468,7 @@ mod tests {
             ("α", "phong"),
             // A choice.
             ("beckmann", "microfacet"),
-            // All of it together, and the year with it.
+            // All of these together, with the year.
             ("ggx 2012 clearcoat", "disney"),
         ] {
             assert!(ids(search).contains(&id), "{search}: {:?}", ids(search));

@@ -1,14 +1,14 @@
-//! The sign that the picture clips, and where: a channel asks for more light than the display can show.
+//! The warning that the picture clips, and the marks on clipped pixels: a channel exceeds what the display can show.
 
 use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
 use super::state::{Badge, Clipping, Session, Severity};
 use crate::scene::limits;
 
-/// The part of a picture that may clip without a sign: sharp highlights. New lights keep to it.
+/// Share of clipped pixels that raises no warning: sharp highlights. New lights stay within this share.
 pub const TOLERATED: f64 = 0.001;
 
-/// "3 %", "under 0.1 %".
+/// Formats a share as a percentage: "3 %", "under 0.1 %".
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent {
@@ -18,7 +18,8 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// The sign in the corner of a view's picture, which has so many pixels; for a few of them only while they are shown.
+/// The warning in the corner of a view's picture of `pixels` pixels. A small share is reported only while clipped
+/// pixels are shown.
 #[must_use]
 pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
     let clipping = session.facts.clipping.get(view)?.as_ref()?;
@@ -46,7 +47,7 @@ pub fn paint(painter: &Painter, rect: Rect, view: usize, session: &Session, pixe
     let mut mesh = Mesh::default();
     let [across, down] = Clipping::GRID;
     let edge = |low: f32, extent: f32, k: usize, of: usize| {
-        // On whole pixels, so that no seams show.
+        // Aligned to whole pixels, to avoid seams.
         ((low + extent * k as f32 / of as f32) * pixels_per_point).round() / pixels_per_point
     };
     for (i, count) in clipping.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -56,7 +57,7 @@ pub fn paint(painter: &Painter, rect: Rect, view: usize, session: &Session, pixe
         let field = Rect::from_min_max(pos2(column(x), row(y)), pos2(column(x + 1), row(y + 1)));
         let all = field.area() * pixels_per_point * pixels_per_point;
         let share = (*count as f32 / all.max(1.0)).min(1.0);
-        // A chequered pattern is told from any surface without its colour.
+        // A chequered pattern stands out from any surface, even without its colours.
         let colour = if (x + y) % 2 == 0 { Color32::from_rgb(0xff, 0x00, 0xc8) } else { Color32::BLACK };
         mesh.add_colored_rect(field, colour.gamma_multiply(0.45 + 0.55 * share));
     }

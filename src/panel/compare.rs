@@ -1,4 +1,4 @@
-//! The views of a comparison in the picture: their places, headers, and the edge of a wipe.
+//! The views of a comparison in the picture: their arrangement, headers, and the edge of a wipe.
 
 use bevy_egui::egui::{
     self, Align, Align2, Button, CursorIcon, Id, Key, Layout as Direction, Pos2, Rect, RichText, Sense,
@@ -27,29 +27,29 @@ use crate::{
     },
 };
 
-/// Height of a header, points.
+/// Height of a header, in points.
 const HEADER: f32 = 28.0;
-/// Between views, points.
+/// Gap between views, in points.
 const GAP: f32 = 2.0;
-/// Width of the place in which the edge of a wipe can be grasped, points.
+/// Width of the grab area of a wipe's edge, in points.
 const GRASP: f32 = 14.0;
-/// One press of a key moves the edge by so much.
+/// Step of the edge per key press, as a fraction of the picture.
 const STEP: f32 = 0.02;
 
-/// The places of everything that belongs to a comparison.
+/// Arrangement of everything that belongs to a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrangement {
-    /// The views; all have the same size.
+    /// The views, all of the same size.
     pub cells: Vec<Cell>,
     /// The headers, by view.
     headers: Vec<(usize, Rect)>,
     /// The bar below.
     bar: Option<Rect>,
-    /// The picture, headers and bar apart.
+    /// The picture without headers and bar.
     pub picture: Rect,
-    /// The map of the difference.
+    /// The difference map.
     pub map: Option<Rect>,
-    /// The place of a fourth view where there are three.
+    /// Space of the missing fourth view when there are three.
     vacant: Option<Rect>,
 }
 
@@ -67,15 +67,15 @@ impl Default for Arrangement {
 }
 
 impl Arrangement {
-    /// True if the scene has no variants, so that there is nothing but the picture.
+    /// True if the scene has no variants and the picture stands alone.
     #[must_use]
     pub fn is_single(&self) -> bool {
         self.headers.is_empty()
     }
 }
 
-/// Arranges the views of a session in the place that the panels leave. In a presentation there is no bar, but a footer of
-/// this height.
+/// Arranges the views of a session in the space between the panels. A presentation has no bar, but a footer of the
+/// given height.
 #[must_use]
 pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     let variants = session.document.variants.len();
@@ -96,7 +96,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     };
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
-    // Large enough for the last row.
+    // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
     let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, high), rect.max);
     let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), high));
@@ -157,7 +157,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     all
 }
 
-/// The parts of a rectangle at both sides of the edge of a wipe.
+/// Parts of a rectangle on both sides of the edge of a wipe.
 fn parts(rect: Rect, comparison: &Comparison) -> [Rect; 2] {
     let edge = edge_of(rect, comparison);
     match comparison.edge {
@@ -166,7 +166,7 @@ fn parts(rect: Rect, comparison: &Comparison) -> [Rect; 2] {
     }
 }
 
-/// The point of the edge of a wipe in the middle of its length.
+/// Midpoint of the edge of a wipe.
 fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
     match comparison.edge {
         Edge::Vertical => pos2(rect.left() + comparison.split * rect.width(), rect.center().y),
@@ -174,7 +174,7 @@ fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
     }
 }
 
-/// The entries of a menu: the layouts, and another view.
+/// Adds the menu entries: the layouts, and another view.
 pub(super) fn entries(ui: &mut Ui, session: &Session, table: &[Binding], actions: &mut Vec<Action>) {
     let now = session.document.comparison.layout;
     for layout in Layout::ALL {
@@ -195,7 +195,7 @@ pub(super) fn entries(ui: &mut Ui, session: &Session, table: &[Binding], actions
     }
 }
 
-/// Shows headers, edge and bar. Returns what was asked for, and the places that do not belong to the picture.
+/// Shows headers, edge and bar. Returns the requested actions, and the rectangles that cover the picture.
 pub fn show(
     ui: &mut Ui,
     arrangement: &Arrangement,
@@ -235,7 +235,7 @@ pub fn show(
     (actions, places)
 }
 
-/// The letter of a view, its difference from A, and its menu.
+/// Header of a view: its letter, its difference from A, and its menu.
 fn header(
     ui: &mut Ui,
     view: usize,
@@ -258,7 +258,7 @@ fn header(
     let parts = in_parts(session, view, registry);
     let text = line(&parts);
     let comparison = &session.document.comparison;
-    // Of views that are shown in turn, the one on screen stands out.
+    // When views alternate, the visible one stands out.
     let hidden =
         comparison.layout == Layout::Blink && view != if session.view.blinking { comparison.with } else { 0 };
     let lit = if comparison.layout == Layout::Blink { !hidden } else { active };
@@ -307,7 +307,7 @@ fn header(
                 ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
                 let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
                 let at = badge.right_center() + vec2(8.0, 0.0) * scale;
-                // With symbols as in the equation, if the words have room. A presentation says the rest below.
+                // With symbols as in the equation, if there is room. A presentation says the rest below.
                 let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
                 let less = if session.view.presenting { 0.0 } else { dots.size().x };
                 let all = parts.len();
@@ -336,7 +336,7 @@ fn header(
     });
 }
 
-/// The first of some parts: as many as fit into one line.
+/// The leading parts that fit into one line.
 fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: egui::Color32, room: f32) -> Vec<Part> {
     while parts.len() > 1 {
         let lines = Lines::within(ui, parts.clone(), size, ink, room, 1);
@@ -348,7 +348,7 @@ fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: egui::Color32, room: f
     parts
 }
 
-/// A view in words: its name, unless what it shows says the same, and what it shows.
+/// A view in words: its name, unless the description already contains it, and its description.
 fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
     let shown = view_parts(&session.document, view, registry);
     let said = line(&shown).to_lowercase();
@@ -357,7 +357,7 @@ fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
     name.map(|name| Part::new(0, name)).into_iter().chain(shown).collect()
 }
 
-/// What can be done with a view.
+/// The menu of actions for a view.
 fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) {
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let button = icon::button(ui, Icon::Down, &format!("Menu of view {letter}"));
@@ -390,7 +390,7 @@ fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) 
     actions.extend(chosen.map(Action::Compare));
 }
 
-/// The edge of a wipe, with a handle. Returns the place that it takes from the picture.
+/// The edge of a wipe, with a handle. Returns the rectangle that it takes from the picture.
 fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
     let at = edge_of(rect, comparison);
     let upright = comparison.edge == Edge::Vertical;

@@ -1,4 +1,4 @@
-//! The dialogs that choose files.
+//! The file dialogs.
 
 use std::{
     ops::DerefMut,
@@ -32,40 +32,40 @@ use crate::{
 
 mod aids;
 
-/// Their share of the window.
+/// Size of a dialog as a fraction of the window.
 const SHARE: f32 = 0.7;
-/// The same in a window that is narrow, which has no room to spare.
+/// Size of a dialog as a fraction of a narrow window, which has no room to spare.
 const ALL: f32 = 0.96;
-/// Width of a narrow window, points: any that shows everything much larger.
+/// Width below which a window is narrow, in points; also reached by a large interface scale.
 const NARROW: f32 = 1000.0;
-/// A list that is empty for so many frames stays so.
+/// Number of frames after which an empty list is taken to be final.
 const BLANK_FRAMES: u8 = 3;
 
-/// See the module.
+/// The file dialogs of the window, with their state.
 #[derive(Debug)]
 pub struct Dialogs {
     open: FileDialog,
     save: FileDialog,
     folder: FileDialog,
-    /// Chooses files for parameters of lights and objects.
+    /// Selects files for parameters of lights and objects.
     file: FileDialog,
-    /// Chooses a lesson.
+    /// Selects a lesson.
     lesson: FileDialog,
-    /// Chooses places for exports.
+    /// Selects the destination of an export.
     export: FileDialog,
-    /// What a place is chosen for.
+    /// The export for which a destination is being selected.
     exporting: Option<Exported>,
-    /// The part and the parameter for which a file is chosen.
+    /// The part and the parameter for which a file is being selected.
     wanted: Option<(Selection, &'static Parameter)>,
-    /// The field of a dialog that had the focus at the end of the frame before.
+    /// The dialog field that had the focus at the end of the previous frame.
     typed_into: Option<Field>,
-    /// A key that is heard again in the next frame.
+    /// A key to repeat in the next frame.
     again: Option<Key>,
-    /// For so many frames the list has been empty.
+    /// Number of frames for which the list has been empty.
     blank: u8,
 }
 
-/// An export in a form, by its id, the picture of a view alone or of all, or the plot.
+/// The subject of an export: a file in a format (by its id), the picture of one view or of all, or the plot.
 #[derive(Clone, Copy, Debug)]
 enum Exported {
     Form(&'static str),
@@ -73,7 +73,7 @@ enum Exported {
     Plot,
 }
 
-/// The fields of a dialog of which keys go through.
+/// Dialog fields that pass keys on to the dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Field {
     Search,
@@ -96,7 +96,7 @@ impl Default for Dialogs {
             .labels(FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() })
             .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
         let mut open = dialog("Open a scene", "open dialog");
-        // Nobody opens a file in a new folder.
+        // A new folder never contains a file to open.
         open.config_mut().show_new_folder_button = false;
         open.config_mut().keybindings.new_folder.clear();
         Self {
@@ -115,7 +115,7 @@ impl Default for Dialogs {
     }
 }
 
-/// The line below the list leaves its room to the name.
+/// Labels with a short caption below the list, which leaves room for the file name.
 fn labels() -> FileDialogLabels {
     FileDialogLabels { selected_file: "File:".to_owned(), ..FileDialogLabels::default() }
 }
@@ -134,7 +134,7 @@ fn lesson_dialog() -> FileDialog {
     dialog
 }
 
-/// Lets a dialog offer the formats of scenes, first that of a file, which may not exist yet.
+/// Makes a dialog offer the formats of scenes, starting with that of `file`, which may not exist yet.
 fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
     let extensions = formats::extensions(registry);
     let all: Vec<_> = extensions.iter().map(|extension| format!("*.{extension}")).collect();
@@ -143,7 +143,7 @@ fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
     place.file_filters.clear();
     place.save_extensions.clear();
     let mut config = std::mem::take(place).add_file_filter_extensions(&filter, extensions);
-    // The dialog names the extension itself, and gives it to what is typed.
+    // The dialog shows the extension itself, and appends it to what is typed.
     let name = |format: &dyn SceneFormat| match format.name() {
         "JSON" => "Scene".to_owned(),
         other => format!("Scene as {other}"),
@@ -158,7 +158,7 @@ fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
     *place = config;
 }
 
-/// The dialog that chooses a file for a parameter.
+/// The dialog that selects a file for a parameter.
 fn file_dialog(format: &FileFormat) -> FileDialog {
     let extensions: Vec<_> = format.extensions.iter().map(|extension| format!("*.{extension}")).collect();
     let filter = format!("Files ({})", extensions.join(", "));
@@ -174,7 +174,7 @@ fn file_dialog(format: &FileFormat) -> FileDialog {
     dialog
 }
 
-/// The dialog that chooses a place for an export, a picture or a plot.
+/// The dialog that selects the destination of an export, a picture or a plot.
 fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> FileDialog {
     let (title, button, name) = match what {
         Exported::Form(id) => {
@@ -210,7 +210,7 @@ fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> Fi
 }
 
 impl Dialogs {
-    /// True if one is open.
+    /// True if any dialog is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
         [&self.open, &self.save, &self.folder, &self.file, &self.lesson, &self.export]
@@ -218,7 +218,7 @@ impl Dialogs {
             .any(|d| *d.state() == DialogState::Open)
     }
 
-    /// Opens the dialog that is asked for; false if it is none.
+    /// Opens the dialog that an effect requests. Returns false if the effect requests none.
     pub(super) fn start(
         &mut self,
         ctx: &Context,
@@ -268,7 +268,7 @@ impl Dialogs {
         if let Some(folder) = folder {
             dialog.config_mut().initial_directory = folder.to_owned();
         }
-        // A format that can only be read gives way to JSON.
+        // JSON replaces a read-only format.
         let file = match session.path.as_deref() {
             Some(path) if formats::can_write(path, registry) => path.to_owned(),
             Some(path) => as_json(path),
@@ -287,7 +287,7 @@ impl Dialogs {
         true
     }
 
-    /// Shows those that are open. Returns what was chosen.
+    /// Shows the open dialogs. Returns the resulting actions.
     pub(super) fn update(
         &mut self,
         ctx: &Context,
@@ -319,9 +319,9 @@ impl Dialogs {
         ] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
-            // So much that the buttons below the list keep their room.
+            // Leaves enough width for the buttons below the list.
             config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
-            // The button that ends it says the same as the title.
+            // The confirm button repeats the title.
             config.title_bar = !narrow;
         }
         let was_open = *self.open.state() == DialogState::Open;
@@ -331,7 +331,7 @@ impl Dialogs {
             look(ui, file.map(Source::File), registry);
         });
         if let Some(path) = self.open.take_picked() {
-            // Whoever got this far was asked about unsaved changes before.
+            // The user was asked about unsaved changes before the dialog opened.
             actions.push(Action::Open(path));
         } else if was_open && *self.open.state() == DialogState::Cancelled {
             session.questions.not_opened();
@@ -371,7 +371,7 @@ impl Dialogs {
         ] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
             lighten(ctx, layer, &palette);
-            // It keeps the pointer to itself, but not the keys.
+            // The dialog blocks the pointer, but not the keys.
             if *dialog.state() == DialogState::Open {
                 ctx.memory_mut(|m| m.set_modal_layer(layer));
                 let list = Places::of(ctx, layer.id);
@@ -395,7 +395,7 @@ impl Dialogs {
             }
         }
         if entered {
-            // As if by the keyboard: the dialog shows what is in the folder.
+            // As with the keyboard: the dialog shows the contents of the folder.
             ctx.memory_mut(|m| m.focused().into_iter().for_each(|focus| m.surrender_focus(focus)));
             self.again = Some(Key::Enter);
             ctx.request_repaint();
@@ -407,8 +407,9 @@ impl Dialogs {
 }
 
 impl Dialogs {
-    /// The dialogs hear Enter and Escape only while nothing has the focus: pressed in a field, these keys would do no
-    /// more than leave it. And they take what is typed for the search, shortcuts too.
+    /// Passes keys on to the dialogs, which handle Enter and Escape only while nothing has the focus: pressed in a
+    /// field, these keys would only leave it. Also keeps shortcuts out of the search, which takes every typed
+    /// character.
     fn pass_keys_on(&mut self, ctx: &Context) {
         if let Some(key) = self.again.take() {
             let modifiers = Modifiers::NONE;
@@ -418,7 +419,7 @@ impl Dialogs {
                 input.events.push(event);
             });
         } else {
-            // In the name, Enter saves.
+            // In the name field, Enter saves.
             let passed: &[Key] = match self.typed_into {
                 Some(Field::Search) if *self.save.state() != DialogState::Open => &[Key::Enter, Key::Escape],
                 Some(_) => &[Key::Escape],
@@ -441,7 +442,7 @@ impl Dialogs {
     }
 }
 
-/// The parts of a dialog.
+/// The areas of a dialog.
 struct Places {
     top: Rect,
     bottom: Rect,
@@ -459,7 +460,7 @@ impl Places {
         Some(Self { top, bottom, list })
     }
 
-    /// The field that has the focus; the path at the top and the name of a new folder have keys of their own.
+    /// The focused field. The path at the top and the name of a new folder handle their own keys.
     fn focused(&self, ctx: &Context) -> Option<Field> {
         let focus = ctx.memory(egui::Memory::focused)?;
         let rect = ctx.viewport(|v| v.this_pass.widgets.get(focus).map(|w| w.rect))?;
@@ -469,7 +470,7 @@ impl Places {
         search.then_some(Field::Search).or(name.then_some(Field::Name))
     }
 
-    /// True if the list has no words, and nothing that turns while it is read.
+    /// True if the list contains neither text nor a loading spinner.
     fn is_blank(&self, ctx: &Context, layer: LayerId) -> bool {
         fn has_words(shape: &Shape, place: Rect) -> bool {
             match shape {
@@ -492,7 +493,7 @@ impl Places {
     }
 }
 
-/// The preview beside the list.
+/// Shows the preview beside the list.
 fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
     let width = ui.available_width();
     let (place, _) = ui.allocate_exact_size(vec2(width, width * 9.0 / 16.0), Sense::hover());
@@ -503,7 +504,7 @@ fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
     };
     let preview = preview::of(ui.ctx(), &source, registry);
     preview::paint(ui, place, &preview);
-    // Whole, where the line below the list has no room for it.
+    // The full name, for which the line below the list may have no room.
     if let Source::File(path) = &source {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ui.add(Label::new(theme::small(ui, name)).wrap_mode(egui::TextWrapMode::Wrap));
@@ -526,7 +527,7 @@ fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
     });
 }
 
-/// The dialogs paint their fields on black in every theme, and offer no other colour.
+/// Recolours the fields of a dialog, which are black in every theme and cannot be configured.
 fn lighten(ctx: &Context, layer: LayerId, palette: &Palette) {
     const BLACK: Color32 = Color32::from_black_alpha(250);
     fn visit(shape: &mut Shape, to: Color32) {

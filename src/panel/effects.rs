@@ -1,4 +1,4 @@
-//! Carrying out the effects that need files: opening, saving, settings.
+//! Effects that need files: opening, saving, settings.
 
 use super::{
     files::{Files, Opened, Saved},
@@ -8,8 +8,8 @@ use super::{
 use crate::files::Shown as _;
 use crate::{lesson::Lesson, registry::Registry};
 
-/// Carries out an effect that needs files. Returns the effects that follow, among them the one given
-/// when it is none of this module's.
+/// Carries out an effect that needs files. Returns the effects that follow, or the given effect unchanged if this
+/// module does not handle it.
 #[must_use]
 pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
     match effect {
@@ -24,9 +24,9 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 Vec::new()
             }
             Opened::Failed(problems) => {
-                // Tried again, it may have other problems.
+                // A second attempt may have other problems.
                 session.healed(&path);
-                // The latest message stands on top: the first problem, and above it the consequence.
+                // The latest message is on top: first the problem, then above it the consequence.
                 for problem in problems.into_iter().rev() {
                     session.say_about(&path, Severity::Error, problem);
                 }
@@ -65,7 +65,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                     Vec::new()
                 }
                 Saved::OtherFormat(why) => {
-                    // What waits for saving goes on waiting: the dialog offers a file that can be written.
+                    // The pending action stays pending: the dialog offers a file that can be written.
                     session.say(Severity::Warning, why);
                     vec![Effect::PickSave]
                 }

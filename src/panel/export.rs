@@ -1,4 +1,4 @@
-//! Exports: their menu, the progress of the one that runs, and shaders for the clipboard.
+//! Exports: their menu, the progress of the running export, and shaders for the clipboard.
 
 use bevy_egui::egui::{Button, ProgressBar, Ui};
 
@@ -13,10 +13,10 @@ use crate::{
     registry::Registry,
 };
 
-/// The size of the pictures of exports, pixels.
+/// Size of exported pictures, in pixels.
 pub const SIZE: (u32, u32) = (1280, 720);
 
-/// The submenu with an entry for each form.
+/// The submenu, with an entry for each format.
 pub(super) fn menu(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     submenu(ui, "Export as", |ui| {
         for form in FORMS {
@@ -32,14 +32,14 @@ pub(super) fn menu(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
 }
 
-/// The summary of a form as a sentence.
+/// The summary of a format as a sentence.
 fn sentence(form: &Form) -> String {
     let mut letters = form.summary.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}.", letters.as_str())
 }
 
-/// The object whose shader is exported: the selected one, or the first that is visible.
+/// The object whose shader is exported: the selected one, or the first visible one.
 #[must_use]
 pub fn object(session: &Session) -> Option<usize> {
     match session.selection {
@@ -53,7 +53,7 @@ fn name(session: &Session, i: usize) -> String {
     object.name.as_ref().map_or_else(|| format!("the {}", object.object_type), |name| format!("“{name}”"))
 }
 
-/// The progress of the export that runs, with a button that stops it.
+/// The progress of the running export, with a button that stops it.
 pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let Some(export) = &session.facts.export else { return };
     let name = format!("Exporting as {}", export.name);
@@ -62,10 +62,10 @@ pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
     }
 }
 
-/// The name of some work, the part of it that is done with its current step, and a button with this tooltip that stops
-/// it. True if that was clicked.
+/// A running task: name, completed fraction, current step, and a stop button with the tooltip `stop`. Returns true if
+/// the button was clicked.
 pub(super) fn strip(ui: &mut Ui, name: &str, (done, step): (f32, &str), stop: &str) -> bool {
-    /// Points.
+    /// In points.
     const WIDTH: f32 = 120.0;
     ui.label(theme::small(ui, name));
     let step = if step.is_empty() { "starting" } else { step };
@@ -73,7 +73,7 @@ pub(super) fn strip(ui: &mut Ui, name: &str, (done, step): (f32, &str), stop: &s
     ui.add(Button::new(theme::small(ui, "Cancel")).small()).on_hover_text(stop).clicked()
 }
 
-/// The menu that puts the shader of the object on the clipboard, in each language that is text.
+/// The menu that copies the shader of the object to the clipboard, in each text-based shader language.
 pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let Some(object) = object(session) else { return };
     let help = format!(

@@ -1,4 +1,4 @@
-//! The boundary to scene files: what the window needs, and nothing of how it is done.
+//! The interface to scene files: what the window needs, independent of the implementation.
 
 use std::path::Path;
 
@@ -12,30 +12,30 @@ use crate::{
 pub trait Files: Send + Sync + 'static {
     /// Reads a scene file.
     fn open(&mut self, path: &Path, registry: &Registry) -> Opened;
-    /// Writes a scene file, all or nothing. Without `overwrite`, a file that changed on disk since it
-    /// was opened or saved is left alone.
+    /// Writes a scene file completely or not at all. Without `overwrite`, leaves alone a file that changed on disk
+    /// since it was opened or saved.
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
-    /// Writes a scene file that is not the document's, all or nothing. Without `overwrite`, a file that is there is left
-    /// alone.
+    /// Writes a scene file other than the document's, completely or not at all. Without `overwrite`, leaves an existing
+    /// file alone.
     fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
-    /// Reads a scene file if its content is another one than when it was opened or saved.
+    /// Reads a scene file if its content differs from when it was opened or saved.
     fn look(&mut self, path: &Path, registry: &Registry) -> Looked;
     /// Sets the state of the file that saving may replace: its content, or its absence.
     fn expect(&mut self, path: &Path, version: Option<Stamp>);
 }
 
-/// The result of looking at a file.
+/// The result of checking a file for changes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Looked {
-    /// It is unchanged.
+    /// The file is unchanged.
     Same,
-    /// There is no such file.
+    /// The file does not exist.
     Gone,
-    /// Its content has changed.
+    /// The content has changed.
     Changed {
-        /// The fingerprint of the content.
+        /// Fingerprint of the content.
         version: Stamp,
-        /// Its content.
+        /// The new content.
         content: Opened,
     },
 }
@@ -43,30 +43,30 @@ pub enum Looked {
 /// The result of opening a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opened {
-    /// It holds a legal scene.
+    /// A valid scene.
     Scene(Box<Scene>),
-    /// It holds a scene that lacks parts; here it is with the defaults in place.
+    /// A scene with missing parts, which are replaced by defaults.
     Incomplete {
-        /// With defaults.
+        /// The scene with defaults.
         scene: Box<Scene>,
         /// The missing parts.
         parts: Vec<MissingPart>,
     },
-    /// It is empty.
+    /// The file is empty.
     Empty,
-    /// It cannot be used: every problem, one sentence each.
+    /// The file cannot be used: the problems, one sentence each.
     Failed(Vec<String>),
 }
 
 /// The result of saving a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Saved {
-    /// It is on disk.
+    /// The file was written.
     Done,
-    /// Somebody else changed it; it was left alone.
+    /// Another program changed the file; it was left alone.
     ChangedOnDisk,
-    /// The reason why it could not be written in its format. Another one can hold the scene.
+    /// Why the scene could not be written in this format, while another format can hold it.
     OtherFormat(String),
-    /// The reason why it could not be written.
+    /// Why the file could not be written.
     Failed(String),
 }

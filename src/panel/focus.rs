@@ -1,21 +1,21 @@
-//! The keyboard focus: where it goes with F6, and that it is seen wherever it is.
+//! The keyboard focus: navigation with F6, and a visible frame.
 
 use bevy_egui::egui::{self, Context, Event, Id, Order, Rect, Stroke, StrokeKind, WidgetRect, accesskit};
 
 use super::{Place, theme::Palette};
 
-/// A part of the window, in the order of F6.
+/// A region of the window, in the order of F6.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Region {
-    /// The panels at a place.
+    /// The panels at one side.
     Panel(Place),
     /// The strip of examples.
     Examples,
-    /// The widgets over the picture: badges, arrows.
+    /// Widgets over the picture: badges, arrows.
     Picture,
 }
 
-/// The parts of the window, as they were shown last.
+/// The regions of the window, as last shown.
 #[derive(Clone, Debug, Default)]
 struct Regions(Vec<(Region, Rect)>);
 
@@ -23,7 +23,7 @@ fn memory() -> Id {
     Id::new("regions of the window")
 }
 
-/// Begins to collect the parts of the window.
+/// Starts to collect the regions of the window.
 pub(super) fn forget_regions(ctx: &Context) {
     ctx.data_mut(|d| {
         d.insert_temp(memory().with("next"), Regions::default());
@@ -31,12 +31,12 @@ pub(super) fn forget_regions(ctx: &Context) {
     });
 }
 
-/// A part of the window was shown here.
+/// Registers a region shown in this frame.
 pub(super) fn region(ctx: &Context, region: Region, rect: Rect) {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Regions>(memory().with("next")).0.push((region, rect)));
 }
 
-/// All parts were shown.
+/// Completes the collection of regions.
 pub(super) fn remember_regions(ctx: &Context) {
     ctx.data_mut(|d| {
         let mut regions: Regions = d.get_temp(memory().with("next")).unwrap_or_default();
@@ -47,28 +47,28 @@ pub(super) fn remember_regions(ctx: &Context) {
     });
 }
 
-/// The target of F6 in its part of the window, instead of the first: the selected row. The last one that is named counts.
+/// Sets the target of F6 in its region, instead of the first widget: the selected row. The latest call counts.
 pub(super) fn first(ctx: &Context, id: Id) {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Vec<Id>>(memory().with("next firsts")).insert(0, id));
 }
 
-/// The widgets that can have the focus, in the order of the Tab key, as shown last; also those scrolled out of sight.
+/// Focusable widgets in the order of the Tab key, as last shown, including those scrolled out of view.
 fn drawn(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops: Vec<WidgetRect> = ctx.viewport(|viewport| {
         let widgets = &viewport.prev_pass.widgets;
-        // A menu takes clicks as a whole, but is no stop.
+        // A menu takes clicks as a whole, but is not a stop.
         let whole = |w: &WidgetRect| w.id == w.layer_id.id.with("move");
         let focusable =
             |w: &&WidgetRect| w.enabled && w.sense.is_focusable() && w.rect.is_positive() && !whole(w);
         widgets.layers().flat_map(|(_, all)| all).filter(focusable).filter(|w| keep(w)).copied().collect()
     });
-    // Nor is an area that scrolls.
+    // Neither is a scroll area.
     let centres: Vec<_> = stops.iter().map(|w| w.rect.center()).collect();
     stops.retain(|w| centres.iter().filter(|centre| w.rect.contains(**centre)).count() < 3);
     stops
 }
 
-/// The same in the order of reading.
+/// Focusable widgets in reading order.
 pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops = drawn(ctx, keep);
     stops.sort_by(|a, b| {
@@ -84,13 +84,13 @@ pub(super) fn focused(ctx: &Context) -> Option<WidgetRect> {
     ctx.viewport(|viewport| viewport.prev_pass.widgets.get(id).copied())
 }
 
-/// True while the picture has the keys because they were sent there.
+/// Key of the flag that the user has moved the keyboard focus to the picture.
 fn picture() -> Id {
     Id::new("keys sent to the picture")
 }
 
-/// Moves the focus to the next part of the window, or the one before; after the last panel it is the picture's again,
-/// and from there it goes to what is over the picture.
+/// Moves the focus to the next or previous region of the window. After the last panel, the picture has the focus, then
+/// the widgets over it.
 pub(super) fn next_region(ctx: &Context, back: bool) {
     let Regions(regions) = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
     let wanted: Vec<Id> = ctx.data(|d| d.get_temp(memory().with("firsts"))).unwrap_or_default();
@@ -101,17 +101,17 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
                 w.layer_id.order == Order::Background
                     && w.interact_rect.is_positive()
                     && rect.contains(w.rect.center())
-                    // The edges of panels, which are dragged.
+                    // Excludes the edges of panels, which can be dragged.
                     && !(*region == Region::Picture && w.sense.senses_drag())
             };
-            // From the first one over the picture, Tab reaches all of them.
+            // From the first widget over the picture, Tab reaches all others.
             let all = if *region == Region::Picture { drawn(ctx, within) } else { stops(ctx, within) };
             let wanted = wanted.iter().find_map(|id| all.iter().find(|w| w.id == *id));
             wanted.or(all.first()).copied()
         })
         .collect();
     let here = focused(ctx).and_then(|w| regions.iter().position(|(_, r)| r.contains(w.rect.center())));
-    // Anything over the picture comes after the picture itself.
+    // The widgets over the picture come after the picture itself.
     let over = regions.iter().position(|(region, _)| *region == Region::Picture);
     let count = over.unwrap_or(regions.len());
     let sent = ctx.data(|d| d.get_temp(picture())).unwrap_or(false);
@@ -136,10 +136,10 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
     });
 }
 
-/// Scrolls to what got the focus by key, in whatever area it is. Call before the widgets are shown.
+/// Scrolls to a widget that got the focus by keyboard, in any scroll area. Call before the widgets are shown.
 pub(super) fn reveal(ctx: &Context) {
     let Some(id) = ctx.data_mut(|d| d.remove_temp::<Option<Id>>(hidden()).flatten()) else { return };
-    // Any widget obeys this request, also those of dialogs that are not ours.
+    // Every widget follows this request, including those of third-party dialogs.
     let request = accesskit::ActionRequest {
         action: accesskit::Action::ScrollIntoView,
         target_tree: accesskit::TreeId::ROOT,
@@ -149,17 +149,17 @@ pub(super) fn reveal(ctx: &Context) {
     ctx.input_mut(|input| input.events.push(Event::AccessKitActionRequest(request)));
 }
 
-/// The widget that has the focus and is scrolled out of sight.
+/// Key of the focused widget that is scrolled out of view.
 fn hidden() -> Id {
     Id::new("focus out of sight")
 }
 
-/// The widget that had the focus at the last look.
+/// Key of the widget that had the focus at the last check.
 fn looked_for() -> Id {
     Id::new("focus looked for")
 }
 
-/// Notes what got the focus out of sight. Under the pointer nothing moves.
+/// Records a widget that got the focus outside the visible area. Focus by pointer scrolls nothing.
 fn look_for(ctx: &Context, widget: &WidgetRect) {
     if ctx.data(|d| d.get_temp(looked_for())) == Some(widget.id) {
         return;
@@ -172,7 +172,7 @@ fn look_for(ctx: &Context, widget: &WidgetRect) {
     }
 }
 
-/// Frames what has the focus; `rect` is that of the picture. Fields that are typed into have a frame of their own.
+/// Draws a frame around the focused widget; `rect` is the picture. Text fields have a frame already.
 pub(super) fn show(ctx: &Context, palette: &Palette, rect: Rect) {
     let stroke = Stroke::new(1.5, palette.accent);
     let Some(id) = ctx.memory(egui::Memory::focused) else {

@@ -1,6 +1,6 @@
-//! The values of the document that no model takes any more, as custom models change while the window is open.
+//! Values of the document that no model accepts any more, because custom models change while the window is open.
 //!
-//! They are stashed, so that the document can be saved, and come back when a model takes them again.
+//! Such values are stashed, so that the document can be saved, and restored when a model accepts them again.
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
@@ -12,25 +12,25 @@ use crate::{
     scene::{Object, check::Declared},
 };
 
-/// A value of the document that becomes another one.
+/// A value of the document that is replaced.
 struct Change {
     place: ParameterPlace,
-    /// The value that the user wants.
+    /// The value set by the user.
     wanted: Value,
-    /// The value that the document gets.
+    /// The value that the document gets instead.
     to: Option<Value>,
-    /// Of the parameter that the value is for, if there is one.
+    /// Declaration of the parameter, if any.
     declared: Option<&'static Parameter>,
 }
 
-/// The models may be others than before: stashes what none of them takes, replaces numbers that are out of
-/// range by the nearest that is not, gives back what is taken again, and says so. What the user changed
-/// meanwhile stays. `session` is borrowed mutably only when something changes.
+/// Adapts the document to the current models: stashes values that no model accepts, moves numbers to the nearest value
+/// in range, restores stashed values that are accepted again, and reports each change. Values that the user has changed
+/// meanwhile stay. Borrows `session` mutably only when something changes.
 pub fn follow_registry(session: impl DerefMut<Target = Session>, registry: &Registry) {
     follow(session, registry, false);
 }
 
-/// The same where the last step gave objects another model: what follows from it belongs to that step.
+/// Adapts the document after a step that gave objects another model. The changes belong to that step.
 pub fn follow_model(session: &mut Session, registry: &Registry) {
     follow(&mut *session, registry, true);
     for said in session.document.beyond_the_range_of_views(registry) {
@@ -63,7 +63,7 @@ fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, wit
             session.document.go_on(Extent::Object(i), |scene| put(&mut scene.objects[i], name, to))
         });
     } else {
-        // No step of the user's: undoing it would bring back what no model takes.
+        // Not a step for undo: undoing it would bring back values that no model accepts.
         session.document.amend(|scene| {
             changes.into_iter().for_each(|(i, name, to)| put(&mut scene.objects[i], name, to));
         });
@@ -73,7 +73,7 @@ fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, wit
     }
 }
 
-/// The changes that the document needs, and the values that are stashed then.
+/// The changes that the document needs, and the values that are then stashed.
 fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) {
     let mut changes = Vec::new();
     let mut stashed = StashedValues::default();
@@ -106,7 +106,7 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
                 place_value(*id, object, name, &kept.wanted, None);
             }
             Some(_) => {}
-            // Undoing may bring the object back.
+            // Undo may bring the object back.
             None => drop(gone.insert((*id, name.clone()), kept.clone())),
         }
     }
@@ -114,7 +114,7 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
     (changes, stashed)
 }
 
-/// The messages: one for each kind of change of a parameter, however many objects it is about.
+/// The messages: one per parameter and kind of change, regardless of the number of objects.
 fn told(session: &Session, registry: &Registry, changes: &[Change]) -> Vec<String> {
     let mut groups: BTreeMap<(String, String), (usize, &Change)> = BTreeMap::new();
     for change in changes {
@@ -137,7 +137,7 @@ fn told(session: &Session, registry: &Registry, changes: &[Change]) -> Vec<Strin
 }
 
 impl Change {
-    /// The message when it is about one object.
+    /// The message about a single object.
     fn single(&self, object: &str) -> String {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
@@ -154,7 +154,7 @@ impl Change {
         }
     }
 
-    /// The message before and after the number of objects when it is about several.
+    /// The message about several objects: the parts before and after their number.
     fn several(&self) -> (String, String) {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
@@ -173,7 +173,7 @@ impl Change {
         }
     }
 
-    /// The reason for this value instead of the one that is wanted.
+    /// The reason for a value that replaces the wanted one.
     fn reason(&self, value: &Value) -> String {
         let Some(p) = self.declared else { return String::new() };
         let (most, least) = match (&p.kind, value, &self.wanted) {
@@ -195,7 +195,7 @@ impl Change {
         }
     }
 
-    /// The reason for no value, and the condition of its return.
+    /// The reason for a missing value, and the condition for its return.
     fn why_gone(&self, allowed: &'static str) -> (String, &'static str) {
         match self.declared {
             None => ("is no parameter of any model any more".to_owned(), "with the name"),
@@ -219,7 +219,7 @@ mod tests {
         scene::{Scene, check, load, save},
     };
 
-    /// Lambert's law with these parameters, of which it uses none.
+    /// Registers Lambert's law with parameters, none of which it uses.
     fn put(registry: &mut Registry, parameters: &str) {
         put_as("mine", registry, parameters);
     }
@@ -238,7 +238,7 @@ mod tests {
         format!("{{ \"name\": \"{name}\", \"min\": {min}, \"max\": {max}, \"default\": {max} }}")
     }
 
-    /// A document of one sphere of the model with one value.
+    /// A document with one sphere of the model and one value.
     fn begin(declaration: &str, name: &'static str, value: Value) -> (Session, Registry) {
         let mut registry = Registry::builtin();
         put(&mut registry, declaration);
@@ -252,7 +252,7 @@ mod tests {
         (session, registry)
     }
 
-    /// Follows, compares what is said, and looks whether the document can be saved.
+    /// Follows the registry, and checks the messages and whether the document can be saved.
     fn follow(session: &mut Session, registry: &Registry, said: &[&str]) {
         session.messages.clear();
         follow_registry(&mut *session, registry);
@@ -264,7 +264,7 @@ mod tests {
             .unwrap_or_else(|e| panic!("{e}\n{text}"));
         assert_eq!(read.scene.objects, session.document.objects);
         assert_eq!(session.document.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
-        // A second look finds nothing to do.
+        // A second call changes nothing.
         let before = (session.document.scene().clone(), session.stashed.clone(), session.messages.clone());
         follow_registry(&mut *session, registry);
         assert_eq!(
@@ -415,7 +415,7 @@ mod tests {
             ],
         );
         assert_eq!(value(&session, "gloss"), None);
-        // A choice of the user replaces what was stashed.
+        // A value set by the user replaces the stashed one.
         session.document.amend(|scene| scene.objects[0].material.set("gloss", Value::Choice("high".into())));
         put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"full\"] }");
         follow(

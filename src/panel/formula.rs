@@ -1,4 +1,4 @@
-//! The parts of an equation: brackets, roots, fractions, and the places at which a line may be broken.
+//! The structure of an equation: brackets, roots, fractions, and possible line breaks.
 
 use super::maths::{Atom, parse};
 use crate::text::mathematics::MAX_DEPTH;
@@ -6,17 +6,17 @@ use crate::text::mathematics::MAX_DEPTH;
 /// A piece of an equation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// A symbol, a word, a number or a sign.
+    /// A symbol, word, number or operator.
     Atom(Atom),
-    /// Something in brackets; the closing one may have a power.
+    /// Brackets with their content; the closing one may have a power.
     Group(Atom, Vec<Node>, Atom),
-    /// Something under a root.
+    /// The content of a root.
     Root(Vec<Node>),
-    /// One over the other.
+    /// Numerator and denominator.
     Fraction(Vec<Node>, Vec<Node>),
 }
 
-/// True for one of these signs.
+/// True if a node is one of these signs.
 pub(super) fn is_sign(node: &Node, signs: &str) -> bool {
     matches!(node, Node::Atom(Atom::Upright { base, .. }) if signs.contains(base.as_str()))
 }
@@ -33,7 +33,7 @@ fn is_prose(node: &Node) -> bool {
     word(node).is_some_and(|w| PROSE.contains(&w))
 }
 
-/// True if two pieces side by side are multiplied, although no sign says so.
+/// True if two adjacent pieces are multiplied without a sign between them.
 pub(super) fn multiplied(before: &[Node], after: &[Node]) -> bool {
     let factor = |node: Option<&Node>| node.is_some_and(|n| !is_sign(n, "=≈≤≥<>+−×·,;") && !is_prose(n));
     factor(before.iter().rfind(|n| !is_space(n))) && factor(after.iter().find(|n| !is_space(n)))
@@ -43,14 +43,14 @@ pub(super) fn is_space(node: &Node) -> bool {
     matches!(node, Node::Atom(Atom::Space))
 }
 
-/// The tree of an equation, at most [`MAX_DEPTH`] deep: brackets beyond it are signs like others.
+/// Parses an equation into a tree at most [`MAX_DEPTH`] deep; deeper brackets are treated as ordinary signs.
 #[must_use]
 pub fn tree(text: &str) -> Vec<Node> {
     let mut stack: Vec<(Atom, Vec<Node>)> = Vec::new();
     let mut here: Vec<Node> = Vec::new();
     let bracket = |atom: &Atom, any: &str| !atom.base().is_empty() && any.contains(atom.base());
     for atom in parse(text) {
-        // Of two bars the second closes, and a bar between other brackets closes before they do.
+        // The second of two bars closes, and a bar inside other brackets closes before they do.
         let bar = |stack: &[(Atom, Vec<Node>)]| stack.last().is_some_and(|(open, _)| open.base() == "|");
         while bracket(&atom, ")]⟩") && bar(&stack) {
             unopen(&mut stack, &mut here);
@@ -79,7 +79,7 @@ pub fn tree(text: &str) -> Vec<Node> {
     fractions(here)
 }
 
-/// Makes the last bracket, which nothing closes, a sign like others.
+/// Turns the last bracket, which is never closed, into an ordinary sign.
 fn unopen(stack: &mut Vec<(Atom, Vec<Node>)>, here: &mut Vec<Node>) {
     if let Some((open, mut before)) = stack.pop() {
         before.push(Node::Atom(open));
@@ -88,8 +88,8 @@ fn unopen(stack: &mut Vec<(Atom, Vec<Node>)>, here: &mut Vec<Node>) {
     }
 }
 
-/// Makes fractions of what has a slash. Without spaces, `a b/c` is a times b over c; with spaces, `a b / c` is
-/// all of the product over c.
+/// Replaces slashes by fractions. Without spaces, `a b/c` is a times b over c; with spaces, `a b / c` is the whole
+/// product over c.
 fn fractions(nodes: Vec<Node>) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::new();
     let mut rest = nodes.into_iter().peekable();
@@ -107,7 +107,7 @@ fn fractions(nodes: Vec<Node>) -> Vec<Node> {
         };
         let start = out.iter().rposition(ends).map_or(0, |i| i + 1);
         let mut over = out.split_off(start);
-        // The space between what stands before and the fraction stays outside.
+        // The space in front of the fraction stays outside.
         let lead = over.iter().take_while(|n| is_space(n)).count();
         out.extend(over.drain(..lead));
         while rest.peek().is_some_and(is_space) {
@@ -120,7 +120,7 @@ fn fractions(nodes: Vec<Node>) -> Vec<Node> {
             under.push(next);
         }
         if over.is_empty() || under.is_empty() {
-            // Nothing to stack: as it was written.
+            // Nothing to stack: keep the slash.
             out.extend(over);
             out.push(node);
             out.extend(under);
@@ -131,7 +131,7 @@ fn fractions(nodes: Vec<Node>) -> Vec<Node> {
     out
 }
 
-/// Without the brackets around all of it: above and below a bar they say nothing.
+/// Removes the outer brackets, which are redundant above and below a fraction bar.
 pub(super) fn bare(nodes: &[Node]) -> &[Node] {
     match nodes {
         [Node::Group(open, body, close)]
@@ -143,8 +143,7 @@ pub(super) fn bare(nodes: &[Node]) -> &[Node] {
     }
 }
 
-/// The pieces between which a line is broken at best: before + and − with spaces about them, before words, and before
-/// what follows a comma.
+/// Splits an equation at the best line breaks: before + and − with spaces around them, before words, and after commas.
 pub(super) fn terms(nodes: &[Node]) -> Vec<&[Node]> {
     split(nodes, |i| {
         let before = i.checked_sub(1).map(|k| &nodes[k]);
@@ -155,8 +154,8 @@ pub(super) fn terms(nodes: &[Node]) -> Vec<&[Node]> {
     })
 }
 
-/// The pieces between factors as well, which have a space or nothing but their brackets between them. A function stays
-/// with its argument.
+/// Splits an equation between factors, which are separated by a space or only by brackets. A function stays with its
+/// argument.
 pub(super) fn factors(nodes: &[Node]) -> Vec<&[Node]> {
     split(nodes, |i| {
         let after = nodes.get(i + 1).is_some_and(|n| is_sign(n, "=≈≤≥<>×·,"));
@@ -181,7 +180,7 @@ fn split(nodes: &[Node], at: impl Fn(usize) -> bool) -> Vec<&[Node]> {
     pieces
 }
 
-/// The same in single signs: for what fits no line.
+/// Flattens the tree into single signs, for pieces that are too wide for a line.
 pub(super) fn flattened(nodes: &[Node]) -> Vec<Node> {
     let upright = |base: &str| {
         Node::Atom(Atom::Upright { base: base.to_owned(), sub: String::new(), sup: String::new() })

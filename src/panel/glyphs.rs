@@ -1,12 +1,12 @@
-//! Names and glyphs from elsewhere, as far as the fonts of the window go.
+//! Text and glyphs from outside, limited to the characters that the fonts contain.
 
 use std::{borrow::Cow, collections::HashSet};
 
 use bevy::log::warn;
 use bevy_egui::egui::{Id, TextStyle, Ui};
 
-/// A text in which every character that the fonts lack is replaced by letters that sound alike. `owner` is whose it is,
-/// for the log.
+/// Replaces each character that the fonts lack by letters of similar sound. `owner` names the origin of the text in the
+/// log.
 pub(super) fn legible<'a>(ui: &Ui, text: &'a str, owner: &str) -> Cow<'a, str> {
     if has(ui, text) {
         return Cow::Borrowed(text);
@@ -21,7 +21,7 @@ pub(super) fn legible<'a>(ui: &Ui, text: &'a str, owner: &str) -> Cow<'a, str> {
     Cow::Owned(shown)
 }
 
-/// The glyph of a type, or the first letter of its name where the fonts lack it.
+/// The glyph of a type, or the first letter of the type's name if the fonts lack the glyph.
 pub(super) fn glyph<'a>(ui: &Ui, glyph: &'a str, name: &str) -> Cow<'a, str> {
     if has(ui, glyph) {
         return Cow::Borrowed(glyph);
@@ -34,14 +34,14 @@ pub(super) fn glyph<'a>(ui: &Ui, glyph: &'a str, name: &str) -> Cow<'a, str> {
 
 fn has(ui: &Ui, text: &str) -> bool {
     let font = TextStyle::Body.resolve(ui.style());
-    // egui's own question takes every character of the font with the box for one that is lacking.
+    // egui's own check reports every character of the font that contains the replacement box as missing.
     ui.fonts_mut(|fonts| {
         let mut font = fonts.fonts.font(&font.family);
         text.chars().all(|c| font.characters().contains_key(&c))
     })
 }
 
-/// Logs a replacement, once.
+/// Logs a replacement once.
 fn report(ui: &Ui, text: &str, shown: &str, owner: &str) {
     let known = Id::new("glyphs reported");
     let new = ui.data_mut(|data| {

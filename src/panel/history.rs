@@ -1,13 +1,13 @@
-//! The steps by which the scene came to be, as a list: a click goes back to a step, or forward again.
+//! The edit history as a list: a click undoes or redoes up to a step.
 
 use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
 
 use super::{Panel, PanelContext, Place, state::Action, theme::Palette};
 
-/// The id of the tab.
+/// Id of the tab.
 pub const HISTORY_TAB: &str = "history";
 
-/// See the module.
+/// The *History* panel.
 #[derive(Clone, Copy, Debug)]
 pub struct History;
 
@@ -31,7 +31,7 @@ impl Panel for History {
         let steps: Vec<_> =
             std::iter::once("Scene as it was opened").chain(session.document.steps()).collect();
         let height = ui.spacing().interact_size.y;
-        // The step that was made last is always in view.
+        // The latest step is always in view.
         let shown = ui.id().with("shown step");
         let news = ui.data(|data| data.get_temp(shown)) != Some((done, steps.len()));
         ui.data_mut(|data| data.insert_temp(shown, (done, steps.len())));

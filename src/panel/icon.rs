@@ -1,5 +1,5 @@
-//! Small pictures, drawn with lines so that they are sharp at every size, and buttons that carry
-//! them. An icon button always has a tooltip, which is also what a screen reader says.
+//! Line icons, sharp at every size, and icon buttons. An icon button always has a tooltip, which is also its name for
+//! screen readers.
 
 use bevy_egui::egui::{
     Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
@@ -8,40 +8,40 @@ use bevy_egui::egui::{
 use super::{state::Severity, theme::Palette};
 use crate::shading::Stage;
 
-/// A small picture.
+/// An icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     /// Add something.
     Plus,
-    /// Remove something.
+    /// Delete.
     Bin,
-    /// One more like this.
+    /// Duplicate.
     Duplicate,
-    /// Change the name.
+    /// Rename.
     Pencil,
-    /// Close, dismiss.
+    /// Close or dismiss.
     Cross,
     /// Copy text.
     Copy,
-    /// More below.
+    /// Show more.
     Down,
-    /// Less.
+    /// Show less.
     Up,
-    /// The observer; something that can be seen.
+    /// The observer, or a visible part.
     Eye,
-    /// Something that is hidden.
+    /// A hidden part.
     EyeOff,
-    /// A light that shines.
+    /// A light that is on.
     Lamp,
-    /// A light that is switched off.
+    /// A light that is off.
     LampOff,
     /// The room.
     Room,
-    /// Back to the default.
+    /// Reset to the default.
     Reset,
-    /// Into view.
+    /// Bring into view.
     Target,
-    /// Done, right.
+    /// Done or correct.
     Check,
 }
 
@@ -140,10 +140,10 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
     }
 }
 
-/// Width and height of a button, points.
+/// Width and height of a button, in points.
 pub(super) const SIZE: f32 = 22.0;
 
-/// A button with nothing but a picture. `says` is its tooltip and its name.
+/// An icon button. `says` is the tooltip and the accessible name.
 pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(SIZE, SIZE), Sense::click());
@@ -159,12 +159,12 @@ pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     response.on_hover_text(says)
 }
 
-/// The sign of a severity: its shape says as much as its colour.
+/// The icon of a severity: its shape says as much as its colour.
 pub fn severity(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, palette: &Palette) {
     severity_in(painter, centre, radius, severity, palette.severity(severity));
 }
 
-/// The same in another colour, for a ground that has the colour of the severity.
+/// The icon of a severity in another colour, for a background in the colour of the severity.
 pub fn severity_in(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, colour: Color32) {
     let r = radius;
     let stroke = Stroke::new((r / 4.0).max(1.2), colour);
@@ -195,7 +195,7 @@ pub fn severity_in(painter: &Painter, centre: Pos2, radius: f32, severity: Sever
     }
 }
 
-/// The points at which a shading model evaluates the reflection model, marked on a triangle.
+/// A triangle with marks at the points where a shading model evaluates the reflection model.
 pub fn stage(painter: &Painter, rect: Rect, stage: Stage, palette: &Palette) {
     let corners = [
         pos2(rect.center().x, rect.top() + 3.0),

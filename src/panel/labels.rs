@@ -1,4 +1,4 @@
-//! Labels in the picture: beside each object its name, its reflection model, and the values that say most.
+//! Labels in the picture: beside each object its name, reflection model and most telling values.
 
 use bevy_egui::egui::{FontId, Rect, TextStyle, Ui, pos2, vec2};
 use glam::Vec3;
@@ -11,14 +11,14 @@ use super::{
 };
 use crate::{document::Selection, registry::Registry, scene::Scene};
 
-/// More would hide the picture.
+/// Maximum number of labels; more would hide the picture.
 const MOST: usize = 16;
-/// The smallest object that has a label, points.
+/// Minimum size of a labelled object, in points.
 const SMALLEST: f32 = 24.0;
-/// Values that a label shows.
+/// Number of values in a label.
 const VALUES: usize = 3;
 
-/// Paints the labels of the objects in a view. Returns their places.
+/// Paints the labels of the objects in a view. Returns their rectangles.
 pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Vec<Rect> {
     let on = match session.view.labels {
         Labels::Off => false,
@@ -45,11 +45,11 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
             (large && rect.contains(middle)).then_some((i, below, distance))
         })
         .collect();
-    // The nearer ones have the choice.
+    // Nearer objects take precedence.
     found.sort_by(|a, b| a.2.total_cmp(&b.2));
     found.truncate(MOST);
     let chosen = found.iter().map(|(i, ..)| scene.objects[*i].clone()).collect();
-    // Only of these few, what the view makes of them.
+    // Resolves the view for these few objects only.
     let few = Scene { objects: chosen, variants: scene.variants.clone(), ..shallow(scene) };
     let Some((seen, _)) = few.seen(view, registry) else { return Vec::new() };
     let mut places: Vec<Rect> = Vec::new();
@@ -92,7 +92,7 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     places
 }
 
-/// A scene without its lists.
+/// A copy of a scene without its lists.
 fn shallow(scene: &Scene) -> Scene {
     Scene {
         reflection_model: scene.reflection_model.clone(),
@@ -103,7 +103,7 @@ fn shallow(scene: &Scene) -> Scene {
     }
 }
 
-/// The entries of a menu.
+/// Adds the menu entries.
 pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     for labels in Labels::ALL {
         if ui.radio(session.view.labels == labels, labels.name()).clicked() {

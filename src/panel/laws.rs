@@ -1,4 +1,4 @@
-//! The law check in the panel of the shaders: its button, and what it found.
+//! The law check in the shader panel: button and findings.
 
 use bevy_egui::egui::{self, RichText, Sense, Ui, vec2};
 
@@ -12,7 +12,7 @@ use crate::{
     registry::Registry,
 };
 
-/// The button, with what there is to say of a check that runs or is out of date; from the right to the left.
+/// The button, and a note about a check that runs or is out of date, laid out from right to left.
 pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let name = |id: &str| registry.model(id).map(|m| m.declaration.name);
     let Some(shown) = name(session.model_shown()) else { return };
@@ -35,18 +35,18 @@ pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut
     }
 }
 
-/// The check of the shown model.
+/// The check of the current model.
 fn of_shown(session: &Session) -> Option<&LawCheck> {
     session.laws.as_ref().filter(|check| check.model == session.model_shown())
 }
 
-/// True if the shown model was found to break a law that it claims, or to give values that are no numbers.
+/// True if the current model violates a law that it claims, or returns values that are not numbers.
 pub fn are_broken(session: &Session) -> bool {
     let outcome = of_shown(session).and_then(|check| check.outcome.as_ref());
     outcome.is_some_and(|found| found.as_ref().is_ok_and(|r| !r.broken().is_empty() || !r.is_finite()))
 }
 
-/// The findings about the shown model, if there are any.
+/// The findings about the current model, if any.
 pub fn findings(ui: &mut Ui, session: &Session) {
     match of_shown(session).and_then(|check| check.outcome.as_ref()) {
         None => {}
@@ -78,7 +78,7 @@ fn laws(ui: &mut Ui, report: &LawReport) {
     }
 }
 
-/// A finding with its sign; a tick where there is nothing to say against it.
+/// A finding with its icon: a tick if there is no problem.
 fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[String]) {
     let palette = Palette::here(ui);
     let bad = severity == Some(Severity::Error);
@@ -102,7 +102,7 @@ fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[St
         }
     });
     row.response.on_hover_text(at.join("\n"));
-    // The place of a mistake must be seen to mend it.
+    // The place of a violation helps to fix it.
     for place in at.iter().filter(|_| bad) {
         ui.indent(place, |ui| ui.add(egui::Label::new(theme::small(ui, place)).wrap().selectable(true)));
     }

@@ -1,12 +1,12 @@
-//! The symbol that is pointed at: in an equation, at its knob, at its vector in the picture, at its number or its curve.
-//! In the next frame, all that stands for it lights.
+//! The symbol under the pointer: in an equation, at its knob, its vector in the picture, its number or its curve. In
+//! the next frame, everything that represents the symbol is highlighted.
 
 use bevy_egui::egui::{Context, Id, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, vec2};
 
 use super::theme::Palette;
 use crate::text::mathematics::same_symbol;
 
-/// What an equation is about. The same letter stands for one thing in that of a surface, and for another in that of a
+/// The subject of an equation. The same letter has different meanings in the equation of a surface and in that of a
 /// light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Domain {
@@ -19,28 +19,29 @@ pub(super) enum Domain {
     Shape,
 }
 
-/// The symbols of one thing, such as the two of `N·L`.
+/// The symbols of one element, such as the two of `N·L`.
 #[derive(Clone, Debug, PartialEq)]
 struct Pointed {
     domain: Domain,
     symbols: Vec<String>,
-    /// The pointer is there; else the keyboard focus.
+    /// True for the pointer, false for the keyboard focus.
     by_pointer: bool,
 }
 
 #[derive(Clone, Debug, Default)]
 struct Links {
-    /// What was pointed at in the last frame.
+    /// Symbols pointed at in the previous frame.
     lit: Option<Pointed>,
-    /// What is pointed at in this one.
+    /// Symbols pointed at in this frame.
     next: Option<Pointed>,
-    /// That of the widgets that are shown now.
+    /// Domain of the widgets being shown.
     domain: Domain,
-    /// What was asked for by a click, until when it lights, and true until its knob has come into sight.
+    /// Symbols requested by a click, end time of their highlight, and true until their knob has been scrolled into
+    /// view.
     held: Option<(Pointed, f64, bool)>,
 }
 
-/// By so long lights what was asked for, seconds.
+/// Duration of the highlight after a click, in seconds.
 const HELD: f64 = 2.5;
 
 fn memory() -> Id {
@@ -51,7 +52,7 @@ fn links<R>(ctx: &Context, f: impl FnOnce(&mut Links) -> R) -> R {
     ctx.data_mut(|d| f(d.get_temp_mut_or_default::<Links>(memory())))
 }
 
-/// A frame begins: what was pointed at in the one before lights.
+/// Starts a frame: highlights what was pointed at in the previous one.
 pub(super) fn begin(ctx: &Context) {
     let now = ctx.input(|i| i.time);
     links(ctx, |links| {
@@ -61,7 +62,8 @@ pub(super) fn begin(ctx: &Context) {
     });
 }
 
-/// Shows where a symbol of a surface comes from: all that stands for it lights for a while, and its knob comes into sight.
+/// Shows the origin of a symbol of a surface: highlights everything that represents it for a while, and scrolls to its
+/// knob.
 pub(super) fn seek(ctx: &Context, symbols: &[&str]) {
     let symbols = symbols.iter().map(|s| (*s).to_owned()).collect();
     let until = ctx.input(|i| i.time) + HELD;
@@ -71,7 +73,7 @@ pub(super) fn seek(ctx: &Context, symbols: &[&str]) {
     ctx.request_repaint();
 }
 
-/// True once for the knob of a symbol that is to come into sight.
+/// True once for the knob of a symbol to scroll to.
 pub(super) fn is_sought(ctx: &Context, symbol: &str) -> bool {
     links(ctx, |links| {
         let domain = links.domain;
@@ -81,14 +83,14 @@ pub(super) fn is_sought(ctx: &Context, symbol: &str) -> bool {
     })
 }
 
-/// A frame is over. There is another one if something else is to light.
+/// Ends a frame. Requests another one if the highlight changes.
 pub(super) fn end(ctx: &Context) {
     if links(ctx, |links| links.lit != links.next) {
         ctx.request_repaint();
     }
 }
 
-/// Shows widgets whose symbols belong to something else than a surface.
+/// Shows widgets whose symbols belong to another domain.
 pub(super) fn within<R>(ui: &mut Ui, domain: Domain, add: impl FnOnce(&mut Ui) -> R) -> R {
     let before = links(ui.ctx(), |links| std::mem::replace(&mut links.domain, domain));
     let out = add(ui);
@@ -102,7 +104,8 @@ fn note(ctx: &Context, symbols: &[&str], by_pointer: bool) {
         return;
     }
     links(ctx, |links| {
-        // The focus stays where the last click was; the pointer is where one looks.
+        // The pointer wins over the focus: the focus stays where the last click was, the pointer is where the user
+        // looks.
         let weaker = !by_pointer && links.next.as_ref().is_some_and(|next| next.by_pointer);
         if !weaker {
             links.next = Some(Pointed { domain: links.domain, symbols, by_pointer });
@@ -110,19 +113,19 @@ fn note(ctx: &Context, symbols: &[&str], by_pointer: bool) {
     });
 }
 
-/// The pointer is at something with these symbols.
+/// Reports that the pointer is at an element with these symbols.
 pub(super) fn point(ctx: &Context, symbols: &[&str]) {
     note(ctx, symbols, true);
 }
 
-/// Notes if the pointer, or the keyboard focus, is in this part of a panel, which has these symbols.
+/// Reports if the pointer or the keyboard focus is in a part of a panel that has these symbols.
 pub(super) fn touch(ui: &Ui, rect: Rect, symbols: &[&str]) {
     let seen = rect.intersect(ui.clip_rect());
     let has = |id: Id| {
         let widget = ui.ctx().viewport(|viewport| viewport.prev_pass.widgets.get(id).copied());
         widget.is_some_and(|w| w.layer_id == ui.layer_id() && seen.contains(w.rect.center()))
     };
-    // What is dragged keeps the pointer wherever it goes.
+    // A dragged widget keeps the pointer wherever it goes.
     let pointed = match ui.ctx().dragged_id() {
         Some(id) => has(id),
         None => ui.rect_contains_pointer(rect),
@@ -134,7 +137,7 @@ pub(super) fn touch(ui: &Ui, rect: Rect, symbols: &[&str]) {
     }
 }
 
-/// The symbols that light in a domain; often none.
+/// The highlighted symbols of a domain, if any.
 pub(super) fn lit_in(ctx: &Context, domain: Domain) -> Vec<String> {
     links(ctx, |links| match &links.lit {
         Some(lit) if lit.domain == domain => lit.symbols.clone(),
@@ -142,13 +145,13 @@ pub(super) fn lit_in(ctx: &Context, domain: Domain) -> Vec<String> {
     })
 }
 
-/// True if a symbol lights among the widgets that are shown now.
+/// True if a symbol is highlighted in the current domain.
 pub(super) fn is_lit(ctx: &Context, symbol: &str) -> bool {
     let domain = links(ctx, |links| links.domain);
     !symbol.is_empty() && lit_in(ctx, domain).iter().any(|lit| same_symbol(lit, symbol))
 }
 
-/// The ground of what lights: a tint, and a line below it, since a tint alone is easily missed.
+/// The background of a highlighted element: a tint and a line below, since a tint alone is easily missed.
 pub(super) fn ground(rect: Rect, palette: &Palette) -> Shape {
     let line = [rect.left_bottom(), rect.right_bottom()].map(|at| at - vec2(0.0, 1.0));
     Shape::Vec(vec![
@@ -157,7 +160,7 @@ pub(super) fn ground(rect: Rect, palette: &Palette) -> Shape {
     ])
 }
 
-/// The ground of a row that lights: a tint with a frame.
+/// The background of a highlighted row: a tint with a frame.
 pub(super) fn row_ground(rect: Rect, palette: &Palette) -> Shape {
     let frame = Stroke::new(1.0, palette.accent);
     Shape::Vec(vec![
@@ -166,7 +169,7 @@ pub(super) fn row_ground(rect: Rect, palette: &Palette) -> Shape {
     ])
 }
 
-/// Shows something that stands for these symbols, on a ground if it lights, which `lit` says.
+/// Shows something that represents these symbols, with a background if `lit` says that it is highlighted.
 pub(super) fn linked(
     ui: &mut Ui,
     symbols: &[&str],
@@ -182,7 +185,7 @@ pub(super) fn linked(
     response
 }
 
-/// The distance from a place to a line through points.
+/// Distance from a position to a polyline.
 pub(super) fn distance(at: Pos2, path: &[Pos2]) -> f32 {
     let to = |a: Pos2, b: Pos2| {
         let (along, from) = (b - a, at - a);
@@ -255,11 +258,11 @@ mod tests {
             });
             output.viewport_output.values().any(|v| v.repaint_delay.is_zero())
         };
-        // The first frames of egui ask by themselves.
+        // egui requests the first frames itself.
         (0..6).for_each(|_| {
             asks("");
         });
-        // After each frame that asks, egui draws another one by itself.
+        // After each requested frame, egui draws another one itself.
         for symbol in ["a", "b", ""] {
             assert_eq!([symbol; 5].map(asks), [true, true, false, false, false], "{symbol}");
         }

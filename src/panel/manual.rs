@@ -1,11 +1,11 @@
-//! The manual: the documents of the program as one page, which a browser shows without the network.
+//! The manual: the documents of the program as one page for a browser, usable offline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
-/// The pages, with their ids: the names of their files.
+/// The pages with their ids, which are the file names.
 pub const PAGES: [(&str, &str); 15] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
@@ -24,7 +24,7 @@ pub const PAGES: [(&str, &str); 15] = [
     ("architecture", include_str!("../../docs/architecture.md")),
 ];
 
-/// The page.
+/// The complete page.
 #[must_use]
 pub fn page() -> String {
     let sections: Vec<_> = PAGES.iter().map(|(id, text)| (*id, section(id, text))).collect();
@@ -50,8 +50,9 @@ pub fn page() -> String {
     whole.into_string()
 }
 
-/// The title of a document, and its content as HTML. Links within the documents lead to places of the page; others than
-/// to the web, such as those to files of the source, are plain text. Pictures are named: the program carries none.
+/// The title of a document, and its content as HTML. Links between documents lead to anchors of the page; other links
+/// than those to the web, such as to source files, become plain text. Pictures are replaced by their names: the program
+/// contains none.
 fn section(id: &str, text: &str) -> (String, String) {
     let mut slugs = BTreeMap::new();
     let mut title = String::new();
@@ -73,7 +74,7 @@ fn section(id: &str, text: &str) -> (String, String) {
                 let attribute = Some(CowStr::from(anchor));
                 let tag = Tag::Heading { level, id: attribute, classes: Vec::new(), attrs: Vec::new() };
                 events.push(Event::Start(tag));
-                // A heading is no link.
+                // Links in a heading become plain text.
                 events.extend(
                     within
                         .into_iter()
@@ -104,7 +105,7 @@ fn section(id: &str, text: &str) -> (String, String) {
     (title, body)
 }
 
-/// The place that a link of a page leads to; `None` if it is none of the manual nor of the web.
+/// The target of a link of a page; `None` unless it is in the manual or on the web.
 fn target(page: &str, to: &str) -> Option<String> {
     if to.starts_with("https://") || to.starts_with("http://") {
         return Some(to.to_owned());
@@ -117,7 +118,7 @@ fn target(page: &str, to: &str) -> Option<String> {
     Some(if place.is_empty() { format!("#{named}") } else { format!("#{named}--{place}") })
 }
 
-/// The words of a heading.
+/// The text of a heading.
 fn plain(events: &[Event]) -> String {
     let text = |event: &Event| match event {
         Event::Text(text) | Event::Code(text) => text.to_string(),
@@ -127,20 +128,20 @@ fn plain(events: &[Event]) -> String {
     events.iter().map(text).collect()
 }
 
-/// The anchor of a heading, as forges make it.
+/// The anchor of a heading, as code hosts generate it.
 fn slug(words: &str) -> String {
     let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
     words.to_lowercase().chars().filter(kept).map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// The same, told apart from earlier ones of the page.
+/// The anchor, made unique among the earlier ones of the page.
 fn numbered(known: &mut BTreeMap<String, usize>, slug: String) -> String {
     let count = known.entry(slug.clone()).or_insert(0);
     *count += 1;
     if *count == 1 { slug } else { format!("{slug}-{}", *count - 1) }
 }
 
-/// The anchors that links of a page lead to, without those that it has: none, if it is whole.
+/// Targets of internal links that are missing from a page: empty if the page is complete.
 #[must_use]
 pub fn dead_links(page: &str) -> BTreeSet<String> {
     let attributes = |name: &str| -> BTreeSet<String> {

@@ -1,4 +1,4 @@
-//! Matches: the question how a view shall be matched to view A, and the progress of the match that runs.
+//! Matching: the dialog that matches a view to view A, and the progress of the running match.
 
 use bevy_egui::egui::{
     self, Align, Button, Id, Key, Layout, RichText, ScrollArea, Ui, WidgetInfo, WidgetType, Window, vec2,
@@ -16,21 +16,21 @@ use crate::{
     scene::variant::{LETTERS, MAX_VARIANTS},
 };
 
-/// The width of the question, points.
+/// Width of the dialog, in points.
 const WIDTH: f32 = 440.0;
-/// The height of the sentence about a choice: the room for each, so that nothing moves between them.
+/// Height of the description of an option, in points: the same for all, so that nothing moves.
 const SENTENCE: f32 = 34.0;
-/// The most that the list of parameters takes, points.
+/// Maximum height of the parameter list, in points.
 const LIST: f32 = 240.0;
-/// Remembers that the question has got the focus.
+/// Key of the flag that the dialog has received the focus.
 const FOCUSED: &str = "match draft focused";
 
-/// The letter of a view.
+/// Letter of a view.
 fn letter(view: usize) -> &'static str {
     LETTERS[view.min(MAX_VARIANTS)]
 }
 
-/// The entry in the menu of a view. True if it was chosen.
+/// The entry in the menu of a view. Returns true if clicked.
 pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
     let button = ui.add(Button::new(format!("Match {} to A…", letter(view))).frame(false));
     let help = format!(
@@ -40,7 +40,7 @@ pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
     button.on_hover_text(help).clicked()
 }
 
-/// Asks how a view shall be matched, while there is a draft. Stands in nobody's way.
+/// Shows the dialog while there is a draft. It does not block the window.
 pub(super) fn show(
     ctx: &egui::Context,
     session: &Session,
@@ -147,7 +147,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) 
     actions
 }
 
-/// The progress of the match that runs, with a button that stops it.
+/// The progress of the running match, with a button that stops it.
 pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let Some(now) = &session.facts.matching else { return };
     let name = format!("Matching {} to A", letter(now.view));

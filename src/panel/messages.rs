@@ -9,7 +9,7 @@ use super::{
     theme::Palette,
 };
 
-/// See the module.
+/// The *Messages* panel.
 #[derive(Clone, Copy, Debug)]
 pub struct Messages;
 

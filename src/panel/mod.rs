@@ -1,11 +1,11 @@
 //! The panels around the picture, in egui.
 //!
-//! A panel reads the state of the window and answers with actions ([`Panel`]); [`show`] lays the panels out,
-//! applies their actions to the [`Session`] and returns the effects that need files, entities or the
-//! operating system. None of it needs a window.
+//! A panel reads the state of the window and returns actions ([`Panel`]); [`show`] lays out the panels, applies their
+//! actions to the [`Session`] and returns the effects that need files, entities or the operating system. No window is
+//! needed for any of this.
 //!
-//! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
-//! gets a tab and an entry in the menu by itself. From outside the crate: [`PanelApp::add_panel`].
+//! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom automatically
+//! gets a tab and a menu entry. From outside the crate: [`PanelApp::add_panel`].
 
 use std::{
     mem::swap,
@@ -96,7 +96,7 @@ pub mod welcome;
 mod widths;
 pub mod wires;
 
-/// The built-in panels, in the order in which they are laid out. The one list.
+/// Registers the built-in panels, in layout order. This is the only list.
 pub fn register_builtin(to: &mut Panels) {
     to.add_own(top::TopBar);
     to.add_own(status::StatusLine);
@@ -120,9 +120,9 @@ impl Panels {
     }
 }
 
-/// Shows the window, applies what the user does, and returns the effects. `ui` covers the window. `session` is borrowed
-/// mutably only when something changes, `area` has the place of the picture in the frame before and gets that of this
-/// one. `world` is for panels to read.
+/// Shows the window, applies the user's actions, and returns the effects. `ui` covers the window. Borrows `session`
+/// mutably only when something changes. `area` holds the picture area of the previous frame and receives that of this
+/// frame. `world` is for panels to read.
 pub fn show(
     ui: &mut Ui,
     mut session: impl DerefMut<Target = Session>,
@@ -144,7 +144,7 @@ pub fn show(
     if !session.panels.iter().copied().eq(panels.infos()) {
         let first = session.panels.is_empty();
         session.panels = panels.infos().collect();
-        // The panel of others that was open when the window was closed.
+        // The guest panel that was open when the window was closed.
         if let Some(tab) = session.view.guest_tab.clone().filter(|_| first)
             && session.panels.iter().any(|panel| panel.id == tab)
         {
@@ -195,7 +195,7 @@ pub fn show(
         let shown = egui::Panel::bottom(info.id).frame(frame).show(ui, |ui| panel.show(ui, &mut context));
         focus::region(&ctx, Region::Panel(Place::Status), shown.response.rect);
     }
-    // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
+    // Panel widths are stored per zoom level. A zoom takes effect a frame after it is chosen.
     let zoom = zoom_percent(&ctx);
     let widths = Widths::of(&ctx, &session, whole.width());
     let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
@@ -207,9 +207,9 @@ pub fn show(
         });
         focus::region(&ctx, Region::Panel(Place::Left), shown.response.rect);
     }
-    // The picture of a presentation has the rest.
+    // In a presentation, the picture takes the remaining space.
     let whole = if presenting { ui.available_rect_before_wrap() } else { whole };
-    // A lesson has the whole height: it is read while the strip explains.
+    // A lesson takes the full height: it is read while the strip explains.
     let learning = session.lesson.is_some();
     if session.view.bottom_open && !presenting && !learning {
         sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
@@ -269,7 +269,7 @@ pub fn show(
     over.places.extend(places);
     actions.append(&mut over.actions);
     actions.extend(asked);
-    // Nothing behind a window shows its tooltip over it.
+    // Nothing behind a window shows a tooltip over it.
     let windows = [
         session.view.keys_open,
         session.view.about_open,
@@ -318,12 +318,12 @@ pub fn show(
     effects
 }
 
-/// The size of everything that is in force, per cent.
+/// The current zoom, in per cent.
 fn zoom_percent(ctx: &egui::Context) -> u32 {
     (100.0 * ctx.zoom_factor()).round() as u32
 }
 
-/// True during a drag, which is one step of the history, and while a field is typed in, which is one too.
+/// True during a drag, or while the user types into a field: each is one step of the history.
 fn gesture_goes_on(ctx: &egui::Context) -> bool {
     let focus = ctx.memory(egui::Memory::focused);
     let key = Id::new("focus of the gesture");
@@ -334,35 +334,35 @@ fn gesture_goes_on(ctx: &egui::Context) -> bool {
     ctx.input(|input| !input.pointer.any_released() && (typing || input.pointer.any_down()))
 }
 
-/// The areas that keep the pointer from the picture, as they were shown last.
+/// Areas that keep the pointer from the picture, as last shown.
 #[derive(Clone, Debug, Default)]
 struct Cover {
-    /// Places over the picture that can be clicked.
+    /// Clickable rectangles over the picture.
     places: Vec<Rect>,
-    /// A question or a dialog waits for an answer.
+    /// True while a question or a dialog waits for an answer.
     busy: bool,
 }
 
-/// True if the pointer at this place, in points of the panels, is over the picture with no panel, menu or dialog
-/// between; `frame` is that of its [`PictureArea`]. Asked with what was shown last: a press counts where it was made,
-/// also before the next frame.
+/// True if a position, in points of the panels, is over the picture and no panel, menu or dialog is in between; `frame`
+/// is that of the [`PictureArea`]. Uses the most recent layout: a press counts where it was made, even before the next
+/// frame.
 #[must_use]
 pub fn is_over_picture(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
     let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
     is_in_sight(ctx, frame, at) && !cover.places.iter().any(|place| place.contains(at))
 }
 
-/// The same, also where something over the picture can be clicked.
+/// True if a position is over the visible picture, even where something over the picture can be clicked.
 fn is_in_sight(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
     let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
-    // Panels are no layers of their own; menus, popups, windows and dialogs are.
+    // Panels are not separate layers; menus, popups, windows and dialogs are.
     frame.contains(at)
         && !cover.busy
         && ctx.layer_id_at(at).is_none_or(|layer| layer.order == egui::Order::Background)
         && !ctx.egui_is_using_pointer()
 }
 
-/// The place of the picture, and if pointer and keys are its own. What is clicked in `covered` is not the picture.
+/// The picture area, and whether pointer and keys belong to the picture. Clicks in `covered` do not.
 fn picture_area(
     ctx: &egui::Context,
     session: &Session,
@@ -380,15 +380,15 @@ fn picture_area(
         zoom: ctx.zoom_factor(),
         has_pointer: pointer.is_some_and(|at| is_over_picture(ctx, frame, at)),
         has_keys: !busy && ctx.memory(|m| m.focused()).is_none(),
-        // The chooser opens and closes by an action, and is not among egui's.
+        // The chooser opens and closes by an action, and is not one of egui's popups.
         popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,
         written,
         ..PictureArea::default()
     }
 }
 
-/// Adds the window to the app: the state, the panels, and the system that shows them. What it does
-/// not do itself it writes as [`LabEffect`] messages.
+/// Adds the window to the app: the state, the panels, and the system that shows them. Requests for the rest of the app
+/// are written as [`LabEffect`] messages.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PanelPlugin;
 
@@ -401,7 +401,7 @@ impl Plugin for PanelPlugin {
     }
 }
 
-/// The session, and a note if it is changed.
+/// The session, with a flag for changes.
 struct Tracked<'a> {
     session: &'a mut Session,
     changed: &'a mut bool,
@@ -422,8 +422,8 @@ impl DerefMut for Tracked<'_> {
     }
 }
 
-/// Shows the panels in the primary egui context, and carries out the commands that they queue. Does nothing while there
-/// is none. Exclusive, so that panels can read the world.
+/// Shows the panels in the primary egui context, if there is one, and runs the commands that they queue. Exclusive, so
+/// that panels can read the world.
 pub fn show_panels(
     world: &mut World,
     contexts: &mut QueryState<&mut EguiContext, With<PrimaryEguiContext>>,
@@ -438,7 +438,7 @@ pub fn show_panels(
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
     let mut area = world.resource::<PictureArea>().clone();
-    // Taken out, since panels read the world; `resource_scope` would count as a change in every frame.
+    // Taken out because panels read the world; `resource_scope` would count as a change in every frame.
     let (session, panels) = &mut *out;
     swap(world.resource_mut::<Session>().bypass_change_detection(), session);
     swap(world.resource_mut::<Panels>().bypass_change_detection(), panels);

@@ -1,5 +1,5 @@
-//! The model and the shading that one object has in place of the scene's: one button beside the model's name, and a
-//! hint at the top.
+//! The model and the shading of a single object in place of the scene's: a button beside the model's name, and a note
+//! at the top.
 
 use bevy_egui::egui::{Button, Popup, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType};
 
@@ -12,10 +12,10 @@ use super::{
 use crate::document::ObjectField;
 use crate::{registry::Registry, scene::Object};
 
-/// The points that the frame rate takes.
+/// Width of the frame rate, in points.
 const RATE: f32 = 96.0;
 
-/// Says that the choices at the top are about the selected object alone, where it has its own.
+/// Notes that the choices at the top apply to the selected object only, if it overrides the scene's model or shading.
 pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     let what = match (session.model_override().is_some(), session.shading_override().is_some()) {
         (true, true) => "reflection and shading",
@@ -27,7 +27,7 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     ui.add_space(6.0);
     let name = session.name_of(session.selection, registry);
     let text = format!("“{name}” overrides {what}");
-    // The frame rate keeps its place where there is room for both.
+    // The frame rate keeps its place if there is room for both.
     let all = ui.available_width();
     let room = if all - RATE >= 40.0 { all - RATE } else { all };
     if room < 20.0 {
@@ -51,7 +51,7 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     });
 }
 
-/// The button, and what it opens. Returns the change that was asked for.
+/// The button and its popup. Returns the requested change.
 pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<ObjectField> {
     let palette = Palette::here(ui);
     let model_name =

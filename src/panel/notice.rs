@@ -1,4 +1,4 @@
-//! Messages that a presentation shows for a moment: the way out, and what happened. It has no status line.
+//! Messages that a presentation, which has no status line, shows for a moment: how to leave it, and what happened.
 
 use std::{thread, time::Duration};
 
@@ -10,23 +10,24 @@ use super::{
     theme::{self, Palette},
 };
 
-/// Time for which something is said, seconds; a problem is read twice as long.
+/// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
-/// The part of the width that it takes at most.
+/// Maximum width, as a fraction of the picture.
 const WIDTH: f32 = 0.55;
 
-/// The messages of a presentation.
+/// State of the messages of a presentation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
-    /// The pass in which it was shown last.
+    /// Pass in which a message was last shown.
     pass: u64,
-    /// The messages that were added until then.
+    /// Number of messages added until then.
     added: usize,
-    /// When the last one was, if it was within the presentation, seconds.
+    /// Time of the latest message within the presentation, in seconds.
     since: Option<f64>,
 }
 
-/// Says it in the corner of `rect`, in letters of this size; the presentation began at `since`, seconds.
+/// Shows the current message in the corner of `rect`, in letters of this size; the presentation started at `since`, in
+/// seconds.
 pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session) {
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
     let id = Id::new("told in the presentation");
@@ -50,12 +51,12 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session
     }
 }
 
-/// Time for which it is said, seconds.
+/// Time for which a message is shown, in seconds.
 fn moment(severity: Option<Severity>) -> f64 {
     if severity.is_some_and(|severity| severity > Severity::Info) { 2.0 * MOMENT } else { MOMENT }
 }
 
-/// Draws the panels again after so many seconds: nothing else wakes a window at rest.
+/// Redraws the panels after a number of seconds: nothing else wakes an idle window.
 pub(super) fn wake(ctx: &Context, seconds: f64) {
     let (ctx, wait) = (ctx.clone(), Duration::from_secs_f64(seconds.max(0.0)));
     thread::spawn(move || {

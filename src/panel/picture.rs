@@ -31,31 +31,31 @@ use crate::{
     text::plural,
 };
 
-/// The least width of a picture with axes: in a narrower one they would hide more than they say.
+/// Minimum width of a picture for axes, in points: in a narrower one they would hide more than they say.
 const AXES: f32 = 240.0;
-/// The side of their corner, points.
+/// Side of the corner for the axes, in points.
 const AXES_CORNER: f32 = 84.0;
 
-/// The least width of a part of a picture with badges of its own, points.
+/// Minimum width of a part of a picture for its own badges, in points.
 const NARROWEST: f32 = 140.0;
-/// The width of a wide legend, points.
+/// Width of a wide legend, in points.
 const WIDE_PLATE: f32 = 330.0;
-/// The part of a picture that the plate about an error covers at most.
+/// Maximum fraction of a picture that the plate about an error covers.
 const PLATE: f32 = 0.25;
 
-/// The result of painting the overlays.
+/// Result of painting the overlays.
 #[derive(Debug, Default)]
 pub struct Overlaid {
-    /// The actions asked for there.
+    /// The requested actions.
     pub actions: Vec<Action>,
-    /// The places that can be clicked, which do not belong to the picture.
+    /// Clickable rectangles, which cover the picture.
     pub places: Vec<Rect>,
-    /// The places of badges, caption and axes.
+    /// Rectangles of badges, caption and axes.
     pub written: Vec<Rect>,
 }
 
-/// Paints the overlays into the picture, which goes on in `whole`, and around it what a presentation says. Marks keep clear
-/// of what was `written` over the picture in the frame before.
+/// Paints the overlays into the picture, which extends over `whole`, and around it the texts of a presentation. Marks
+/// keep clear of the rectangles `written` over the picture in the previous frame.
 pub fn overlays(
     ui: &mut Ui,
     [whole, rect]: [Rect; 2],
@@ -70,7 +70,7 @@ pub fn overlays(
     }
     wires::paint(ui, rect, rect, session.active(), session, registry);
     clipping::paint(&ui.painter_at(whole), whole, session.active(), session, ui.pixels_per_point());
-    // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
+    // A presentation has no marks, and its messages are as large as the rest of the text.
     marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
     all.written.extend(explain::vectors(ui, rect, session.active(), session, registry));
@@ -98,7 +98,8 @@ pub fn overlays(
     all
 }
 
-/// Paints the legend of the debug channel of a view from a corner on, if it shows one. Returns the place for what comes below.
+/// Paints the legend of a view's debug channel from a corner on, if there is one. Returns the top of the free space
+/// below.
 fn channel(
     ui: &mut Ui,
     rect: Rect,
@@ -117,12 +118,12 @@ fn channel(
     place.bottom() + 4.0
 }
 
-/// Paints the marks of a view, and over them the handles of what is selected.
+/// Paints the marks of a view, and over them the handles of the selection.
 fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &Registry, to: &mut Overlaid) {
     if session.view.presenting {
         return;
     }
-    // They would cover the pixel that is explained or that a lesson is about, and look like vectors.
+    // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
     let covers = session.explains() || session.lesson.is_some();
     let paints = [marks::marks, handles::handles];
     for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
@@ -132,7 +133,8 @@ fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &R
     }
 }
 
-/// Paints the overlays of a comparison: marks and handles into every view, and what is to be said of the picture into the active one.
+/// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
+/// active one.
 pub fn views(
     ui: &mut Ui,
     arrangement: &Arrangement,
@@ -142,10 +144,10 @@ pub fn views(
 ) -> Overlaid {
     let mut all = Overlaid::default();
     let shown = arrangement.cells.iter().filter(|cell| cell.part.is_positive());
-    // One over the other, two views have the same marks.
+    // Stacked views share their marks.
     let layout = session.document.comparison.layout;
     let apart = layout == Layout::SideBySide;
-    // A difference has no lines of its own.
+    // A difference has no wireframe.
     for cell in arrangement.cells.iter().filter(|_| layout != Layout::Difference) {
         wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
         let painter = ui.painter_at(cell.part);
@@ -158,7 +160,7 @@ pub fn views(
         });
     }
     for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
-        // Views that lie over each other have the same rectangle.
+        // Stacked views share a rectangle.
         all.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
     }
     let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
@@ -182,7 +184,7 @@ pub fn views(
             let body = FontId::proportional(CAPTION * arrangement.picture.height());
             ui.style_mut().text_styles.insert(TextStyle::Body, body);
         }
-        // Of a difference, both views are to be read.
+        // The badges of a difference are those of both views.
         let is_shown = |cell: &&Cell| cell.part.is_positive() || layout == Layout::Difference;
         let mut next = None;
         let mut disk = of_disk(session);
@@ -190,7 +192,7 @@ pub fn views(
             let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
             let is_second = layout == Layout::Wipe && cell.part.min != cell.rect.min;
-            // Below the legend of a lobe, which stands there already, and in a narrow picture below what is at the left.
+            // Below the legend of a lobe, if there is one, and in a narrow picture below the badges at the left.
             let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * theme::scale_here(ui);
             let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
                 .expand2(vec2(0.0, 16.0));
@@ -205,7 +207,7 @@ pub fn views(
             let top = channel(ui, cell.rect, from, cell.view, session, registry, &mut all);
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
-            // The edge of a wipe crosses no words where there is room beside it.
+            // Keeps badges on their own side of the edge of a wipe, if there is room.
             let beside = layout == Layout::Wipe && cell.part.width() >= NARROWEST * theme::scale_here(ui);
             let room = if beside { cell.part } else { cell.rect };
             next = Some(badges(ui, room, (from.0, top), signs, &mut all));
@@ -214,11 +216,11 @@ pub fn views(
     all
 }
 
-/// The words of the picture while a shader has an error: a heading, and the places of the errors. The model
-/// that people call `shown` is named first.
+/// Heading and lines of the message about a shader error in the picture. The model with the display name `shown` comes
+/// first.
 #[must_use]
 pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<String>)> {
-    /// More would hide the picture.
+    /// Maximum number of lines; more would hide the picture.
     const MOST: usize = 3;
     let mut names = status.stale();
     if names.is_empty() {
@@ -239,8 +241,8 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
-/// Says that the picture is not what the shaders say, in a way that is not overlooked on any picture: a frame, and
-/// a filled plate that leads to the panel with the errors.
+/// Shows that the picture does not match the shaders, in a way that stands out on any picture: a frame, and a filled
+/// plate that opens the panel with the errors.
 fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Vec<Action>, Rect) {
     let shown = registry.model(session.model_shown()).map_or("", |m| m.declaration.name);
     let Some((heading, lines)) = stale_words(&session.shaders, shown) else {
@@ -269,7 +271,7 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
         let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
         vec2(width + left, height) + 2.0 * padding
     };
-    // The picture is what counts, and then the heading; the panel with the errors says all.
+    // The picture has priority, then the heading; the panel lists all errors.
     let most = PLATE * rect.area();
     while galleys.len() > 1 && size_of(&galleys).x * size_of(&galleys).y > most {
         galleys.pop();
@@ -285,7 +287,7 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
         galleys = vec![lay_out(&heading, large(), 1, less.max(1.0))];
     }
     if too_large(&galleys) {
-        // There is no room but for the frame.
+        // There is room for the frame only.
         return (Vec::new(), Rect::NOTHING);
     }
     let size = size_of(&galleys);
@@ -293,7 +295,7 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
     let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
     let said = format!("{heading}: {}", lines.join("; "));
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
-    // The rim stands out where the picture has the colour of the plate.
+    // The rim stands out even where the picture has the colour of the plate.
     let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
     painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), egui::StrokeKind::Outside);
     let mut at = place.min + padding;
@@ -320,7 +322,7 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
     (actions, place)
 }
 
-/// Words on a ground that can be read over any picture. Returns the rectangle.
+/// Text on a background that is readable over any picture. Returns the rectangle.
 fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId, left: f32) -> Rect {
     let palette = Palette::here(ui);
     let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
@@ -333,15 +335,15 @@ fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId
     place
 }
 
-/// Says that the file of the scene is another one by now.
+/// The badge for a scene file that has changed on disk.
 fn of_disk(session: &Session) -> Option<Sign> {
     session.disk_badge().map(|badge| (badge, Vec::new()))
 }
 
-/// A badge, and what a click on it asks for.
+/// A badge, and the actions of a click on it.
 type Sign = (Badge, Vec<Action>);
 
-/// Says that terms of the equation are hidden in a view, and shows them all.
+/// The badge for hidden terms of the equation in a view, which shows them all.
 fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
     let shown = match session.terms_of(view) {
         TermSelection::All => return None,
@@ -366,7 +368,7 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
     Some((badge, vec![Action::View(ViewChange::Terms(TermSelection::All))]))
 }
 
-/// The badges of a view's picture. A change that concerns the active view makes this one the active one first.
+/// The badges of a view's picture. An action on the active view activates the view first.
 fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &Registry) -> Vec<Sign> {
     let per_point = ui.pixels_per_point();
     let pixels = f64::from(picture.area() * per_point * per_point);
@@ -387,7 +389,7 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
     all
 }
 
-/// Paints badges below each other from a corner on. Returns the place for what comes below.
+/// Paints a column of badges from a corner on. Returns the top of the free space below.
 fn badges(ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>, to: &mut Overlaid) -> f32 {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
@@ -415,7 +417,7 @@ fn badges(ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>, t
         let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
         let response = response.on_hover_cursor(pointer);
         if !badge.help.is_empty() {
-            // By key there is no other way to its help.
+            // With the keyboard alone, the help can be reached in no other way.
             if response.has_focus() {
                 response.show_tooltip_text(&badge.help);
             }
@@ -436,7 +438,7 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect 
     };
     let padding = vec2(8.0, 4.0);
     let left = if term.is_some() { 14.0 } else { 0.0 };
-    // The axes have the corner, where there is room for them.
+    // The axes take the corner if there is room for them.
     let corner = if rect.width() >= AXES { 100.0 } else { 0.0 };
     let room = (rect.width() - 16.0 - corner - 2.0 * padding.x - left).max(64.0);
     let size = TextStyle::Small.resolve(ui.style()).size;
@@ -457,7 +459,7 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect 
     place
 }
 
-/// The directions of the room as the camera sees them; the letters tell them apart.
+/// The world axes as seen by the camera, with letters to tell them apart.
 fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
@@ -482,7 +484,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
     Rect::from_center_size(centre, vec2(2.0, 2.0) * radius)
 }
 
-/// Advice where there is no picture.
+/// Shows a hint in place of a missing picture.
 fn hint(ui: &Ui, rect: Rect, session: &Session) {
     let text = if session.scene().objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."

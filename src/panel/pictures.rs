@@ -10,7 +10,7 @@ use super::{
 };
 use crate::scene::variant::LETTERS;
 
-/// The submenu.
+/// Adds the submenu.
 pub(super) fn menu(ui: &mut Ui, session: &Session, table: &[Binding], actions: &mut Vec<Action>) {
     submenu(ui, "Picture", |ui| {
         ui.set_width(232.0);

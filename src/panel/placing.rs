@@ -1,5 +1,5 @@
-//! The place of what is added to a scene: free, and in view of the camera; and the intensity of a new light, which
-//! shows something and does not blow the picture out.
+//! The position of a new part of the scene: free, and in view of the camera; and the intensity of a new light, which
+//! has a visible effect without overexposing the picture.
 
 use glam::{Quat, Vec2, Vec3};
 
@@ -20,37 +20,37 @@ use block::Block;
 
 mod block;
 
-/// Free space around a light, and between an object and the camera, metres.
+/// Free space around a light, and between an object and the camera, in metres.
 const AIR: f32 = 0.3;
-/// Pictures that tell how bright a light may be: small ones are enough.
+/// Size of the test pictures that determine the brightness of a light: small ones are enough.
 const PROBE: [u32; 2] = [128, 72];
-/// The most objects in such a picture: those nearest to the camera.
+/// Maximum number of objects in a test picture: those nearest to the camera.
 const PROBED: usize = 200;
-/// Share of a new light in the range that is left up to the brightest that the display shows.
+/// Fraction of the remaining range of the display that a new light uses.
 const SHARE: f32 = 0.75;
-/// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
+/// Minimum brightening by a new light, in display values from 0 to 1, even if some pixels then clip.
 const VISIBLE: f32 = 0.07;
-/// The part of what the light reaches that may clip for that.
+/// Fraction of the lit pixels that may clip for that.
 const HIGHLIGHTS: f32 = 0.006;
-/// The part of what the light reaches that gets at least so much brighter.
+/// Fraction of the lit pixels that are brightened at least that much.
 const VISIBLE_PART: f32 = 0.05;
 
-/// So far from the original a copy may stand, in widths or heights of the two: farther away it is beside it no more.
+/// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
-/// The same where it may cover the half of the original.
+/// Distances at which a copy may cover up to half of the original.
 const OVER: [f32; 2] = [0.45, 0.7];
-/// Of copies, the width or height that leaves a small gap, in reaches.
+/// Width or height of a copy that leaves a small gap, in multiples of the copy's reach.
 const GAP: f32 = 2.2;
-/// Outlines are a little smaller than the boxes and spheres around them.
+/// Factor from bounding boxes and spheres to the slightly smaller outlines.
 const OUTLINE: f32 = 0.95;
 
-/// A scene, and the camera before which something is placed.
+/// A scene, and the camera in front of which something is placed.
 pub(super) struct Stand<'a> {
     scene: &'a Scene,
     registry: &'a Registry,
     eye: Vec3,
     turn: Quat,
-    /// The spheres around the objects.
+    /// Bounding spheres of the objects.
     taken: Vec<(Vec3, f32)>,
 }
 
@@ -65,7 +65,7 @@ impl<'a> Stand<'a> {
         let size = DEFAULT_SIZE.min(0.5 * self.scene.scene_size.corner().min_element());
         let unit = self.registry.shape(id).map_or(0.5, |shape| shape.bounds(&Values::default()).radius);
         let wanted = self.middle();
-        // Where there is no room for it, it is smaller.
+        // If there is no room for it, the object becomes smaller.
         let smaller = [4.0, 8.0, 16.0].map(|divisor| (divisor, true));
         for (divisor, hides) in
             [(1.0, false), (2.0, false), (1.0, true), (2.0, true)].into_iter().chain(smaller)
@@ -85,15 +85,16 @@ impl<'a> Stand<'a> {
         (anywhere.unwrap_or_else(|| self.lattice(wanted)), size)
     }
 
-    /// The place of a copy of the object with that index: beside it as the camera sees it, at the same depth. Rather cut by
-    /// the edge of the picture than over the original, rather over the original than over others.
+    /// Position of a copy of the object with the given index: beside the original as seen by the camera, at the same
+    /// depth. Prefers being cut off by the edge of the picture over covering the original, and covering the original
+    /// over covering others.
     pub(super) fn copy(&self, index: usize) -> Vec3 {
         let objects = &self.scene.objects;
         let Some(original) = objects.get(index) else { return self.middle() };
         let block = Block::of(original, self.registry);
         let others = objects.iter().enumerate().filter(|(i, _)| *i != index);
         let others: Vec<_> = others.map(|(_, other)| Block::of(other, self.registry)).collect();
-        // What lies behind the original or around it is no neighbour.
+        // Objects behind or around the original are not neighbours.
         let beside: Vec<_> =
             others.iter().filter(|other| !self.hides(other, &block.at(original.position), true)).collect();
         let clear = |p: Vec3| {
@@ -102,7 +103,7 @@ impl<'a> Stand<'a> {
                 && others.iter().all(|other| !block.touches(other))
                 && beside.iter().all(|other| !self.hides(other, &block, false))
         };
-        // A copy of what is out of the picture is beside it all the same.
+        // A copy of an object outside the picture is still placed beside it.
         let out = !self.sees(original.position, 0.0);
         let whole = |p: Vec3| out || self.shows(&block.at(p));
         let middle = |p: Vec3| out || self.sees(p, 0.0);
@@ -110,7 +111,7 @@ impl<'a> Stand<'a> {
         let steps = axes.map(|axis| GAP * block.reach(axis).max(0.05));
         let place =
             |counts: &[f32], fits: &dyn Fn(Vec3) -> bool| self.beside(original.position, steps, counts, fits);
-        // Two things in one place look like one.
+        // Two objects at the same position look like one.
         let least = 0.2 * block.radius;
         let another = |p: Vec3| {
             self.is_inside(p, Vec3::ZERO)
@@ -129,8 +130,8 @@ impl<'a> Stand<'a> {
             .unwrap_or_else(|| self.lattice(original.position))
     }
 
-    /// The nearest place beside another as the camera sees it, at the same depth, that fits: to the right, to the left,
-    /// above or below, so many steps away. Steps to the side and up may differ.
+    /// The nearest valid position beside another as seen by the camera, at the same depth: to the right, to the left,
+    /// above or below, at the given numbers of steps. Sideways and upward steps may differ.
     fn beside(
         &self,
         of: Vec3,
@@ -139,14 +140,14 @@ impl<'a> Stand<'a> {
         fits: impl Fn(Vec3) -> bool,
     ) -> Option<Vec3> {
         let ways = [side * Vec3::X, side * Vec3::NEG_X, up * Vec3::Y, up * Vec3::NEG_Y];
-        // So fine that the depth stays.
+        // Fine enough to preserve the depth.
         let steps = 10.0 * self.steps();
         let place = |way: Vec3| round(of + self.turn * way, steps);
         let mut places = counts.iter().flat_map(|count| ways.map(|way| place(*count * way)));
         places.find(|p| fits(*p))
     }
 
-    /// True if a block is in the picture, whole.
+    /// True if a block is completely in the picture.
     fn shows(&self, block: &Block) -> bool {
         let seen = self.turn.inverse() * (block.centre - self.eye);
         let [side, rise, deep] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(self.turn * axis));
@@ -156,8 +157,8 @@ impl<'a> Stand<'a> {
         near > 0.1 && (boxed || self.sees(block.centre, block.radius))
     }
 
-    /// True if one of two blocks is before the other in the picture, or if the first one covers the `centre` of the other. What
-    /// is around the camera or behind it is before nothing.
+    /// True if two blocks overlap in the picture, or with `centre`, if the first one covers the centre of the other. A
+    /// block around the camera or behind it covers nothing.
     fn hides(&self, one: &Block, other: &Block, centre: bool) -> bool {
         let flat = |block: &Block| {
             let seen = self.turn.inverse() * (block.centre - self.eye);
@@ -173,22 +174,22 @@ impl<'a> Stand<'a> {
             let own = one.reach(way) / depth;
             if centre { own } else { OUTLINE * (own + other.reach(way) / far) }
         };
-        // Without a direction between the centres nothing parts them.
+        // If the centres coincide, they define no separating direction.
         let ways = [Some(Vec2::X), Some(Vec2::Y), between.try_normalize()];
         ways.into_iter().flatten().all(|way| between.dot(way).abs() < reach(way))
     }
 
-    /// True if a block is in the room, away from lights and cameras.
+    /// True if a block is inside the room, and away from lights and cameras.
     fn has_room(&self, block: &Block) -> bool {
         let reach = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(axis)));
         self.is_inside(block.centre, reach.max(self.margin())) && self.is_in_air(block.centre, block.radius)
     }
 
-    /// The place of a new light, or of one more near a place.
+    /// Position of a new light, or of a copy of the light at `near`.
     pub(super) fn light(&self, near: Option<Vec3>) -> Vec3 {
         let distance = (self.middle() - self.eye).length();
         let [across, up] = self.opening();
-        // Over the shoulder or from below, from the side where there is least light: there it is noticed.
+        // Over the shoulder or from below, on the side with the least light, where the new light is most noticeable.
         let depth = 0.7 * distance;
         let beside = |[side, rise]: [f32; 2]| {
             self.eye + self.turn * (depth * Vec3::new(side * across, rise * up, -1.0))
@@ -203,7 +204,7 @@ impl<'a> Stand<'a> {
             let lights = self.scene.lights.iter().filter_map(|l| l.position);
             self.free(p, 0.0) && lights.into_iter().all(|q| p.distance(q) > step)
         };
-        // A copy of a light out of view is near it all the same.
+        // A copy of a light outside the view is still placed near it.
         let hidden = near.is_some_and(|near| !self.sees(near, 0.0));
         let fits = |p: Vec3| apart(p) && (hidden || self.sees(p, 0.08 * p.distance(self.eye)));
         near.and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
@@ -212,7 +213,7 @@ impl<'a> Stand<'a> {
             .unwrap_or_else(|| self.lattice(wanted))
     }
 
-    /// The cosine between the directions from the middle to a place and to the light that is nearest to it.
+    /// Cosine of the angle, seen from the centre of the view, between a position and the nearest light.
     fn nearest_light(&self, place: Vec3) -> f32 {
         let middle = self.middle();
         let way = (place - middle).normalize_or_zero();
@@ -221,13 +222,13 @@ impl<'a> Stand<'a> {
         ways.map(|w| w.normalize_or_zero().dot(way)).fold(-1.0, f32::max)
     }
 
-    /// The direction from a place to the middle of what is seen.
+    /// The direction from a position to the centre of the view.
     pub(super) fn towards_middle(&self, from: Vec3) -> Vec3 {
         (self.middle() - from).try_normalize().map_or(Vec3::NEG_Y, |v| round(v, 100.0))
     }
 
-    /// The intensity at which a light that is added can be seen, and the brightest parts stay within what the display
-    /// shows: pictures with it and without it tell. True with it if the picture clips all the same.
+    /// An intensity at which a new light is visible while the brightest parts stay within the range of the display,
+    /// determined by rendering with and without the light. Also returns true if more pixels clip than are tolerated.
     pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
         let default = entry.declaration.default_intensity;
         let mut scene = self.scene.clone();
@@ -249,7 +250,7 @@ impl<'a> Stand<'a> {
         let settings = reference::Settings { width, height, samples: 1, ..reference::Settings::default() };
         let before = reference::render(&scene, self.registry, &settings);
         scene.lights = vec![Light { intensity: default, luminous_flux: None, ..light.clone() }];
-        // Objects tell, not the light itself behind them.
+        // The light is judged by the objects, not by its own appearance behind them.
         if entry.parameter("visible").is_some() {
             scene.lights[0].parameters.set("visible", Value::flag(false));
         }
@@ -259,7 +260,7 @@ impl<'a> Stand<'a> {
         for (before, added) in before.pixels.iter().zip(&added.pixels) {
             let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
             if before >= limit {
-                // A pixel that clips already cannot be spared.
+                // A pixel that clips already uses up the tolerance.
                 clipped += 1;
             } else if added > 1e-9 {
                 let brighter = srgb_decode((srgb_encode(before / limit) + VISIBLE).min(1.0)) * limit;
@@ -272,18 +273,18 @@ impl<'a> Stand<'a> {
         }
         factors.sort_by(f32::total_cmp);
         floors.sort_by(f32::total_cmp);
-        // As many pixels may clip as the picture has without a sign.
+        // Number of pixels that may clip without a warning.
         let spared = (clipping::TOLERATED * f64::from(width * height)) as usize;
         let most = factors[spared.saturating_sub(clipped).min(factors.len() - 1)];
         let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
-        // So that it is seen, highlights may clip, and no more than those.
+        // Highlights, but nothing else, may clip to make the light visible.
         let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
         let factor = (SHARE * most).max(least.min(clipping.max(most)));
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-6, 1e3);
         (significant(intensity, 2) as f32, factor > most)
     }
 
-    /// The most light that the display still tells from more.
+    /// The largest light that the display distinguishes from larger values.
     fn brightest(&self) -> f32 {
         let display = &self.scene.display;
         let curve = |x: f32| display.tone_mapping.map(Vec3::splat(x)).max_element();
@@ -291,13 +292,13 @@ impl<'a> Stand<'a> {
         top / exposure_factor(display.exposure)
     }
 
-    /// Half the opening of the view, across and up, as tangents. A window shows at least this.
+    /// Tangents of half the field of view, across and up. A window shows at least this.
     fn opening(&self) -> [f32; 2] {
         let up = (0.5 * self.scene.observer.field_of_view.to_radians()).tan();
         [WIDE * up, up]
     }
 
-    /// The middle of the objects, if it is in view, else the point of the line of sight that is nearest to it.
+    /// Centre of the objects if it is in view, otherwise the nearest point on the line of sight.
     fn middle(&self) -> Vec3 {
         let objects = &self.scene.objects;
         let middle = match objects.len() {
@@ -312,7 +313,7 @@ impl<'a> Stand<'a> {
         self.eye + ahead * (middle - self.eye).dot(ahead).max(near)
     }
 
-    /// True if a sphere is in the view, whole.
+    /// True if a sphere is completely in view.
     fn sees(&self, p: Vec3, radius: f32) -> bool {
         let seen = self.turn.inverse() * (p - self.eye);
         let [across, up] = self.opening();
@@ -335,19 +336,19 @@ impl<'a> Stand<'a> {
         })
     }
 
-    /// True if a sphere is in the room and touches nothing.
+    /// True if a sphere is inside the room and touches nothing.
     fn free(&self, p: Vec3, radius: f32) -> bool {
         self.is_inside(p, Vec3::splat(radius).max(self.margin()))
             && self.is_in_air(p, radius)
             && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
     }
 
-    /// The least distance from the walls.
+    /// Minimum distance from the walls.
     fn margin(&self) -> Vec3 {
         Vec3::splat(0.01 * self.scene.scene_size.corner().min_element())
     }
 
-    /// True if what reaches so far around a place is in the room.
+    /// True if a box with half sides `reach` around a position is inside the room.
     fn is_inside(&self, p: Vec3, reach: Vec3) -> bool {
         (p - reach).min_element() >= 0.0 && (p + reach).cmple(self.scene.scene_size.corner()).all()
     }
@@ -361,7 +362,7 @@ impl<'a> Stand<'a> {
             && self.scene.lights.iter().filter_map(|l| l.position).all(air)
     }
 
-    /// The place nearest to a wanted one that fits: rather beside it than behind, rather behind than above.
+    /// The valid position nearest to a wanted one: preferably beside it, then behind, then above.
     fn search(&self, wanted: Vec3, step: f32, fits: impl Fn(Vec3) -> bool) -> Option<Vec3> {
         let level = |v: Vec3| v.with_y(0.0).try_normalize();
         let right = level(self.turn * Vec3::X).unwrap_or(Vec3::X);
@@ -382,13 +383,13 @@ impl<'a> Stand<'a> {
         offsets.into_iter().map(|(_, way)| round(wanted + step * way, steps)).find(|p| fits(*p))
     }
 
-    /// Steps in a metre of what people like to read: 10, and more in a small room.
+    /// Steps per metre that give readable numbers: 10, or more in a small room.
     fn steps(&self) -> f32 {
         let room = self.scene.scene_size.corner().min_element();
         10f32.powf((20.0 / room).log10().ceil().max(1.0))
     }
 
-    /// A point of a lattice at which nothing has its centre, for a full room.
+    /// A lattice point that is not the position of anything, for a crowded room.
     fn lattice(&self, wanted: Vec3) -> Vec3 {
         let corner = self.scene.scene_size.corner();
         let step = 0.1 * corner;
@@ -404,7 +405,7 @@ impl<'a> Stand<'a> {
         };
         let start = inside(wanted);
         (0..1000)
-            // x runs fastest, then z, then y: a row on the floor before a tower.
+            // x varies fastest, then z, then y: a row on the floor before a tower.
             .map(|n| {
                 inside(Vec3::new(
                     wrapped(start.x, n % 10, step.x, corner.x),
@@ -417,13 +418,13 @@ impl<'a> Stand<'a> {
     }
 }
 
-/// Radius of the sphere around an object.
+/// Radius of an object's bounding sphere.
 fn radius(object: &Object, registry: &Registry) -> f32 {
     let shape = registry.shape(&object.object_type);
     shape.map_or(0.0, |shape| shape.bounds(&object.shape).radius * object.size)
 }
 
-/// Rounded to steps of so many in a metre.
+/// Rounds to the given number of steps per metre.
 fn round(v: Vec3, steps: f32) -> Vec3 {
     (v * steps).round() / steps
 }

@@ -1,5 +1,5 @@
-//! Small pictures of scenes that are not open: examples, and files in the dialog. They are read and drawn on a thread,
-//! by the CPU renderer, each once.
+//! Previews of scenes that are not open: examples, and files in the dialog. A thread reads them and draws them with the
+//! CPU renderer, each once.
 
 use std::{
     collections::HashMap,
@@ -26,18 +26,18 @@ use crate::{
     text::plural,
 };
 
-/// Pixels across and down.
+/// Width and height of a preview, in pixels.
 const SIZE: [u32; 2] = [320, 180];
-/// Of light with extent: noise is hardly seen in a small picture.
+/// Samples of light with extent: noise is hardly visible in a small picture.
 const LIGHT_SAMPLES: LightSamples = LightSamples::of(32);
-/// The longest that a picture may take.
+/// Maximum rendering time of a preview.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// More pictures are not kept.
+/// Maximum number of previews kept.
 const MOST: usize = 128;
-/// More lines of what is wrong with a file are not shown.
+/// Maximum number of lines about problems of a file.
 const LINES: usize = 6;
 
-/// The scene that is looked at.
+/// The scene of a preview.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Source {
     /// One of [`EXAMPLES`].
@@ -49,23 +49,23 @@ pub enum Source {
 /// The preview of a scene.
 #[derive(Clone)]
 pub enum Preview {
-    /// It is being made.
+    /// The preview is being made.
     Waiting,
-    /// The content of the file.
+    /// The preview is complete.
     Ready(Arc<Shown>),
-    /// The file cannot be used: why.
+    /// The file cannot be used, for the given reason.
     Failed(Arc<str>),
 }
 
-/// The facts of a scene.
+/// The contents of a preview.
 pub struct Shown {
-    /// Its name, if it has one.
+    /// Name of the scene, if it has one.
     pub name: Option<String>,
-    /// Its picture.
+    /// Description of the scene, if it has one.
     pub description: Option<String>,
-    /// Its contents, in a line.
+    /// Summary of the scene's contents, in one line.
     pub facts: String,
-    /// Its picture, unless that would take too long.
+    /// The picture, unless rendering would take too long.
     pub picture: Option<TextureHandle>,
 }
 
@@ -87,7 +87,7 @@ fn store(ctx: &Context) -> Shared {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("previews")).clone())
 }
 
-/// The preview of a scene as it is now. The one that is asked for last is made first.
+/// The current preview of a scene. The latest file requested is read first.
 pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
     let shared = store(ctx);
     let mut store = lock(&shared);
@@ -99,7 +99,7 @@ pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
     }
     store.known.insert(source.clone(), Preview::Waiting);
     match source {
-        // All examples are asked for at once, and seen from the first on.
+        // All examples are requested at once, and read from the first on.
         Source::Example(_) => store.queue.insert(0, source.clone()),
         Source::File(_) => store.queue.push(source.clone()),
     }
@@ -110,7 +110,7 @@ pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
     Preview::Waiting
 }
 
-/// Files are read anew: they may have changed since the dialog was open.
+/// Forgets the previews of files, which may have changed since the dialog was last open.
 pub fn forget_files(ctx: &Context) {
     let shared = store(ctx);
     let mut store = lock(&shared);

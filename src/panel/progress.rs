@@ -1,4 +1,4 @@
-//! The file with what the user has done of the lessons, in the folder of the user's data.
+//! The file with the user's progress in lessons, in the folder of the user's data.
 
 use std::{
     io,
@@ -13,12 +13,12 @@ use crate::{
     program,
 };
 
-/// The name of the file.
+/// File name.
 const FILE: &str = "lessons.json";
-/// It is not larger. The library that reads it goes 128 levels deep.
+/// Maximum size of the file. The JSON library limits the depth to 128 levels.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Reads what was done. No file means nothing; a file that cannot be read means nothing and a sentence that says so.
+/// Loads the progress. A missing file means no progress; an unreadable file means no progress and a message.
 #[must_use]
 pub fn load(folder: &Path) -> (Progress, Option<String>) {
     let path = folder.join(FILE);
@@ -39,11 +39,11 @@ pub fn load(folder: &Path) -> (Progress, Option<String>) {
     }
 }
 
-/// Writes what was done of the lesson of this name; what the file has of others stays, since another window may have
-/// written it.
+/// Saves the progress in the lesson of this name. Keeps the other lessons in the file, which another window may have
+/// written.
 ///
 /// # Errors
-/// A sentence, when the folder or the file cannot be written.
+/// Returns an error, as a sentence, if the folder or the file cannot be written.
 pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
@@ -66,7 +66,7 @@ fn own_folder() -> Option<PathBuf> {
     data_folder().map(program::own)
 }
 
-/// Reads what was done in earlier sessions into the state; says so when it cannot be read.
+/// Loads the progress of earlier sessions into the state, and reports if that fails.
 pub fn load_progress(session: &mut Session) {
     let Some(folder) = own_folder() else { return };
     let _ = tidy(&folder);
@@ -77,7 +77,7 @@ pub fn load_progress(session: &mut Session) {
     }
 }
 
-/// Writes what was done of a lesson; says so when it cannot be written.
+/// Saves the progress in a lesson, and reports if that fails.
 pub fn save_progress(session: &mut Session, name: &str) {
     if let Some(folder) = own_folder()
         && let Err(complaint) = save(&folder, &session.progress, name)
@@ -101,7 +101,7 @@ mod tests {
         let one = Progress { last: Some("a".to_owned()), lessons: [("a".to_owned(), past(3))].into() };
         save(folder.path(), &one, "a")?;
         assert_eq!(load(folder.path()), (one, None));
-        // A window that does not know of it.
+        // A window that does not know about it.
         let two = Progress { last: Some("b".to_owned()), lessons: [("b".to_owned(), past(1))].into() };
         save(folder.path(), &two, "b")?;
         let (both, _) = load(folder.path());

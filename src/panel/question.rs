@@ -1,4 +1,4 @@
-//! Questions that must be answered: the only thing that stops everything else.
+//! Questions that must be answered: only they block the window.
 
 use std::path;
 
@@ -38,7 +38,7 @@ pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
                         button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
                     }
                     let response = ui.add(button);
-                    // The keyboard starts here, not in what lies below.
+                    // The keyboard focus starts here, not in the window below.
                     let focused = ui.memory(|m| m.focused());
                     if i == 0 && focused.is_none() {
                         response.request_focus();
@@ -56,7 +56,7 @@ pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
     out.map(Action::Answer).into_iter().collect()
 }
 
-/// Title, text, lines of details (what, more), answers.
+/// Title, text, details (text and addition), answers.
 type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
 
 fn words(session: &Session, question: &Question) -> Words {
@@ -130,14 +130,14 @@ fn words(session: &Session, question: &Question) -> Words {
     }
 }
 
-/// The question about work that an earlier window left unsaved.
+/// The question about unsaved work of an earlier window.
 fn recovery(session: &Session, offer: &Offer) -> Words {
     let Offer { title, path: at, file, when, scene } = offer;
     let mut text = format!("“{title}” had unsaved changes when its window closed unexpectedly {when}.");
     let mut details = Vec::new();
     if let Err(problem) = scene {
         text += " The recovery copy can't be read.";
-        // Behind the name of the file come line and column.
+        // The file name is followed by line and column.
         let at = problem.strip_prefix(&format!("{}:", file.shown()));
         let problem = at.map_or_else(|| problem.clone(), |at| format!("line {at}"));
         details.push(("Problem".to_owned(), problem));

@@ -1,7 +1,7 @@
-//! The effect of changes to the document's file on disk.
+//! Reloading of the document's file when it changes on disk.
 //!
-//! Whoever edits the file elsewhere sees the scene follow. What was changed in the window is never
-//! replaced without a question, and a file that cannot be used replaces nothing.
+//! The scene follows when another program edits the file. Changes made in the window are never replaced without a
+//! question, and an invalid file replaces nothing.
 
 use std::path::PathBuf;
 
@@ -16,16 +16,15 @@ use crate::{
     scene::{Scene, load::Stamp},
 };
 
-/// Looks whether the document's file is another one than was last seen, and does what follows.
-/// `discard` takes what is on disk even if it costs unsaved changes: the user was asked.
+/// Checks whether the document's file differs from the last seen version, and reacts. With `discard`, loads the version
+/// on disk even at the cost of unsaved changes, which the user has agreed to.
 ///
-/// A file that cannot be used is looked at again after a moment before anything is said: many editors
-/// write in steps.
+/// An invalid file is checked again after a moment before it is reported: many editors write in steps.
 #[must_use]
 pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
     let Some(path) = session.path.clone() else { return Vec::new() };
     if session.questions.open.is_some() {
-        // One question after the other.
+        // One question at a time.
         session.disk.deferred = true;
         return Vec::new();
     }
@@ -33,7 +32,7 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
     match files.look(&path, registry) {
         Looked::Same => {
             session.disk.suspect = None;
-            // A message that it was reloaded stays until it is dismissed.
+            // A note about the reload stays until it is dismissed.
             if session.disk.badge.is_some() {
                 session.disk_settled();
             }
@@ -64,7 +63,7 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
     }
 }
 
-/// There is another legal scene in the file, with defaults for the parts that are named.
+/// Handles another valid scene in the file, with defaults for the named parts.
 fn take(
     session: &mut Session,
     registry: &Registry,
@@ -75,7 +74,7 @@ fn take(
     discard: bool,
 ) -> Vec<Effect> {
     let news = session.document.named(registry) != scene;
-    // The file from which a recovered document began is not known.
+    // The file that a recovered document was based on is unknown.
     let edited = (session.disk.recovered || session.document.differs()) && news;
     if edited && !discard && (session.disk.recovered || !session.document.was_saved_as(&scene)) {
         if session.disk.asked != Some(Some(version)) {
@@ -88,7 +87,7 @@ fn take(
     files.expect(&path, Some(version));
     session.disk_settled();
     if edited && !discard {
-        // Only the layout of the file is another: what is in it is what the changes began with.
+        // Only the layout of the file has changed: the content is what the changes are based on.
         return Vec::new();
     }
     session.reloaded(scene, defaulted, registry);
@@ -98,7 +97,7 @@ fn take(
     Vec::new()
 }
 
-/// The file cannot be used: after a moment of grace, says so.
+/// Reports that the file cannot be used, after a grace period.
 fn doubt(
     session: &mut Session,
     files: &mut dyn Files,
@@ -118,7 +117,7 @@ fn doubt(
     session.disk.told = Some(version);
     session.disk.lost = true;
     if version.is_none() {
-        // Saving writes the file anew, if there is still none.
+        // Saving creates the file if it is still missing.
         files.expect(&path, None);
         let text =
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.shown());
@@ -144,7 +143,7 @@ fn doubt(
             path.shown()
         ),
     );
-    // The latest stands on top: the first problem.
+    // The latest message is on top: the first problem.
     for problem in problems.iter().rev() {
         session.say_of_disk(Severity::Error, problem.clone());
     }
@@ -152,8 +151,7 @@ fn doubt(
 }
 
 impl Session {
-    /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
-    /// does the selection where it still means something.
+    /// Makes the scene in the file the document. Keeps camera, terms and, where it remains valid, the selection.
     fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>, registry: &Registry) {
         let id = match self.selection {
             Selection::Light(i) => self.document.light_id(i),

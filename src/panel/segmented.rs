@@ -1,17 +1,17 @@
-//! Several choices side by side.
+//! Segmented buttons: several options side by side.
 
 use bevy_egui::egui::{self, Button, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::theme::{self, Palette};
 
-/// Width of one of several choices: as when it is chosen, so that nothing moves when the choice does.
+/// Width of a segment: as when selected, so that nothing moves when the selection does.
 pub(super) fn segment_width(ui: &Ui, option: &str) -> f32 {
     let bold = egui::FontId::new(egui::TextStyle::Button.resolve(ui.style()).size, theme::semibold());
     let text = ui.painter().layout_no_wrap(option.to_owned(), bold, egui::Color32::WHITE);
     text.size().x + 2.0 * ui.spacing().button_padding.x
 }
 
-/// Several choices side by side, one of them chosen. Returns the index of another one that was clicked.
+/// Options side by side, one of them selected. Returns the index of another option that was clicked.
 pub fn segmented(
     ui: &mut Ui,
     name: &str,

@@ -1,4 +1,4 @@
-//! Settings, which survive a restart: theme, scale, panel sizes, recent files.
+//! Settings that are kept between sessions: theme, scale, panel sizes, recent files.
 
 use std::{
     io,
@@ -14,37 +14,37 @@ use crate::{
     program,
 };
 
-/// The environment variable that names another folder for the settings.
+/// Environment variable that overrides the folder of the settings.
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
-/// The name of the file.
+/// File name.
 const FILE: &str = "settings.json";
-/// Settings are not larger; long names of recent files included. The library that reads them goes 128 levels deep.
+/// Maximum size of the file, enough for long names of recent files. The JSON library limits the depth to 128 levels.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// The settings that survive a restart.
+/// Settings that are kept between sessions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Light or dark.
+    /// Light or dark theme.
     pub theme: ThemeChoice,
-    /// The size of everything, per cent. Earlier versions had large type, or not.
+    /// Interface scale, in per cent. Earlier versions stored only whether type was large.
     #[serde(alias = "large_type", deserialize_with = "scale")]
     pub scale: u16,
-    /// Width of the tree, points.
+    /// Width of the scene list, in points.
     pub left_width: f32,
-    /// Width of a lesson, points.
+    /// Width of a lesson, in points.
     pub lesson_width: f32,
-    /// Width of the inspector, points.
+    /// Width of the properties panel, in points.
     pub right_width: f32,
-    /// Height of the strip at the bottom, points.
+    /// Height of the bottom strip, in points.
     pub bottom_height: f32,
-    /// Ids of the panels of others that are hidden.
+    /// Ids of hidden guest panels.
     pub hidden_panels: Vec<String>,
-    /// Ids of the panels of others that are folded.
+    /// Ids of folded guest panels.
     pub folded_panels: Vec<String>,
-    /// Id of the panel of others that the strip at the bottom shows.
+    /// Id of the guest panel in the bottom strip.
     pub guest_tab: Option<String>,
-    /// True if pictures that are saved or copied have a caption.
+    /// True if saved or copied pictures have a caption.
     pub picture_caption: bool,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
@@ -88,8 +88,8 @@ impl Default for Settings {
     }
 }
 
-/// The folder of the settings: in the one that [`FOLDER_VARIABLE`] names, else in the usual place of the operating system;
-/// `None` when there is neither. Each program has [its own](program::own).
+/// The folder of the settings: given by [`FOLDER_VARIABLE`], otherwise the usual one of the operating system; `None` if
+/// there is neither. Each program has [its own](program::own).
 #[must_use]
 pub fn folder() -> Option<PathBuf> {
     let shared = match std::env::var_os(FOLDER_VARIABLE) {
@@ -99,8 +99,7 @@ pub fn folder() -> Option<PathBuf> {
     shared.map(program::own)
 }
 
-/// Reads the settings in a folder. No file means defaults; a file that cannot be read means defaults
-/// and a sentence that says so.
+/// Loads the settings from a folder. A missing file means defaults; an unreadable file means defaults and a message.
 #[must_use]
 pub fn load(folder: &Path) -> (Settings, Option<String>) {
     let path = folder.join(FILE);
@@ -119,10 +118,10 @@ fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
     format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.shown())
 }
 
-/// Writes the settings to a folder, all or nothing.
+/// Saves the settings to a folder, completely or not at all.
 ///
 /// # Errors
-/// A sentence, when the folder or the file cannot be written.
+/// Returns an error, as a sentence, if the folder or the file cannot be written.
 pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
@@ -134,10 +133,10 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.shown()))
 }
 
-/// Reads the settings of the last session into the state; says so when they cannot be read.
+/// Loads the settings of the last session into the state, and reports if that fails.
 pub fn load_settings(session: &mut Session) {
     if let Some(folder) = folder() {
-        // The only unfinished files in there are settings, which are read in a moment.
+        // Only settings could be left unfinished there, and they are loaded next.
         let _ = tidy(&folder);
         let (settings, complaint) = load(&folder);
         session.adopt(settings);
@@ -147,7 +146,7 @@ pub fn load_settings(session: &mut Session) {
     }
 }
 
-/// Writes the settings for the next session; says so when they cannot be written.
+/// Saves the settings for the next session, and reports if that fails.
 pub fn save_settings(session: &mut Session) {
     if let Some(folder) = folder()
         && let Err(complaint) = save(&folder, &session.settings())
@@ -157,7 +156,7 @@ pub fn save_settings(session: &mut Session) {
 }
 
 impl Session {
-    /// The settings that survive a restart.
+    /// The settings to keep between sessions.
     #[must_use]
     pub fn settings(&self) -> Settings {
         Settings {
@@ -175,7 +174,7 @@ impl Session {
         }
     }
 
-    /// Takes over the settings that survived a restart.
+    /// Applies settings of an earlier session.
     pub fn adopt(&mut self, settings: Settings) {
         self.view.theme = settings.theme;
         self.view.scale = settings.scale;
@@ -193,7 +192,7 @@ impl Session {
 }
 
 impl Settings {
-    /// Sizes that no screen has (someone edited the file) become the defaults.
+    /// Replaces sizes that no screen has (after manual edits of the file) by defaults.
     fn tidy(mut self) -> Self {
         let default = Self::default();
         let tidy = |value: &mut f32, default: f32| {

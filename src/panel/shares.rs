@@ -1,6 +1,6 @@
-//! Room shared fairly: what is small has all it needs, and what is large shares the rest.
+//! Fair distribution of space: small items get all they need, and large items share the rest.
 
-/// The size that none may exceed for all to fit in this room: the small ones keep theirs.
+/// The maximum size that makes all items fit into `room`; items below it keep their size.
 pub(super) fn shared(sizes: &[f32], room: f32) -> f32 {
     let mut sorted = sizes.to_vec();
     sorted.sort_by(f32::total_cmp);

@@ -1,5 +1,5 @@
-//! The places of panels beside and below the picture. At a side, the window's own panel has the room that those of
-//! others leave; these are sections below it, which fold, and scroll where they are long. At the bottom they are tabs.
+//! The panels beside and below the picture. At a side, guest panels are sections at the bottom, which fold, and scroll
+//! if they are long; the window's own panel takes the remaining space. At the bottom, panels are tabs.
 
 use bevy_egui::egui::{
     self, Button, Frame, Id, Margin, Rect, Response, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2,
@@ -19,23 +19,23 @@ use super::{
     theme::{self, Palette},
 };
 
-/// Id of the panel with the lesson.
+/// Id of the lesson panel.
 const LESSON: &str = "lesson";
-/// The part of the left side that the scene list takes below a lesson, and the height of its rows, points.
+/// Fraction of the left side that the scene list takes below a lesson, and height of its rows in points.
 const TREE: f32 = 0.42;
 const ROW: f32 = 26.0;
-/// The part of a side that the sections of others may take together.
+/// Maximum fraction of a side for all guest sections.
 const GUESTS: f32 = 0.5;
-/// Height of the title of a section, points.
+/// Height of the title of a section, in points.
 const TITLE: f32 = 26.0;
-/// The room below what a section shows, points.
+/// Space below the content of a section, in points.
 const END: f32 = 8.0;
-/// The line above a section, and the borders of what stands last in it, points.
+/// The line above a section, and the borders of the last widget in it, in points.
 const LINE: f32 = 2.0;
-/// The least height of a section that is unfolded, points.
+/// Minimum height of an unfolded section, in points.
 const LEAST: f32 = TITLE + 64.0 + END;
 
-/// Shows the panels at a side; `ui` is all of it.
+/// Shows the panels at a side; `ui` covers all of it.
 pub(super) fn side(
     ui: &mut Ui,
     place: Place,
@@ -51,9 +51,9 @@ pub(super) fn side(
     };
     let all: Vec<_> = guests.iter().map(|(info, _)| wanted(ui, info)).collect();
     let share = shared(&all, GUESTS * ui.available_height()).max(LEAST);
-    // From the bottom up, so that the first is the highest.
+    // From the bottom up, so that the first one is on top.
     for (info, panel) in guests.into_iter().rev() {
-        // As high as what it showed last, up to its share.
+        // As high as its last content, up to its share.
         let id = Id::new(("section", info.id));
         let wanted = wanted(ui, &info);
         let strip = egui::Panel::bottom(id).frame(Frame::NONE).resizable(false).exact_size(wanted.min(share));
@@ -72,13 +72,13 @@ pub(super) fn side(
             (None, _) => panel.show(ui, context),
         }
     }
-    // In the room that is left.
+    // In the remaining space.
     for panel in lessons {
         panel.show(ui, context);
     }
 }
 
-/// The scene list below a lesson, which a click on its title unfolds.
+/// The scene list below a lesson, unfolded by a click on its title.
 fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut dyn Panel, context: &mut PanelContext<'_>) {
     let session = context.session();
     let unfolded = open.tree_open || point::at_part(session);
@@ -104,7 +104,7 @@ fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut dyn Panel, context: &m
     });
 }
 
-/// The arrow and the words of a title that folds what is below it.
+/// The arrow and the text of a title that folds the content below.
 fn fold_title(ui: &mut Ui, response: &Response, text: &str, unfolded: bool) {
     let palette = Palette::here(ui);
     let rect = response.rect;
@@ -117,7 +117,7 @@ fn fold_title(ui: &mut Ui, response: &Response, text: &str, unfolded: bool) {
     ui.painter().galley(at, galley, palette.text);
 }
 
-/// A panel of others: its title, which folds it, and what it shows. Returns the height of all of it, if it is unfolded.
+/// A guest panel: the title, which folds it, and the content. Returns the total height if it is unfolded.
 fn section(
     ui: &mut Ui,
     info: PanelInfo,
@@ -132,11 +132,11 @@ fn section(
         return None;
     }
     let title = ui.cursor().top() - top;
-    // The tree's rows reach from edge to edge; text does not.
+    // The rows of the scene list extend from edge to edge; text does not.
     let left = if info.place == Place::Left { 12 } else { 0 };
     let frame = Frame::new().inner_margin(Margin { left, right: 0, top: 0, bottom: END as i8 });
     let output = frame.show(ui, |ui| {
-        // The scroll bar floats over a margin, so that nothing moves when it comes.
+        // The scroll bar floats over a margin, so that nothing moves when it appears.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
         let scroll = ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0);
         scroll.show(ui, |ui| {
@@ -172,15 +172,15 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
     });
 }
 
-/// The least height of the strip with the shaders, points.
+/// Minimum height of the strip with the shaders, in points.
 const SHADER_STRIP: f32 = 184.0;
-/// The least height of the strip that explains a pixel, points, and of the window.
+/// Minimum height of the strip that explains a pixel, in points and as a fraction of the window.
 const EXPLAIN_STRIP: (f32, f32) = (200.0, 0.37);
 
-/// The same with the plots, points.
+/// Minimum height of the strip with the plots, in points.
 const PLOT_STRIP: f32 = 312.0;
 
-/// The strip at the bottom. Tabs appear when there is more than one panel.
+/// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
     session: &Session,
@@ -191,12 +191,12 @@ pub(super) fn bottom(
     context: &mut PanelContext<'_>,
 ) {
     let most = 0.6 * whole.height();
-    // An error with its line of source is seen whole.
+    // High enough for a complete error with its source line.
     let share = |(least, part): (f32, f32)| least.max(part * whole.height());
     let (kind, least, start) = match session.view.bottom_tab.as_str() {
         SHADER_TAB => (1, SHADER_STRIP, 0.0),
         EXPLAIN_TAB => (2, share(EXPLAIN_STRIP), 0.0),
-        // A plot is large where there is room.
+        // A plot is large if there is room.
         PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
         _ => (0, 72.0, 0.0),
     };

@@ -1,4 +1,4 @@
-//! The line at the bottom: messages, errors of shaders, the selection.
+//! The status line at the bottom: messages, shader errors, the selection.
 
 use bevy_egui::egui::{
     self, Align, Button, Layout, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
@@ -16,7 +16,7 @@ use crate::{
     text::{per_cent, plural},
 };
 
-/// See the module.
+/// The status line.
 #[derive(Clone, Copy, Debug)]
 pub struct StatusLine;
 
@@ -74,8 +74,8 @@ impl Panel for StatusLine {
     }
 }
 
-/// How far pictures of light with extent have converged, the one that lacks most: in words, and in a line per view if there
-/// are several. None while no view has such light.
+/// Convergence of pictures with light with extent: the least converged one in words, and one line per view if there are
+/// several. `None` while no view has such light.
 fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
     let shown: Vec<_> = converged.iter().enumerate().filter(|(_, view)| view.total > 0).collect();
     let words = |view: Converging| {
@@ -90,7 +90,7 @@ fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
     Some((words(Converging { noise: most_noise, ..**least }), lines.collect()))
 }
 
-/// How far pictures of light with extent have converged.
+/// Shows the convergence of pictures with light with extent.
 fn samples(ui: &mut Ui, session: &Session) {
     let Some((words, lines)) = samples_in_words(&session.facts.converged) else { return };
     ui.add(egui::Label::new(theme::small(ui, words))).on_hover_ui(|ui| {
@@ -109,10 +109,10 @@ fn samples(ui: &mut Ui, session: &Session) {
     });
 }
 
-/// The part of the line that the last message may take from what stands at the right.
+/// Minimum fraction of the remaining line for the latest message, even at the expense of the text at the right.
 const NEWS: f32 = 0.75;
 
-/// The last message, until something is changed. At the right, `beside` points are wanted.
+/// The latest message, until something changes. The text at the right needs `beside` points.
 fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>) {
     let Some(message) = session.messages.last() else { return };
     let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
@@ -120,7 +120,7 @@ fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>
         return;
     }
     let palette = Palette::here(ui);
-    // The sign before the count is that of the worst.
+    // The icon in front of the count shows the worst severity.
     if session.messages.worst() != Some(message.severity) {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
         icon::severity(ui.painter(), rect.center(), 5.5, message.severity, &palette);
@@ -139,7 +139,7 @@ fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>
     }
 }
 
-/// The number of errors of the shaders, and if the picture suffers from them; leads to the panel that says more.
+/// The number of shader errors, and whether they affect the picture; a click opens the shader panel.
 fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let count = session.shaders.troubles.len();
     if count == 0 {

@@ -1,4 +1,4 @@
-//! The terms of the equation that a picture has: showing one that is empty alone would show nothing.
+//! The terms of the equation in a picture: isolating a term that is 0 would show nothing.
 
 use std::{
     collections::HashMap,
@@ -16,20 +16,20 @@ use crate::{
     scene::{Scene, shines_from_everywhere},
 };
 
-/// So many objects are looked at; in most scenes the first one has all terms.
+/// Maximum number of objects examined; in most scenes the first one has all terms.
 const OBJECTS: usize = 256;
-/// Number of answers that are kept: a slider makes one for each of its values.
+/// Maximum number of cached results: dragging a slider adds one per value.
 const KEPT: usize = 256;
 
 /// True for each term that is not 0: ambient, diffuse, specular.
 type Present = [bool; 3];
 
-/// Answers that were calculated before, by model and material.
+/// Cached results by model and material.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KnownTerms(Arc<Mutex<HashMap<String, Present>>>);
 
 impl KnownTerms {
-    /// The terms that the picture of a scene may show: all, and each that is there if there are others beside it.
+    /// The terms that the picture of a scene can show: all together, and each non-zero one if there are several.
     pub(super) fn offered(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
         let there = self.present(scene, registry);
         let several = there.len() > 1;

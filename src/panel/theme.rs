@@ -1,8 +1,8 @@
-//! The look of the window: colours, type, space.
+//! The visual style of the window: colours, type, spacing.
 //!
-//! Neutral greys, since colours are judged against them; one accent for what can be touched or is
-//! chosen; the colours of M. Okabe and K. Ito (2008), *Color Universal Design*, for data. Text has a
-//! contrast of at least 4.5:1 (WCAG 2.2, AA); a test holds the palettes to it.
+//! Neutral greys, since users judge colours against them; one accent for interactive and selected widgets; the colours
+//! of M. Okabe and K. Ito (2008), *Color Universal Design*, for data. Text has a contrast of at least 4.5:1 (WCAG 2.2,
+//! AA), which a test checks for both palettes.
 
 use std::sync::Arc;
 
@@ -14,37 +14,37 @@ use super::state::{Severity, ThemeChoice, View};
 pub use crate::lettering::{maths, maths_italic, semibold};
 use crate::{lettering, reflection::Term};
 
-/// The unit of space, points; halves are allowed.
+/// Unit of spacing, in points; halves are allowed.
 pub const UNIT: f32 = 8.0;
 
 /// The colours of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// True if it is the dark one.
+    /// True for the dark palette.
     pub dark: bool,
-    /// Behind everything in a panel.
+    /// Background of a panel.
     pub panel: Color32,
     /// Surfaces raised above a panel: menus, dialogs, buttons.
     pub raised: Color32,
-    /// The widget under the pointer.
+    /// A widget under the pointer.
     pub hovered: Color32,
-    /// Fields that are typed into, and rails.
+    /// Text fields, and rails of sliders.
     pub field: Color32,
-    /// Lines between things.
+    /// Separating lines.
     pub line: Color32,
     /// Text.
     pub text: Color32,
-    /// Text of less weight: units, ends of ranges, hints.
+    /// Secondary text: units, ends of ranges, hints.
     pub weak: Color32,
-    /// Chosen and interactive widgets.
+    /// Selected and interactive widgets.
     pub accent: Color32,
-    /// The ground of what is chosen in a list.
+    /// Background of selected list items.
     pub chosen: Color32,
-    /// Failures.
+    /// Errors.
     pub error: Color32,
     /// Warnings.
     pub warning: Color32,
-    /// Around the picture.
+    /// Surroundings of the picture.
     pub surround: Color32,
 }
 
@@ -52,7 +52,7 @@ const fn grey(v: u8) -> Color32 {
     Color32::from_rgb(v, v, v)
 }
 
-/// For judging pictures.
+/// Dark palette, for judging pictures.
 pub const DARK: Palette = Palette {
     dark: true,
     panel: grey(21),
@@ -69,7 +69,7 @@ pub const DARK: Palette = Palette {
     surround: grey(46),
 };
 
-/// For bright rooms and projectors.
+/// Light palette, for bright rooms and projectors.
 pub const LIGHT: Palette = Palette {
     dark: false,
     panel: grey(250),
@@ -87,7 +87,7 @@ pub const LIGHT: Palette = Palette {
 };
 
 impl Palette {
-    /// The palette that a view asks for.
+    /// The palette that the view settings select.
     #[must_use]
     pub fn of(view: &View) -> Self {
         match view.theme {
@@ -96,7 +96,7 @@ impl Palette {
         }
     }
 
-    /// The palette in force where a widget stands.
+    /// The current palette of a widget.
     #[must_use]
     pub fn here(ui: &egui::Ui) -> Self {
         if ui.visuals().dark_mode { DARK } else { LIGHT }
@@ -113,7 +113,7 @@ impl Palette {
         }
     }
 
-    /// The same hue, dark or light enough to be read as text.
+    /// The colour of a term with enough contrast for text.
     #[must_use]
     pub fn term_text(&self, term: Term) -> Color32 {
         match (self.dark, term) {
@@ -138,19 +138,19 @@ impl Palette {
     }
 }
 
-/// The factor in force where a widget stands.
+/// The current scale factor of text.
 #[must_use]
 pub fn scale_here(ui: &egui::Ui) -> f32 {
     ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
 }
 
-/// The share of the text's colour in scroll bars while the pointer is elsewhere.
+/// Opacity of scroll bars relative to the text's colour while the pointer is elsewhere.
 const SCROLL_BAR: f32 = 0.55;
 const SMALL: f32 = 11.5;
 const BODY: f32 = 13.0;
 const HEADING: f32 = 16.0;
 
-/// Text of less weight in the smallest size.
+/// Secondary text in the smallest size.
 #[must_use]
 pub fn small(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).small().color(Palette::here(ui).weak)
@@ -163,13 +163,13 @@ pub fn small_width(ui: &egui::Ui, text: &str) -> f32 {
     ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE).size().x
 }
 
-/// Text that names a group.
+/// Text in bold, for headings of groups.
 #[must_use]
 pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).family(semibold()).color(Palette::here(ui).text)
 }
 
-/// A line of text, cut off with … where it is wider than this.
+/// A line of text, truncated with … if it is wider than `width`.
 #[must_use]
 pub fn elided(
     ui: &egui::Ui,
@@ -184,7 +184,7 @@ pub fn elided(
     ui.painter().layout_job(job)
 }
 
-/// A line of text, with … in its middle where it is wider than this: the ends of names tell them apart.
+/// A line of text, with … in the middle if it is wider than `width`: names often differ only at their ends.
 #[must_use]
 pub fn elided_within(
     ui: &egui::Ui,
@@ -204,7 +204,7 @@ pub fn elided_within(
         let [head, tail]: [String; 2] = [head, tail].map(|part| part.iter().collect());
         line(format!("{}…{}", head.trim_end(), tail.trim_start()))
     };
-    // The most letters that fit.
+    // The largest number of letters that fits.
     let (mut fits, mut over) = (0, letters.len());
     while over - fits > 1 {
         let middle = fits.midpoint(over);
@@ -213,14 +213,14 @@ pub fn elided_within(
     (with(fits), true)
 }
 
-/// The layers of the tooltips that are shown in this frame so far.
+/// Layers of the tooltips shown in this frame so far.
 pub(super) fn tooltips(ctx: &Context) -> Vec<egui::LayerId> {
     let layers: Vec<_> = ctx.memory(|m| m.areas().visible_layer_ids().into_iter().collect());
     let shown = |layer: &egui::LayerId| ctx.graphics(|g| g.get(*layer).is_some_and(|list| !list.is_empty()));
     layers.into_iter().filter(|layer| layer.order == egui::Order::Tooltip).filter(shown).collect()
 }
 
-/// Takes back the tooltips of this frame but for those.
+/// Hides the tooltips of this frame, except for the given ones.
 pub(super) fn hide_tooltips(ctx: &Context, but: &[egui::LayerId]) {
     let hidden = tooltips(ctx).into_iter().filter(|layer| !but.contains(layer));
     ctx.graphics_mut(|graphics| {
@@ -233,19 +233,19 @@ pub(super) fn hide_tooltips(ctx: &Context, but: &[egui::LayerId]) {
     });
 }
 
-/// The colour on screen of a linear reflectance.
+/// The display colour of a linear reflectance.
 #[must_use]
 pub fn swatch(reflectance: glam::Vec3) -> Color32 {
     let [r, g, b] = reflectance.to_array().map(crate::optics::colour::srgb_encode8);
     Color32::from_rgb(r, g, b)
 }
 
-/// Makes egui look as the view asks. Cheap when nothing changed. The fonts arrive with the next pass:
-/// until then it answers `false`, and nothing can be shown.
+/// Applies the view settings to egui. Cheap if nothing has changed. Returns false until the fonts are available, which
+/// is in the next pass: until then, nothing can be shown.
 #[must_use]
 pub fn apply(ctx: &Context, view: &View) -> bool {
     let id = egui::Id::new("lab theme");
-    // Takes effect with the next pass; the same factor again does nothing.
+    // Takes effect in the next pass; setting the same factor again does nothing.
     ctx.set_zoom_factor(f32::from(view.scale) / 100.0);
     let dark = view.theme == ThemeChoice::Dark;
     let before: Option<bool> = ctx.data(|d| d.get_temp(id));
@@ -254,7 +254,7 @@ pub fn apply(ctx: &Context, view: &View) -> bool {
     }
     if before.is_none() {
         ctx.set_fonts(lettering::fonts());
-        // The keys are ours.
+        // The window handles these keys itself.
         ctx.options_mut(|o| o.zoom_with_keyboard = false);
     }
     ctx.data_mut(|d| d.insert_temp(id, dark));
@@ -292,12 +292,12 @@ fn style(p: &Palette) -> egui::Style {
     s.tooltip_width = 40.0 * UNIT;
     s.menu_width = 36.0 * UNIT;
     s.scroll = egui::style::ScrollStyle::thin();
-    // A bar that shows only under the pointer hides that there is more.
+    // A bar that appears only under the pointer would hide that there is more.
     s.scroll.foreground_color = true;
     s.scroll.dormant_handle_opacity = SCROLL_BAR;
     s.scroll.dormant_background_opacity = 0.0;
     s.scroll.floating_width = 5.0;
-    // Fading the edges would falsify the colours of what lies there.
+    // Faded edges would distort the colours there.
     s.scroll.fade.strength = 0.0;
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;

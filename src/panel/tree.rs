@@ -1,4 +1,4 @@
-//! The tree at the left: room, observer, lights, objects.
+//! The scene list at the left: room, observer, lights, objects.
 
 use bevy_egui::egui::{
     self, Align2, FontId, Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo,
@@ -20,7 +20,7 @@ use crate::{
     registry::Registry,
 };
 
-/// See the module.
+/// The scene list.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree;
 
@@ -47,7 +47,7 @@ impl Panel for Tree {
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
-        // Rows are addressed by number, so that ten thousand objects cost no more than those on screen.
+        // Rows are addressed by index, so that ten thousand objects cost no more than the visible ones.
         let row = |i: usize| match i {
             0 => Row::Part(Selection::Room),
             1 => Row::Part(Selection::Observer),
@@ -62,7 +62,7 @@ impl Panel for Tree {
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
         let mut area = ScrollArea::vertical().auto_shrink(false);
-        // A selection from elsewhere comes into view.
+        // Scrolls to a selection made elsewhere.
         let memory = ui.id().with("shown selection");
         let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
         if shown != Some(session.selection) {
@@ -124,7 +124,7 @@ fn row_id(part: Selection) -> Id {
     Id::new(("row", part))
 }
 
-/// The part that an arrow key leads to, from the row that has the focus; it gets the focus.
+/// The part that an arrow key moves to from the focused row. That part gets the focus.
 fn step(ui: &Ui, session: &Session) -> Option<Selection> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];
@@ -138,7 +138,7 @@ fn step(ui: &Ui, session: &Session) -> Option<Selection> {
         [Selection::Room, Selection::Observer].into_iter().chain(lights).chain(objects).collect();
     let at = parts.iter().position(|part| row_id(*part) == focus)?;
     let next = parts[(at + way[1]).saturating_sub(way[0]).min(parts.len() - 1)];
-    // Else egui moves it once more, by geometry.
+    // Otherwise egui would move the focus once more, by geometry.
     ui.memory_mut(|m| {
         m.move_focus(egui::FocusDirection::None);
         m.request_focus(row_id(next));
@@ -181,7 +181,7 @@ fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce
     egui::Popup::menu(&response).show(menu);
 }
 
-/// A list that is narrower than this stands closer, points.
+/// Width below which the list has tighter spacing, in points.
 const NARROW: f32 = 190.0;
 
 fn part_row(
@@ -266,7 +266,7 @@ fn part_row(
         toggle(ui, centre(1.5 * between), hovered, part, there, &name, actions);
         colour_dot(ui, centre(0.5 * between), rgb, part, &name, actions);
     }
-    // The menu of a row is about what is selected.
+    // The menu of a row applies to the selection.
     if response.clicked() || response.secondary_clicked() {
         actions.push(Action::Select(part));
     }
@@ -304,7 +304,7 @@ fn part_row(
     }
 }
 
-/// True unless it is hidden or switched off.
+/// False if a part is hidden or switched off.
 fn is_there(session: &Session, part: Selection) -> bool {
     match part {
         Selection::Light(i) => session.document.lights.get(i).is_none_or(|light| light.enabled),
@@ -322,7 +322,7 @@ fn toggle_words(part: Selection, there: bool) -> &'static str {
     }
 }
 
-/// A small place in a row that can be clicked. Keys reach what it does through the row, so Tab passes it by.
+/// A small clickable area in a row. Tab skips it, since the row offers the same action by keyboard.
 fn spot(ui: &Ui, centre: egui::Pos2, id: egui::Id, says: &str) -> egui::Response {
     let rect = Rect::from_center_size(centre, vec2(22.0, 22.0));
     let response = ui.interact(rect, id, Sense::CLICK);
@@ -361,7 +361,7 @@ fn toggle(
     }
 }
 
-/// The colour of a part, which a click changes.
+/// The colour of a part, as a button that changes it.
 fn colour_dot(
     ui: &mut Ui,
     centre: egui::Pos2,

@@ -1,5 +1,4 @@
-//! Setting of equations: fractions stacked, roots under a bar, brackets as tall as what they hold, lines
-//! broken before + and −.
+//! Typesetting of equations: stacked fractions, roots, brackets as tall as their content, line breaks before + and −.
 
 use bevy_egui::egui::{
     Color32, Pos2, Shape, Stroke, Ui, Vec2,
@@ -12,46 +11,46 @@ use super::{
     maths::{Atom, Laid, lay_out},
 };
 
-/// One thing that is painted, relative to the left end of the baseline.
+/// A painted element, relative to the left end of the baseline.
 #[derive(Clone)]
 enum Ink {
     /// An atom.
     Atom(Laid, Option<String>, Option<String>),
-    /// A horizontal line of this length: of a fraction or a root.
+    /// A horizontal rule of the given length, of a fraction or a root.
     Rule(f32),
-    /// A bracket that opens or closes, from the baseline up and down.
+    /// An opening or closing bracket, with its extent above and below the baseline.
     Bracket(char, f32, f32),
-    /// A root sign, from the baseline up and down.
+    /// A root sign, with its extent above and below the baseline.
     Root(f32, f32),
 }
 
-/// A piece as it is set: everything that is painted, and the room above and below the baseline.
+/// A typeset piece: painted elements, and extent above and below the baseline.
 #[derive(Clone, Default)]
 pub struct Set {
     ink: Vec<(Vec2, f32, Ink)>,
-    /// The width.
+    /// Width of the piece.
     pub width: f32,
-    /// The room above the baseline.
+    /// Height above the baseline.
     pub ascent: f32,
-    /// The room below.
+    /// Depth below the baseline.
     pub descent: f32,
-    /// The worst break of the lines that it is one of.
+    /// The worst line break needed for the formula that the piece is a line of.
     pub broken: Break,
 }
 
-/// The places at which a formula is broken into lines, the best first.
+/// Kinds of line breaks in a formula, the best first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Break {
-    /// Nowhere, or before + and −, words, and what follows a comma.
+    /// None, or before + and −, before words, and after commas.
     #[default]
     Sign,
-    /// Between factors as well; the line that follows begins with ×.
+    /// Also between factors; the next line starts with ×.
     Product,
-    /// Within brackets and fractions, since no line was long enough.
+    /// Inside brackets and fractions, because every line was too narrow.
     Anywhere,
 }
 
-/// The cell of what stands on the line: its corner and its size.
+/// The cell of an element on the line: corner and size.
 fn cell(place: Vec2, size: f32, width: f32) -> (Vec2, Vec2) {
     (place + vec2(-1.0, -0.86 * size), vec2(width + 2.0, 1.24 * size))
 }
@@ -69,7 +68,7 @@ impl Set {
         self.put(other, at);
     }
 
-    /// The symbols and powers: what they are called, and where their cells are.
+    /// The symbols and powers: names and cells.
     pub fn symbols(&self) -> impl Iterator<Item = (&str, Vec2, Vec2)> {
         self.ink.iter().flat_map(|(place, size, ink)| {
             let mut cells = Vec::new();
@@ -89,7 +88,7 @@ impl Set {
         })
     }
 
-    /// The cells of numbers, in the order of the text: where they are.
+    /// The cells of the numbers, in the order of the text.
     pub fn numbers(&self) -> impl Iterator<Item = (Vec2, Vec2)> {
         self.ink.iter().filter_map(|(place, size, ink)| {
             let Ink::Atom(laid, None, _) = ink else { return None };
@@ -99,7 +98,7 @@ impl Set {
         })
     }
 
-    /// Paints it with the left end of its baseline here.
+    /// Paints the piece with the left end of the baseline at a position.
     pub fn paint(&self, ui: &Ui, at: Pos2, colour: Color32) {
         let painter = ui.painter();
         for (place, size, ink) in &self.ink {
@@ -130,14 +129,14 @@ impl Set {
     }
 }
 
-/// The width of a tall bracket and of a root sign, in sizes.
+/// Widths of a tall bracket and of a root sign, relative to the font size.
 const BRACKET: f32 = 0.36;
 const ROOT: f32 = 0.62;
 
 fn bracket(ui: &Ui, at: Pos2, which: char, size: f32, up: f32, down: f32, colour: Color32) {
     let stroke = Stroke::new(size / 13.0, colour);
     let width = BRACKET * size;
-    // Mirrored where it closes.
+    // Mirrored for a closing bracket.
     let x = |t: f32| if ")]⟩".contains(which) { at.x + (1.0 - t) * width } else { at.x + t * width };
     let (top, bottom) = (at.y - up, at.y + down);
     let line = |points: Vec<Pos2>| Shape::Path(PathShape::line(points, stroke));
@@ -159,18 +158,18 @@ fn bracket(ui: &Ui, at: Pos2, which: char, size: f32, up: f32, down: f32, colour
     });
 }
 
-/// Sets equations in one size and one colour.
+/// Typesets equations in one size and one colour.
 #[derive(Clone, Copy)]
 pub struct Setter<'a> {
-    /// The panel, which has the fonts.
+    /// The panel, which provides the fonts.
     pub ui: &'a Ui,
-    /// The size of letters, points.
+    /// Font size, in points.
     pub size: f32,
-    /// The colour.
+    /// Colour of the text.
     pub colour: Color32,
-    /// True if fractions are stacked; else they have a slash.
+    /// True to stack fractions; false to use a slash.
     pub stacked: bool,
-    /// True if what is too long may be set smaller.
+    /// True to reduce the size of pieces that are too wide.
     pub shrinks: bool,
 }
 
@@ -195,7 +194,7 @@ impl Setter<'_> {
         }
     }
 
-    /// Sets nodes beside each other.
+    /// Sets nodes side by side.
     #[must_use]
     pub fn row(self, nodes: &[Node]) -> Set {
         let mut set = Set { ascent: 0.78 * self.size, descent: 0.24 * self.size, ..Set::default() };
@@ -244,7 +243,7 @@ impl Setter<'_> {
         let mut set = tall(sign(open));
         set.append(inside);
         set.append(tall(sign(close)));
-        // The scripts stand at the ends of the tall bracket.
+        // The scripts are at the ends of the tall bracket.
         for (script, shift) in [(close.sup(), 0.62 * self.size - up), (close.sub(), down - 0.1 * self.size)] {
             if !script.is_empty() {
                 let (sub, sup) = (String::new(), script.to_owned());
@@ -278,7 +277,7 @@ impl Setter<'_> {
     }
 
     fn fraction(self, over: &[Node], under: &[Node]) -> Set {
-        // Within a fraction the others have a slash: three storeys are too many to read.
+        // Nested fractions have a slash: three levels would be hard to read.
         let size = if self.shrinks { (0.88 * self.size).max(10.0) } else { self.size };
         let inner = Self { stacked: false, ..self.with_size(size) };
         let (over, under) = (inner.row(bare(over)), inner.row(bare(under)));
@@ -296,14 +295,14 @@ impl Setter<'_> {
         set.put(over, at[0]);
         set.put(under, at[1]);
         set.width = width;
-        // Beside another fraction the bars must not touch.
+        // The bars of adjacent fractions must not touch.
         set.width += 0.06 * self.size;
         set
     }
 
-    /// Sets an equation in lines of at most this width; those after the first begin under what follows the
-    /// equals sign. Lines are broken before + and − outside brackets, and where a new definition begins; what is
-    /// too long even so is set smaller, and what is too long then is broken between factors, with a ×, then anywhere.
+    /// Sets an equation in lines of at most this width; continuation lines are indented to the text after the equals
+    /// sign. Lines break before + and − outside brackets, and before a new definition. What is still too wide is set
+    /// smaller, then broken between factors, with a ×, then anywhere.
     #[must_use]
     pub fn lines(self, nodes: &[Node], width: f32) -> Vec<Set> {
         const SIZES: [f32; 4] = [1.0, 0.94, 0.88, 0.82];
@@ -321,7 +320,7 @@ impl Setter<'_> {
             let nodes = if flat { flattened(nodes) } else { nodes.to_vec() };
             let pieces = if flat { nodes.chunks(1).collect() } else { factors(&nodes) };
             lines = setter.broken(&pieces, width);
-            // In single signs, a line ends anywhere.
+            // A line of single signs can end anywhere.
             let broken = if flat { Break::Anywhere } else { Break::Product };
             let many = lines.len() > 1;
             lines.iter_mut().filter(|_| many).for_each(|line| line.broken = broken);
@@ -332,7 +331,7 @@ impl Setter<'_> {
         lines
     }
 
-    /// Lines of pieces that are not broken.
+    /// Distributes unbreakable pieces over lines.
     fn broken(self, pieces: &[&[Node]], width: f32) -> Vec<Set> {
         let mut lines: Vec<Set> = Vec::new();
         let mut hang = 1.4 * self.size;
@@ -341,11 +340,11 @@ impl Setter<'_> {
             match lines.last_mut() {
                 Some(line) if line.width + set.width <= width || line.width <= hang => line.append(set),
                 _ => {
-                    // The space before what begins a line has done its work.
+                    // No space at the start of a line.
                     let start = piece.iter().take_while(|n| is_space(n)).count();
                     let indent = if i == 0 { 0.0 } else { hang };
                     let mut line = Set { width: indent, ..Set::default() };
-                    // One sign alone is no factor.
+                    // A single sign is not a factor.
                     if i > 0 && self.stacked && multiplied(pieces[i - 1], piece) {
                         line.append(self.row(&times()));
                     }
@@ -363,7 +362,7 @@ impl Setter<'_> {
     }
 }
 
-/// The sign at the beginning of a line whose factors belong to the line before.
+/// The sign at the start of a line that continues the product of the previous line.
 fn times() -> [Node; 2] {
     let sign = Atom::Upright { base: "×".to_owned(), sub: String::new(), sup: String::new() };
     [Node::Atom(sign), Node::Atom(Atom::Space)]
@@ -375,7 +374,7 @@ mod tests {
     use crate::panel::{formula::tree, maths};
     use bevy_egui::egui;
 
-    /// Sets every part of every equation at this width; `see` gets the text and its lines.
+    /// Sets all parts of all equations at this width, and passes the text and its lines to `see`.
     fn set_all(width: f32, shrinks: bool, mut see: impl FnMut(&str, f32, &[Set])) {
         let ctx = egui::Context::default();
         ctx.set_fonts(crate::lettering::fonts());
@@ -394,7 +393,7 @@ mod tests {
         }
     }
 
-    /// The characters of a line from left to right as they were set.
+    /// The characters of a line from left to right, as set.
     fn words(line: &Set) -> String {
         let piece = |(_, _, ink): &(Vec2, f32, Ink)| match ink {
             Ink::Atom(laid, ..) if laid.pieces.is_empty() => " ".to_owned(),
@@ -407,10 +406,10 @@ mod tests {
 
     #[test]
     fn definitions_have_a_line_each_broken_before_plus_and_minus_outside_brackets() {
-        // The width of the panel at first, and the least.
+        // The initial and the minimum width of the panel.
         for width in [320.0, 276.0] {
             set_all(width, true, |text, size, lines| {
-                // The panel at first is wide enough to set everything in full size, or nearly.
+                // The initial panel is wide enough for almost full size.
                 let least = if width > 300.0 { 0.9 } else { 0.8 };
                 let largest = lines.iter().flat_map(|l| &l.ink).map(|(_, size, _)| *size).fold(0.0, f32::max);
                 assert!(largest >= least * size, "{width}: {text} is set in {largest}, not {size}");

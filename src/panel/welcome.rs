@@ -1,5 +1,5 @@
-//! The start without a file: a strip below the picture with three doors, to a lesson, to an example scene and to a model
-//! of one's own. And the menu of the examples.
+//! The start without a file: a strip below the picture offers a lesson, an example scene or a new model. Also the menu
+//! of examples.
 
 use std::sync::Arc;
 
@@ -20,33 +20,33 @@ use super::{
 };
 use crate::{lesson::shipped::LESSONS, registry::Registry, scene::examples::EXAMPLES};
 
-/// The size of a picture in the strip, points.
+/// Size of a picture in the strip, in points.
 const CARD: egui::Vec2 = vec2(112.0, 63.0);
-/// Height of the headings of the doors, points.
+/// Height of the headings, in points.
 const HEADING: f32 = 24.0;
-/// The widths of the doors to lessons and to a model, and the space between doors, points.
+/// Widths of the sections for lessons and for a new model, and the gap between sections, in points.
 const LESSON: f32 = 184.0;
 const MODEL: f32 = 148.0;
 const GAP: f32 = 24.0;
-/// In a narrower strip, the door to a model is a button below that to lessons, which is as wide as this, points.
+/// Width below which the new model is just a button below the lessons, and the width of that section then, in points.
 const WIDE: f32 = 600.0;
 const NARROW: f32 = 150.0;
-/// The tooltip of the door to a model.
+/// Tooltip of the section for a new model.
 const MODEL_TIP: &str =
     "A model of your own is one file in WGSL: equation and knobs. The picture follows while you write it.";
-/// The room of the scroll bar below the titles, points.
+/// Space for the scroll bar below the titles, in points.
 const BAR: f32 = 10.0;
-/// The size of one in the menu.
+/// Size of a picture in the menu, in points.
 const ROW: egui::Vec2 = vec2(96.0, 54.0);
-/// The least height of strip and picture together, points.
+/// Minimum height of strip and picture together, in points.
 const LEAST: f32 = 320.0;
-/// Width of the menu, at most and at least.
+/// Maximum and minimum width of the menu, in points.
 const MENU: [f32; 2] = [580.0, 260.0];
 
-/// The strip below the picture: three doors.
+/// Shows the strip below the picture, with three sections.
 pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
-    // The picture comes first; the menus have all of it too.
+    // The picture has priority; the menus offer the same.
     if !session.view.examples_open || ui.available_height() < LEAST {
         return actions;
     }
@@ -104,7 +104,7 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
     actions
 }
 
-/// The heading of a door, and what stands at its right.
+/// The heading of a section, with widgets at the right.
 fn heading(ui: &mut Ui, text: &str, right: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.set_height(HEADING);
@@ -123,7 +123,7 @@ fn close(ui: &mut Ui, actions: &mut Vec<Action>) {
 /// The examples, side by side.
 fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    // Wheels turn up and down.
+    // Mouse wheels scroll vertically only.
     ui.style_mut().always_scroll_the_only_direction = true;
     ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
         ui.horizontal_top(|ui| {
@@ -146,7 +146,7 @@ fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, a
     });
 }
 
-/// The lesson to go on with, and below it all of them.
+/// The lesson to continue, and below it the button of the lesson list.
 fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     heading(ui, "Lessons", |_| ());
@@ -203,7 +203,7 @@ fn small_button(ui: &mut Ui, text: &str) -> Response {
     ui.add(Button::new(egui::RichText::new(text).small()).small())
 }
 
-/// The way to a model of one's own.
+/// The section for a new model.
 fn model_door(ui: &mut Ui, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CARD.y), Sense::click());
@@ -226,7 +226,7 @@ fn model_door(ui: &mut Ui, actions: &mut Vec<Action>) {
     response.on_hover_text(MODEL_TIP);
 }
 
-/// The ground of a door that has no picture.
+/// The background of a section without a picture.
 fn card(ui: &Ui, rect: Rect, response: &Response) {
     let palette = Palette::here(ui);
     let fill = if response.hovered() || response.has_focus() { palette.hovered } else { palette.raised };
@@ -234,17 +234,17 @@ fn card(ui: &Ui, rect: Rect, response: &Response) {
     frame(ui, rect, response);
 }
 
-/// Escape closes the strip, unless it is another's.
+/// Closes the strip on Escape, unless something else handles the key.
 pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let left = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session, area);
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 
-/// The menu of the examples, beside one that ends at `left`: in up to three columns where one would be too long.
+/// The menu of the examples, beside a menu whose right edge is `left`: in up to three columns if one would be too long.
 pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let [most, least] = MENU;
     let room = ui.ctx().content_rect().right() - left - 40.0;
-    // The menu moves up where it needs to.
+    // The menu moves up if necessary.
     let height = ui.ctx().content_rect().height() - 40.0;
     let fits = |columns: &usize| EXAMPLES.len().div_ceil(*columns) as f32 * (ROW.y + 8.0) <= height;
     let has_room = |columns: &usize| *columns == 1 || room >= *columns as f32 * 1.4 * least;
@@ -268,7 +268,7 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
     });
 }
 
-/// An example with its picture, its name and its description.
+/// The entry of an example: picture, name and description.
 fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) {
     let example = &EXAMPLES[i];
     let palette = Palette::here(ui);

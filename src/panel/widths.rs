@@ -1,14 +1,14 @@
-//! The widths of the panels beside the picture: where there is little room, those that the user has not dragged give
-//! way to the picture.
+//! The widths of the panels beside the picture: if there is little room, panels that the user has not resized give way
+//! to the picture.
 
 use bevy_egui::egui::{Context, Id, Rangef};
 
 use super::state::{Action, Session, View, ViewChange};
 
-/// The share of the window that the picture keeps, unless the user makes the panels wider.
+/// Fraction of the window that the picture keeps, unless the user makes the panels wider.
 const PICTURE: f32 = 0.45;
 
-/// The width of a panel, points.
+/// Width of a panel, in points.
 pub(super) struct Width {
     pub(super) default: f32,
     pub(super) range: Rangef,
@@ -23,20 +23,20 @@ pub(super) struct Widths {
 /// A panel beside the picture.
 struct Side {
     open: bool,
-    /// As wide as the user made it.
+    /// The width set by the user.
     own: Option<f32>,
     usual: f32,
     least: f32,
     most: f32,
 }
 
-/// True while the user drags the edge of a panel.
+/// Key of the flag that the user is dragging the edge of a panel.
 fn dragging() -> Id {
     Id::new("panel dragged")
 }
 
 impl Widths {
-    /// Those in a window of so many points.
+    /// The widths in a window that is `whole` points wide.
     pub(super) fn of(ctx: &Context, session: &Session, whole: f32) -> Self {
         let (view, usual) = (&session.view, View::default());
         let side = |open, wanted: f32, usual: f32, least: f32, most| Side {
@@ -46,7 +46,7 @@ impl Widths {
             least: least.min(most),
             most,
         };
-        // Beside a lesson there is so little room that each knob counts.
+        // Beside a lesson, every knob must remain usable.
         let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
         let sides = [
             match session.lesson {
@@ -55,7 +55,7 @@ impl Widths {
             },
             side(view.right_open, view.right_width, usual.right_width, least, 0.45 * whole),
         ];
-        // One that is dragged takes nothing from the other.
+        // Resizing one panel does not change the other.
         let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
         let share = ((1.0 - PICTURE) * whole / taken.max(1.0)).min(1.0);
         let dragged = ctx.data(|d| d.get_temp(dragging())).unwrap_or(false)
@@ -69,8 +69,8 @@ impl Widths {
         Self { left, right }
     }
 
-    /// The widths, and the height of the strip at the bottom, that the user dragged, once the dragging is over; `sizes`
-    /// are those on screen.
+    /// The action that stores the widths and the height of the bottom strip after dragging; `sizes` are those on
+    /// screen.
     pub(super) fn dragged(&self, ctx: &Context, session: &Session, sizes: (f32, f32, f32)) -> Option<Action> {
         let v = &session.view;
         let kept = |size: f32, given: f32, known: f32| if (size - given).abs() > 1.0 { size } else { known };

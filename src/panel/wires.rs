@@ -1,7 +1,7 @@
-//! Lines and dots of meshes over the picture of a view: channels that are drawn by the window, not by shaders.
+//! Lines and dots of meshes over the picture of a view: debug channels that the window draws without shaders.
 //!
-//! The places in sight are found in a thread when scene, camera or view have changed. They are places in the room: while the
-//! camera moves they stay where they belong, and what hides them follows a moment later.
+//! A thread finds the visible ones when scene, camera or view have changed. Their positions are in the scene: they move
+//! correctly with the camera, while occlusion follows a moment later.
 
 use std::{
     collections::BTreeMap,
@@ -27,20 +27,21 @@ use crate::{
     scene::{Observer, Scene},
 };
 
-/// A frame waits so long for lines, and no longer.
+/// Maximum time that a frame waits for lines.
 const PATIENCE: Duration = Duration::from_millis(4);
-/// More lines make the window slow.
+/// Maximum number of lines; more would slow down the window.
 const LINES: usize = 60_000;
-/// More dots do, too.
+/// Maximum number of dots, for the same reason.
 const DOTS: usize = 8_000;
-/// The soft half of a line, points.
+/// Half the width of a line with soft edges, in points.
 const HALF: f32 = 1.25;
-/// The rings of a dot, from its middle: radius in points, and opacity of its colour, or at most 0 that of its rim.
+/// Rings of a dot, from the centre: radius in points, and opacity, positive for the dot's colour, otherwise for the
+/// rim's.
 const RINGS: [(f32, f32); 3] = [(2.3, 1.0), (2.9, -0.9), (3.9, 0.0)];
-/// Corners of a dot.
+/// Number of corners of a dot.
 const CORNERS: usize = 12;
 
-/// Everything that the places depend on.
+/// Inputs of the visible lines and dots.
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     revision: Revision,
@@ -51,7 +52,7 @@ struct Question {
     reloaded: Option<Reloaded>,
 }
 
-/// What a drawn mesh depends on.
+/// Inputs of a drawn mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sight {
     rect: Rect,
@@ -62,12 +63,12 @@ struct Sight {
 
 #[derive(Default)]
 struct OfView {
-    /// The scene of the view, without the camera of the window.
+    /// Scene of the view, without the camera of the window.
     scene: Option<(Revision, Arc<Scene>)>,
     drawer: Option<WireDrawer>,
     running: Option<(Question, Receiver<(WireDrawer, Wires)>)>,
     shown: Option<(Question, Arc<Wires>)>,
-    /// What was drawn last.
+    /// The latest drawn mesh.
     drawn: Option<(Arc<Wires>, Sight, Arc<Mesh>)>,
     calculations: u64,
 }
@@ -82,7 +83,7 @@ fn with<T>(ctx: &Context, of: impl FnOnce(&mut BTreeMap<usize, OfView>) -> T) ->
     of(&mut shared(ctx).lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// The lines and dots over the picture of a view, and the number of times that they were calculated.
+/// The lines and dots over the picture of a view, and the number of calculations so far.
 #[must_use]
 pub fn shown(ctx: &Context, view: usize) -> Option<(Arc<Wires>, u64)> {
     with(ctx, |all| {
@@ -91,12 +92,12 @@ pub fn shown(ctx: &Context, view: usize) -> Option<(Arc<Wires>, u64)> {
     })
 }
 
-/// The objects that are left out in a view, in words.
+/// A note about objects left out in a view.
 pub(super) fn remark(ctx: &Context, view: usize) -> Option<String> {
     shown(ctx, view).and_then(|(wires, _)| wires.remark())
 }
 
-/// Paints the lines and dots of a view into its rectangle, if its channel has any; only `part` of it is in sight.
+/// Paints the lines and dots of a view into its rectangle, clipped to `part`, if its channel has any.
 pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Session, registry: &Registry) {
     let channel = session.channel_of(view).filter(|channel| channel.has_wires());
     let Some(channel) = channel else {
@@ -137,7 +138,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Sess
 }
 
 impl OfView {
-    /// The lines; while they are calculated those before.
+    /// The lines or, while they are calculated, the previous ones of the same channel.
     fn answer(
         &mut self,
         ctx: &Context,
@@ -146,7 +147,7 @@ impl OfView {
         session: &Session,
         registry: &Registry,
     ) -> Option<Arc<Wires>> {
-        // What still runs may be older.
+        // A running calculation may answer an older question.
         for _ in 0..2 {
             if self.shown.as_ref().is_some_and(|(asked, _)| asked == question) {
                 break;
@@ -166,7 +167,7 @@ impl OfView {
                     self.drawer = Some(drawer);
                 }
                 Err(RecvTimeoutError::Timeout) => break,
-                // An error of this program, such as in a shape of another crate: none until something changes.
+                // A bug, for example in a shape of another crate: show nothing until something changes.
                 Err(RecvTimeoutError::Disconnected) => {
                     self.shown = Some((asked.clone(), Arc::default()));
                 }
@@ -206,14 +207,14 @@ fn start(
         let settings = Settings { width, height, samples: 1, terms };
         let most = if channel == DebugChannel::Vertices { DOTS } else { LINES };
         let wires = drawer.wires(&scene, &registry, &settings, channel, most);
-        // Nobody listens once the channel is another one.
+        // The receiver is gone once the channel has changed.
         drop(sender.send((drawer, wires)));
         ctx.request_repaint();
     });
     receiver
 }
 
-/// Lines and dots as the camera sees them.
+/// Lines and dots as projected by the camera.
 fn mesh(wires: &Wires, lens: &Lens) -> Mesh {
     let mut mesh = Mesh::default();
     let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);

@@ -1,4 +1,4 @@
-//! The files of users: writing new models and exporting the shaders.
+//! The user's own files: creating models and exporting shaders.
 
 use std::{
     io,
@@ -15,8 +15,8 @@ use crate::{
     text::sentence,
 };
 
-/// Carries out an effect that writes a file of the user's: reports the result, and wishes for a new model to be
-/// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
+/// Carries out an effect that writes a file of the user's, reports the result, and requests the selection of a new
+/// model. Returns the folder to read shaders from, if it changes.
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     match effect {
         Effect::NewModel { id, name } => {
@@ -57,7 +57,7 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
     None
 }
 
-/// The folder from which custom models are read, else the one in which they would be looked for.
+/// The folder of custom models; if there is none, the one in which they are looked for.
 fn models_folder(registry: &Registry) -> Option<PathBuf> {
     registry.custom_folder().map(Path::to_owned).or_else(|| Folders::find(None, None).ok()?.models)
 }
@@ -80,7 +80,7 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
             );
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            // Asked again, with what was typed.
+            // Asks again, with the typed name.
             session.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
             session.say(
                 Severity::Error,

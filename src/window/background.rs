@@ -1,4 +1,4 @@
-//! Work of the window that takes a while: one at a time, in a thread of its own, with progress and a way to stop it.
+//! Background work of the window: one task at a time, in a separate thread, with progress and cancellation.
 
 use std::{
     sync::{
@@ -10,18 +10,18 @@ use std::{
 
 use crate::{caught::catch, progress::Progress};
 
-/// Work with a label, and its result.
+/// A task with a label, and its result.
 #[derive(Debug)]
 pub(super) struct Background<L, T> {
     state: Arc<Mutex<State<L, T>>>,
     cancelled: Arc<AtomicBool>,
 }
 
-/// Work that runs.
+/// A running task.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Running<L> {
     pub(super) label: L,
-    /// The fraction that is done.
+    /// Completed fraction.
     pub(super) done: f32,
     /// The current step.
     pub(super) step: String,
@@ -40,8 +40,8 @@ impl<L, T> Default for Background<L, T> {
 }
 
 impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
-    /// Begins some work and comes back at once; does nothing while other work runs. `wake` is called at each step.
-    /// Should the work panic, `broken` is its result: the window goes on.
+    /// Starts a task and returns at once; does nothing while another task runs. Calls `wake` at each step. If the task
+    /// panics, `broken` provides the result: the window goes on.
     pub(super) fn begin(
         &self,
         label: L,
@@ -68,17 +68,17 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
         });
     }
 
-    /// Stops the work at its next step.
+    /// Stops the task at its next step.
     pub(super) fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// The work that runs.
+    /// The running task.
     pub(super) fn running(&self) -> Option<Running<L>> {
         self.lock().running.clone()
     }
 
-    /// The result of work that has just ended.
+    /// The result of a task that has just ended.
     pub(super) fn take(&self) -> Option<T> {
         self.lock().ended.take()
     }
@@ -125,7 +125,7 @@ mod tests {
         work.cancel();
         assert_eq!(ended(&work), Err("cancelled"));
         assert_eq!(work.running(), None);
-        // What was cancelled once is not cancelled for ever.
+        // Cancelling one task does not cancel later ones.
         work.begin(
             3,
             || (),

@@ -1,4 +1,4 @@
-//! Moving the camera of the picture: orbit, pan, zoom around an object; back to the observer.
+//! Camera control: orbit, pan and zoom around an object, and return to the observer.
 
 use bevy::{
     app::{App, Plugin, PostUpdate, PreUpdate},
@@ -26,18 +26,18 @@ use crate::{
     scene::{Observer, Scene, observer::rotation},
 };
 
-/// The nearest that the camera comes to what it turns around, metres.
+/// Minimum distance of the camera from its target, in metres.
 const NEAREST: f32 = 0.05;
 
-/// The steepest angle at which the camera may look down or up, radians.
+/// Maximum elevation of the camera, up or down, in radians.
 const HIGHEST: f32 = 89.9 / 180.0 * std::f32::consts::PI;
 
-/// The controls of the camera.
+/// The orbit controls of the camera.
 pub(super) fn orbit() -> PanOrbitCamera {
     PanOrbitCamera {
         button_orbit: MouseButton::Left,
         button_pan: MouseButton::Right,
-        // At once: what is compared must not glide.
+        // Immediate: views under comparison must not glide.
         orbit_smoothness: 0.0,
         pan_smoothness: 0.0,
         zoom_smoothness: 0.0,
@@ -62,14 +62,13 @@ impl Plugin for CameraPlugin {
         }
         app.add_systems(PreUpdate, (gate.after(follow_cursor), keep_at_observer).chain()).add_systems(
             PostUpdate,
-            // So that the marks over the picture belong to the same frame.
+            // In time for the marks over the picture of the same frame.
             feed_viewpoint.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
         );
     }
 }
 
-/// The point that the view turns around when it stands at the observer: that of its line of sight nearest
-/// to the objects' middle.
+/// The target of a camera at the observer: the point on its line of sight nearest to the centre of the objects.
 fn focus_of(scene: &Scene, observer: &Observer) -> Vec3 {
     let forward = rotation(observer.direction) * Vec3::NEG_Z;
     let count = scene.objects.len().max(1) as f32;
@@ -86,8 +85,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
     camera.initialized = false;
 }
 
-/// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
-/// stands at the observer.
+/// Enables the mouse controls only if nothing else uses the mouse, and detaches a moved camera from the observer.
 fn gate(
     over: Res<OverPicture>,
     buttons: Res<ButtonInput<MouseButton>>,
@@ -102,7 +100,7 @@ fn gate(
     *dragging = buttons.any_pressed(pressed) && (*dragging || begins);
     let moved = motion.read().count() > 0;
     let wheeled = wheel.read().count() > 0 && over.now;
-    // A drag that began in the picture goes on outside; one that began outside never gets in.
+    // A drag that started in the picture continues outside; one that started outside is ignored.
     let enabled = *dragging || (over.now && !buttons.any_pressed(pressed));
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     for (mut orbit, mut picture) in &mut cameras {
@@ -124,7 +122,7 @@ fn gate(
     }
 }
 
-/// While the camera stands at the observer, the controls know its place, so that a drag starts there.
+/// Keeps the controls up to date while the camera follows the observer, so that a drag starts there.
 fn keep_at_observer(
     scene: Res<CurrentScene>,
     mut cameras: Query<(&mut PanOrbitCamera, &mut Transform, &PictureCamera), With<WindowView>>,
@@ -144,7 +142,7 @@ fn keep_at_observer(
     }
 }
 
-/// Tells the panels the position of the camera.
+/// Reports the position of the camera to the panels.
 fn feed_viewpoint(
     mut session: ResMut<Session>,
     cameras: Query<(&Transform, &PictureCamera), With<WindowView>>,
@@ -156,13 +154,14 @@ fn feed_viewpoint(
     }
 }
 
-/// The distance at which something of a size takes about half of the smaller side of the picture, metres; never within it.
+/// Distance at which an object of the given size takes about half of the smaller side of the picture, in metres; never
+/// inside the object.
 fn framing(size: f32, field_of_view: f32) -> f32 {
     let tangent = (0.5 * field_of_view.to_radians()).tan();
     (0.91 * size / tangent).max(1.1 * size).max(2.2 * NEAREST)
 }
 
-/// The camera and the point that it looks at, after a movement.
+/// The camera and its target after a movement.
 fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     let offset = camera.translation - focus;
     match steer {
@@ -186,7 +185,7 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
         }
         Steer::Along { point, way } => {
             let offset = camera.translation - point;
-            // From the nearer of the two sides.
+            // From the nearer side.
             let back = if way.dot(offset) < 0.0 { -way } else { way }.normalize_or(camera.rotation * Vec3::Z);
             let elevation = back.y.clamp(-1.0, 1.0).asin().clamp(-HIGHEST, HIGHEST);
             let right = camera.rotation * Vec3::X;
@@ -198,7 +197,7 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     }
 }
 
-/// A camera that waits: its place, the point that it looks at, and true if it stands at the observer.
+/// A camera that is kept: position, target, and true if it follows the observer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     place: Transform,
@@ -206,7 +205,7 @@ pub(super) struct Waiting {
     follows_observer: bool,
 }
 
-/// The movements of the camera that panels ask for.
+/// Camera movements requested by panels.
 #[derive(SystemParam)]
 pub(super) struct CameraControl<'w, 's> {
     scene: Res<'w, CurrentScene>,
@@ -220,7 +219,7 @@ pub(super) struct CameraControl<'w, 's> {
 }
 
 impl CameraControl<'_, '_> {
-    /// Makes room for the view of another document, or exchanges both.
+    /// Keeps the camera for another document, or exchanges it with the one kept.
     pub(super) fn change(&mut self, change: CameraChange) {
         let Some((mut orbit, mut transform, mut picture)) = self.cameras.iter_mut().next() else { return };
         let now =
@@ -235,14 +234,14 @@ impl CameraControl<'_, '_> {
         }
     }
 
-    /// Back to the observer.
+    /// Returns to the observer.
     pub(super) fn home(&mut self) {
         for (_, _, mut picture) in &mut self.cameras {
             picture.follows_observer = true;
         }
     }
 
-    /// Turns to what is selected, from the side where the camera is now.
+    /// Turns to the selection, keeping the direction of view.
     pub(super) fn focus(&mut self, session: &Session) {
         let scene = &self.scene.0;
         let (target, size) = match session.selection {
@@ -266,7 +265,7 @@ impl CameraControl<'_, '_> {
         }
     }
 
-    /// Moves the camera a little.
+    /// Moves the camera by a small step.
     pub(super) fn steer(&mut self, steer: Steer) {
         for (mut orbit, mut transform, mut picture) in &mut self.cameras {
             picture.follows_observer = false;
@@ -275,7 +274,7 @@ impl CameraControl<'_, '_> {
         }
     }
 
-    /// Makes the camera's place the observer's, if the rules of scenes allow it.
+    /// Moves the observer to the camera, if the scene allows it.
     pub(super) fn place_observer(&mut self, session: &mut Session, registry: &Registry) {
         let Some((_, transform, _)) = self.cameras.iter().next() else { return };
         let observer = Observer {

@@ -29,18 +29,18 @@ use crate::{
     },
 };
 
-/// The longest that shaders are waited for before frames are counted.
+/// Maximum time to wait for shaders before frames are counted.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Exits after so many frames, if a number is given. Before, writes the window to a file, if one is given; without a
-/// window, the picture.
+/// Exits after a number of frames, if given. Before that, captures the window to a file, if given; without a window,
+/// the picture.
 #[derive(Clone, Debug, Default)]
 pub struct CapturePlugin {
-    /// The number of frames.
+    /// Number of frames.
     pub frames: Option<u32>,
-    /// The PNG file.
+    /// PNG file of the capture.
     pub file: Option<PathBuf>,
-    /// Leave the scene out of it.
+    /// True to leave the scene out of the file.
     pub no_scene: bool,
 }
 
@@ -65,7 +65,7 @@ impl Plugin for CapturePlugin {
     }
 }
 
-/// The place for the reason why a capture failed.
+/// Receives the reason if a capture fails.
 pub(super) type Report = Arc<Mutex<Option<Failure>>>;
 
 #[derive(Resource)]
@@ -73,7 +73,7 @@ pub(super) struct Countdown {
     left: u32,
     file: Option<PathBuf>,
     no_scene: bool,
-    /// Whoever runs the window reports the failure; else it is reported here.
+    /// Receiver of a failure; `None` to report it here.
     pub(super) reported: Option<Report>,
     since: Instant,
 }
@@ -86,11 +86,11 @@ fn count(
     mut commands: Commands,
     mut exit: MessageWriter<AppExit>,
 ) {
-    // An object whose shader is still being tried is not on the picture yet.
+    // An object whose shader is still being tested is missing from the picture.
     if live.is_trying() && countdown.since.elapsed() < PATIENCE {
         return;
     }
-    // After the capture was asked for, frames go on until it arrives.
+    // After the capture is requested, frames continue until it arrives.
     let Some(left) = countdown.left.checked_sub(1) else { return };
     countdown.left = left;
     if left > 0 {
@@ -99,7 +99,7 @@ fn count(
     if countdown.file.is_some() {
         let mut shot = Screenshot::primary_window();
         for (target, mut drawing) in views.iter_mut().filter(|_| windows.is_empty()) {
-            // What rests is not on the screenshot.
+            // An idle view would be missing from the screenshot.
             drawing.redraw();
             shot = texture_of(target).map_or(shot, |picture| Screenshot::image(picture.clone()));
         }

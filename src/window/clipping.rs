@@ -1,7 +1,8 @@
-//! Counts clipped pixels: on the GPU, in the picture of each view on screen, once it has come to rest.
+//! Counts clipped pixels on the GPU, in the picture of each view on screen, once it is idle.
 //!
-//! A compute pass reads the texture of the picture. After tone mapping, that holds what the display is asked for, also
-//! beyond what it can show; a picture drawn [straight](Straight) into its texture marks such pixels. A few kilobytes come back, a frame or two later.
+//! A compute pass reads the texture of the picture. After tone mapping, it contains the values sent to the display,
+//! even beyond the displayable range; a picture drawn [straight](Straight) into its texture marks such pixels. A few
+//! kilobytes come back, a frame or two later.
 
 use std::collections::HashMap;
 
@@ -47,9 +48,9 @@ use crate::{
     scene::{Display, variant::MAX_VARIANTS},
 };
 
-/// Frames in which an answer is waited for.
+/// Number of frames to wait for a result.
 const PATIENCE: u32 = 30;
-/// Invocations of a workgroup in each direction.
+/// Size of a workgroup in each direction.
 const GROUP: u32 = 8;
 
 /// Counts clipped pixels, for the badge in the picture.
@@ -77,23 +78,23 @@ impl Plugin for ClippingPlugin {
     }
 }
 
-/// While the picture moves, one in so many is asked about.
+/// Interval of counts while the picture changes, in pictures.
 const MOVING: u64 = 10;
 
 /// The shader that counts.
 #[derive(Resource)]
 struct Counter(Handle<Shader>);
 
-/// The question to the GPU about the picture of a view.
+/// A request to the GPU about the picture of a view.
 #[derive(Clone, Component, ExtractComponent)]
 struct Question {
     /// The view: 0 is the scene itself, 1 view B.
     view: usize,
-    /// No two questions have the same.
+    /// Unique number of the request.
     number: u32,
-    /// There is no answer yet.
+    /// True while the result is pending.
     open: bool,
-    /// Frames in which the answer is still waited for.
+    /// Remaining number of frames to wait for the result.
     patience: u32,
     /// See [`limit`].
     limit: f32,
@@ -108,21 +109,22 @@ impl Question {
     }
 }
 
-/// Above this, a channel of the picture is cut off. What was cut off before the texture shows as exactly the
-/// brightest there is: curves of tone mapping end there, and so does gamma-naive encoding.
+/// Value above which a channel of the picture is clipped. Values that were clipped before they reached the texture
+/// equal the maximum, where tone mapping curves and gamma-naive encoding end.
 fn limit(display: &Display) -> f32 {
     if display.tone_mapping == ToneMapping::None && display.encoding == Encoding::Srgb {
-        // Exactly white is not cut off; half floats are that coarse.
+        // Pure white is not clipped; the margin is the precision of half floats.
         1.0005
     } else {
         0.999
     }
 }
 
-/// A view that the window shows.
+/// Filter for the views shown by the window.
 type Seen = Or<(With<WindowView>, With<OtherView>)>;
 
-/// Asks about the last picture of each view after a change, and keeps frames coming until the answers are there.
+/// Requests a count for the latest picture of each view after a change, and keeps frames coming until the results
+/// arrive.
 fn ask(
     scene: Res<CurrentScene>,
     area: Option<Res<PictureArea>>,
@@ -148,14 +150,14 @@ fn ask(
             continue;
         };
         if question.view != view {
-            // Another view that shows the same is not drawn anew.
+            // Another view with the same content is not redrawn.
             let same = known.get_mut(question.view).and_then(Option::take);
             question.view = view;
             if let Some(known) = known.get_mut(view) {
                 *known = same;
             }
         }
-        // A picture that moves is never done.
+        // A changing picture is never finished.
         let moves = !question.open && drawing.drawn().is_multiple_of(MOVING);
         if drawing.draws() && (drawing.is_done() || moves) {
             *last = last.wrapping_add(1);
@@ -176,7 +178,7 @@ fn ask(
     for (known, _) in known.iter_mut().zip(shown).filter(|(_, shown)| !shown) {
         *known = None;
     }
-    // Nobody waits for these any more.
+    // The remaining requests are obsolete.
     for (_, readback) in std::mem::replace(&mut *readbacks, waits) {
         commands.entity(readback).despawn();
     }
@@ -243,7 +245,7 @@ fn count(
     else {
         return;
     };
-    // A picture that was drawn straight into its texture says with its opacity what was cut off.
+    // A picture drawn straight into its texture marks clipped pixels by its opacity.
     let straight = camera.schedule == Straight.intern();
     let picture = target.out_texture().filter(|_| straight).unwrap_or(target.main_texture_view());
     let limit = if straight { -1.0 } else { question.limit };

@@ -1,11 +1,11 @@
-// The number of pixels that clip in each field of a grid over the picture.
+// Counts the clipped pixels in each cell of a grid over the picture.
 
 struct Ask {
-    // The extent of the picture.
+    // Size of the picture in pixels.
     size: vec2<u32>,
-    // Above this, a channel clips; less than zero where opacity tells it, as the wrapper of the models writes it.
+    // Value above which a channel is clipped; negative if the opacity marks clipped pixels, as the models' wrapper does.
     limit: f32,
-    // Returned, so that an answer is known to be to this question.
+    // Returned with the result, to match it to its request.
     number: u32,
 }
 

@@ -1,8 +1,8 @@
-//! The numbers and the map of a comparison: two views are read back once they have come to rest, and compared in a thread
-//! of its own.
+//! The statistics and the map of a comparison: two views are read back once they are idle, and compared in a separate
+//! thread.
 //!
-//! The display codes are those on screen. Light, and what objects cover, the CPU renderer says: from the screen alone they
-//! cannot be known.
+//! The display codes are those on screen. Light and object coverage come from the CPU renderer, since the screen does
+//! not contain them.
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
@@ -47,32 +47,32 @@ impl Plugin for DifferencePlugin {
     }
 }
 
-/// What is compared.
+/// Inputs of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     comparison: Comparison,
-    /// The other view.
+    /// The view compared with A.
     with: usize,
     size: UVec2,
-    /// The pictures that have been drawn of each.
+    /// Number of pictures drawn of each view.
     drawn: [u64; 2],
     textures: [Handle<Image>; 2],
 }
 
-/// The answer of the thread.
+/// The result of the thread.
 struct Answer {
     measured: Option<Measured>,
     largest: Option<(f32, [u32; 2])>,
     map: Option<Vec<u8>>,
 }
 
-/// The comparison that is under way, and the one that is known.
+/// The running comparison, and the finished one.
 #[derive(Default, Resource)]
 struct Comparing {
     asked: Option<Question>,
     known: Option<Question>,
     read: Option<Reading>,
-    /// Its result is `None` if it broke off.
+    /// The result is `None` if the comparison crashed.
     work: Background<(), Option<Answer>>,
 }
 
@@ -100,7 +100,7 @@ fn compare(
     };
     let rest = a.drawing.rests() && b.drawing.rests();
     if rest && let (Some(texture_a), Some(texture_b)) = (a.texture(), b.texture()) {
-        // Where the edge of a wipe is, and how the views are arranged, changes no number.
+        // The edge of a wipe and the arrangement of the views do not affect the statistics.
         let question = Question {
             comparison: Comparison { split: 0.0, ..comparison },
             with,
@@ -129,7 +129,7 @@ fn compare(
             camera: session.facts.observer(session.document.observer.field_of_view),
             registry: registry.clone(),
         };
-        // An answer that nobody waits for any more is dropped.
+        // An obsolete result is dropped.
         comparing.work.begin((), || {}, || None, move |_| Some(job.run()));
     }
     let Some(answer) = comparing.work.take() else { return };
@@ -157,7 +157,7 @@ fn compare(
     requests.write(RequestRedraw);
 }
 
-/// Ends what is under way: nothing is compared any more.
+/// Ends the comparison and forgets its result.
 fn forget(comparing: &mut ResMut<Comparing>, commands: &mut Commands) {
     if comparing.asked.is_none() && comparing.known.is_none() {
         return;
@@ -168,12 +168,12 @@ fn forget(comparing: &mut ResMut<Comparing>, commands: &mut Commands) {
     **comparing = Comparing::default();
 }
 
-/// Everything that the thread needs.
+/// Inputs of the thread.
 struct Job {
     question: Question,
     codes: Vec<Vec<u8>>,
     scene: Scene,
-    /// The terms that view A and the other show.
+    /// The visible terms of view A and of the other view.
     terms: [TermSelection; 2],
     camera: Observer,
     registry: Registry,
@@ -210,10 +210,10 @@ impl Job {
         shown.outlined(&Scene { observer, ..seen }, &self.registry)
     }
 
-    /// The light of a view, from where the camera of the window stands.
+    /// The light of a view, as seen by the camera of the window.
     fn light(&self, view: usize, terms: TermSelection) -> Option<Picture> {
         let (seen, _) = self.scene.seen(view, &self.registry)?;
-        // What is covered shows in the cheapest term too.
+        // The cheapest term also shows the coverage.
         let terms =
             if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
         let size = self.question.size;
@@ -222,7 +222,7 @@ impl Job {
     }
 }
 
-/// The light of what a view shows, as a camera sees it.
+/// The light of a scene, as seen by a camera.
 pub(super) fn light(
     seen: Scene,
     camera: Observer,
@@ -235,13 +235,13 @@ pub(super) fn light(
     reference::render(&seen, registry, &settings)
 }
 
-/// A likeness up to 1; what is not equal is not 1.
+/// A similarity up to 1; only equality is shown as 1.
 fn likeness(value: f64) -> String {
     let text = format!("{value:.3}");
     if value < 1.0 && text == "1.000" { "> 0.999".to_owned() } else { text }
 }
 
-/// The numbers for people, over the pixels that objects cover; of which views, if there are `several` beside A.
+/// The statistics for display, over the pixels covered by objects; names the views if there are `several` beside A.
 fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Numbers {
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);

@@ -1,5 +1,4 @@
-//! The document of the window: its files, its history, and the scene that is shown, which it follows and which follows
-//! it.
+//! The document of the window: files, history, and synchronisation with the displayed scene in both directions.
 
 use std::path::Path;
 
@@ -51,13 +50,13 @@ use crate::{
     text::sentence,
 };
 
-/// The document: [`Session`], its files, and its way into the scene and back. What is registered with the app until it
-/// starts is known to the scene.
+/// The document: [`Session`], its files, and the synchronisation with the scene. The scene may use everything
+/// registered with the app before it starts.
 #[derive(Clone, Debug, Default)]
 pub struct DocumentPlugin {
-    /// The scene and the circumstances of the start.
+    /// The scene and further start options.
     pub options: ViewOptions,
-    /// True if a user is there, with settings and custom models.
+    /// True if there is a user, with settings and custom models.
     pub for_user: bool,
 }
 
@@ -156,28 +155,28 @@ impl Plugin for DocumentPlugin {
             }
             world.write_message_batch(effects.into_iter().map(LabEffect));
         });
-        // Systems spawn parts before the first frame.
+        // Systems may spawn parts before the first frame.
         know_types(world);
     }
 }
 
-/// Makes the custom models in the user's folder known, by their declarations.
+/// Declares the custom models in the user's folder.
 fn declare_custom(registry: &mut Registry, session: &mut Session) {
     match Folders::find(None, None) {
         Ok(folders) => {
             folders.shaders.iter().for_each(|folder| registry.set_shader_folder(folder));
-            // Their problems are reported when they are looked at.
+            // Their problems are reported when the models are checked.
             folders.models.iter().for_each(|folder| drop(declare_folder(folder, registry)));
         }
         Err(why) => session.say(Severity::Error, why.to_string()),
     }
 }
 
-/// Opens a file with what the app knows by now, beside what was known before. Where the user is asked about missing parts,
-/// the window asks.
+/// Opens a file with everything registered with the app in addition to `known`. With [`Defaults::Ask`], the window asks
+/// about missing parts.
 ///
 /// # Errors
-/// If the scene cannot be read, or has problems.
+/// Returns an error if the scene cannot be read, or has problems.
 pub fn open_late(
     app: &mut App,
     file: &Path,
@@ -200,7 +199,7 @@ pub fn open_late(
     Ok(())
 }
 
-/// Opens a file at the start. Without a user there is nobody to ask.
+/// Opens a file at the start. Without a user, applies defaults instead of asking.
 fn open(
     file: &Path,
     session: &mut Session,
@@ -224,14 +223,14 @@ fn open(
     Vec::new()
 }
 
-/// The models are others: what none of them takes leaves the document until one does.
+/// Adapts the document to changed models: stashes values that no model accepts any more.
 fn follow_parameters(registry: Res<Registry>, session: ResMut<Session>) {
     if registry.is_changed() {
         follow_registry(session, &registry);
     }
 }
 
-/// The document goes into the scene that is shown.
+/// Copies the document to the displayed scene.
 fn publish(
     session: Res<Session>,
     scene: ResMut<CurrentScene>,
@@ -245,8 +244,8 @@ fn publish(
     channels.set_if_neq(ShownChannels { by_view, light });
 }
 
-/// Submits changes of the entities to the document; those that it refuses go back. Reports shapes for which there is no
-/// room on the GPU, once.
+/// Submits changes of the entities to the document, and reverts those that it refuses. Reports, once, shapes that do
+/// not fit on the GPU.
 fn take_over(
     meshes: Res<ShapeMeshes>,
     mut reported: Local<Option<String>>,

@@ -1,5 +1,6 @@
-//! The editor that opens a file: the one that is named, else that of the desktop for text, else one that is known to
-//! have a window. An editor that needs a terminal is only taken if its user named it, since others find no way out.
+//! The editor that opens a file: the configured one, otherwise the default of the desktop for text, otherwise a known
+//! editor with a window. Terminal editors are only used if the user has configured one, since others do not know how to
+//! leave them.
 
 use std::{
     env,
@@ -16,15 +17,15 @@ use bevy::ecs::prelude::*;
 use crate::files;
 use crate::files::Shown as _;
 
-/// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
-/// for the file and the line; without `{file}` the file comes last.
+/// Environment variable with the editor command, split at spaces. `{file}` and `{line}` are replaced by file and line;
+/// without `{file}`, the file is appended.
 pub const EDITOR_VARIABLE: &str = "LCM_EDITOR";
-/// A command that fails within this time is told of.
+/// A command that fails within this time is reported.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The largest file about an application that is read, bytes.
+/// Maximum size of a desktop entry, in bytes.
 const MAX_ENTRY_BYTES: u64 = 1 << 20;
 
-/// Editors with a window of their own, the best to learn with first, and how they are called.
+/// Editors with their own window, the best for beginners first, and their arguments.
 const KNOWN: [(&str, &str); 16] = [
     ("code", "--goto {file}:{line}"),
     ("codium", "--goto {file}:{line}"),
@@ -44,7 +45,7 @@ const KNOWN: [(&str, &str); 16] = [
     ("l3afpad", "{file}"),
 ];
 
-/// Terminals, and what comes between them and a command.
+/// Terminals, and the arguments in front of a command.
 const TERMINALS: [(&str, &[&str]); 10] = [
     ("x-terminal-emulator", &["-e"]),
     ("gnome-terminal", &["--"]),
@@ -58,19 +59,19 @@ const TERMINALS: [(&str, &[&str]); 10] = [
     ("xterm", &["-e"]),
 ];
 
-/// Editors in terminals that take the line as `+12`.
+/// Terminal editors that accept the line as `+12`.
 const TAKE_A_PLUS: [&str; 8] = ["vi", "vim", "nvim", "nano", "pico", "emacs", "joe", "micro"];
 
 /// A command: program and arguments.
 type Called = (String, Vec<String>);
 
-/// The command that opens a file at a line, as a variable names it. None when that says nothing.
+/// The command of a variable that opens a file at a line; `None` if the variable is unset or empty.
 #[must_use]
 pub fn editor_command(variable: Option<&str>, file: &Path, line: usize) -> Option<Called> {
     let variable = variable?;
     let named = variable.contains("{file}");
     let name = file.to_string_lossy();
-    // Split first: a file name may hold spaces.
+    // Split first: a file name may contain spaces.
     let mut words = variable
         .split_whitespace()
         .map(|word| word.replace("{line}", &line.to_string()).replace("{file}", &name))
@@ -85,17 +86,17 @@ pub fn editor_command(variable: Option<&str>, file: &Path, line: usize) -> Optio
     Some((program, words))
 }
 
-/// An application of the desktop.
+/// A desktop application.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Application {
-    /// Its command, with the fields of the specification.
+    /// The command, with the field codes of the specification.
     pub exec: String,
-    /// It runs in a terminal.
+    /// True if the application runs in a terminal.
     pub terminal: bool,
 }
 
 impl Application {
-    /// Reads a desktop entry.
+    /// Parses a desktop entry.
     #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         let entry = text.lines().skip_while(|l| l.trim() != "[Desktop Entry]").skip(1);
@@ -138,7 +139,7 @@ impl Application {
     }
 }
 
-/// The words of a command in a desktop entry.
+/// The words of the command in a desktop entry, with quotes resolved.
 fn unquoted(exec: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut quoted = false;
@@ -156,7 +157,7 @@ fn unquoted(exec: &str) -> Vec<String> {
     words
 }
 
-/// The arguments of a known editor, by its name or path.
+/// The arguments for a known editor, by its name or path.
 fn known(program: &str) -> Option<&'static str> {
     let name = Path::new(program).file_name()?.to_str()?;
     KNOWN.iter().find(|(known, _)| *known == name).map(|(_, how)| *how)
@@ -167,21 +168,22 @@ fn filled(how: &str, file: &Path, line: usize) -> Vec<String> {
     how.split(' ').map(|word| filled(word).replace("{file}", &file.to_string_lossy())).collect()
 }
 
-/// The editors that there are.
+/// The available editors.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     /// The value of [`EDITOR_VARIABLE`].
     pub named: Option<String>,
-    /// The values of `VISUAL` and `EDITOR`, as far as they are set.
+    /// Values of `VISUAL` and `EDITOR`, if set.
     pub usual: Vec<String>,
-    /// The application of the desktop for text files.
+    /// The desktop's default application for text files.
     pub default: Option<Application>,
-    /// The folders that programs are looked for in.
+    /// Folders searched for programs.
     pub path: Vec<PathBuf>,
 }
 
 impl Surroundings {
-    /// Those of this process; `named` is the value of [`EDITOR_VARIABLE`]. Asks the desktop, so it may take a moment.
+    /// The editors available to this process; `named` is the value of [`EDITOR_VARIABLE`]. Queries the desktop, which
+    /// may take a moment.
     #[must_use]
     pub fn of_process(named: Option<String>) -> Self {
         let given = |name: &str| env::var(name).ok().filter(|value| !value.trim().is_empty());
@@ -213,13 +215,13 @@ impl Surroundings {
             .or_else(|| self.usual.iter().find_map(|usual| self.in_terminal(usual, file, line)))
     }
 
-    /// The command that opens text where the system has one way for all.
+    /// The command that opens text on a system with a standard command for it.
     fn of_system(&self, file: &Path) -> Option<Called> {
         let arguments = || vec!["-t".to_owned(), file.to_string_lossy().into_owned()];
         cfg!(target_os = "macos").then(|| ("open".to_owned(), arguments()))
     }
 
-    /// A command if it is that of a known editor with a window, and is there.
+    /// The command if it runs a known editor with a window, and the program exists.
     fn with_window(&self, command: &str, file: &Path, line: usize) -> Option<Called> {
         let mut words = command.split_whitespace().map(str::to_owned);
         let program = words.next().filter(|program| self.has(program))?;
@@ -227,7 +229,7 @@ impl Surroundings {
         Some((program, words.chain(filled(how, file, line)).collect()))
     }
 
-    /// A command in a terminal, if both are there.
+    /// The command in a terminal, if both exist.
     fn in_terminal(&self, command: &str, file: &Path, line: usize) -> Option<Called> {
         let words: Vec<_> = command.split_whitespace().map(str::to_owned).collect();
         let program = words.first().filter(|program| self.has(program))?;
@@ -242,7 +244,7 @@ impl Surroundings {
     }
 }
 
-/// The application that the desktop opens plain text with.
+/// The desktop's default application for plain text.
 fn default_application() -> Option<Application> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -259,7 +261,7 @@ fn default_application() -> Option<Application> {
     let shared = env::var_os("XDG_DATA_DIRS").filter(|dirs| !dirs.is_empty());
     let shared = shared.unwrap_or_else(|| OsString::from("/usr/local/share:/usr/share"));
     let folders: Vec<_> = own.into_iter().chain(env::split_paths(&shared)).collect();
-    // A dash may stand for a folder.
+    // A dash may represent a subfolder.
     [id.clone(), id.replacen('-', "/", 1)].iter().find_map(|id| {
         folders.iter().find_map(|folder| {
             let bytes = files::read(&folder.join("applications").join(id), MAX_ENTRY_BYTES).ok()?;
@@ -268,15 +270,15 @@ fn default_application() -> Option<Application> {
     })
 }
 
-/// Complaints about editors that were started, from the threads that wait for them.
+/// Problems of started editors, collected from the threads that wait for them.
 #[derive(Clone, Debug, Default, Resource)]
 pub struct Editors {
     complaints: Arc<Mutex<Vec<String>>>,
 }
 
 impl Editors {
-    /// Opens a file in an editor and comes back at once; `variable` is the value of [`EDITOR_VARIABLE`]. `wake` is
-    /// called when there is a complaint.
+    /// Opens a file in an editor and returns at once; `variable` is the value of [`EDITOR_VARIABLE`]. Calls `wake` if
+    /// there is a problem.
     pub fn open(
         &self,
         variable: Option<&str>,
@@ -299,14 +301,14 @@ impl Editors {
         });
     }
 
-    /// The complaints since the last call.
+    /// The problems since the last call.
     #[must_use]
     pub fn take(&self) -> Vec<String> {
         std::mem::take(&mut *self.complaints.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// Starts the editor. Waits a little, since many programs that cannot open a file say so by their exit status.
+/// Starts the editor and waits for it, since many programs report by their exit status that they cannot open a file.
 fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> {
     let of = if named.is_some() { format!(" of {EDITOR_VARIABLE}") } else { String::new() };
     let Some((program, arguments)) = Surroundings::of_process(named).editor(file, line) else {
@@ -328,7 +330,7 @@ fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> 
     }
 }
 
-/// The last resort when no editor is found.
+/// The fallback if no editor is found.
 fn otherwise(file: &Path) -> Result<(), String> {
     if cfg!(target_os = "linux") {
         return Err("no editor with a window was found".to_owned());

@@ -1,4 +1,4 @@
-//! Carries out what needs files, entities or the operating system.
+//! Carries out effects that need files, entities or the operating system.
 
 use bevy::{
     app::AppExit,
@@ -17,11 +17,11 @@ use crate::{
     registry::Registry,
 };
 
-/// Nobody uses the window: there are no settings to be kept.
+/// Present if nobody uses the window, so that there are no settings to keep.
 #[derive(Resource)]
 pub(super) struct Unattended;
 
-/// Carries out what the panels asked for.
+/// Carries out the effects of the panels.
 pub(super) fn carry_out(
     mut effects: MessageReader<LabEffect>,
     mut session: ResMut<Session>,
@@ -84,9 +84,9 @@ pub(super) fn carry_out(
             }
             Effect::SaveSettings | Effect::SaveProgress(_) if unattended.is_some() => {}
             Effect::Complain(text) => watching::complain(&text),
-            // The clipboard belongs to the panels, and so do the dialogs.
+            // The panels handle the clipboard and the dialogs.
             Effect::CopyText(_) => {}
-            // Views are read back first.
+            // Handled elsewhere, since the views must be read back first.
             Effect::Picture { .. } => {}
             dialog @ (Effect::PickOpen
             | Effect::PickSave
@@ -111,7 +111,7 @@ pub(super) fn carry_out(
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
                 let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
                 editors.open(variable.as_deref(), &path, line, move || {
-                    // The window sleeps; without it there is nobody to tell.
+                    // Wakes the idle window; if it is gone, there is nobody to notify.
                     proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
                 });
             }
@@ -144,7 +144,7 @@ pub(super) fn carry_out(
             }
             other => {
                 let more = run_files(&mut session, &registry, other.clone(), &mut *files);
-                // An effect that comes back unchanged is nobody's.
+                // An effect that is returned unchanged has no handler.
                 pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
         }

@@ -1,9 +1,9 @@
-//! The end of the window when nobody in it asked for it: the display is lost, the renderer fails, something panics.
-//! The unsaved changes are kept, and the user is told where.
+//! Unexpected ends of the window: the display is lost, the renderer fails, or something panics. Unsaved changes are
+//! kept, and the user learns where.
 //!
-//! When the X server goes, Xlib ends the process with `exit(1)`, from within the event loop, and offers no safe way to
-//! object. But `exit` drops the thread-local values of its thread first, where the C library is glibc: ours then
-//! goes on to the status that is meant. Elsewhere the status is 1, and the copy is there as it always is.
+//! When the X server goes away, Xlib ends the process with `exit(1)` from within the event loop, and offers no safe way
+//! to prevent it. With glibc, however, `exit` first drops the thread-local values of the calling thread: ours then
+//! exits with the intended status. Elsewhere the status is 1; the recovery copy exists in either case.
 
 use std::{
     backtrace::Backtrace,
@@ -21,14 +21,14 @@ use bevy::app::{App, AppExit};
 use super::watching::complain;
 use crate::{caught, failure::Failure, recovery::Keeper};
 
-/// Ending waits for the disk no longer than this.
+/// Maximum time that ending waits for the disk.
 pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
 
 thread_local! {
     static ALARM: Alarm = const { Alarm(RefCell::new(None)) };
 }
 
-/// Goes off when the process exits while it is set.
+/// Preserves unsaved changes and sets the exit status if the process exits while the alarm is set.
 struct Alarm(RefCell<Option<Keeper>>);
 
 impl Drop for Alarm {
@@ -40,7 +40,7 @@ impl Drop for Alarm {
     }
 }
 
-/// The alarm is set while this exists.
+/// Keeps the alarm set during its lifetime.
 pub(super) struct Guard(());
 
 impl Guard {
@@ -56,12 +56,12 @@ impl Drop for Guard {
     }
 }
 
-/// Runs the window until it is closed; the keeper keeps what is unsaved, if there is one.
+/// Runs the window until it is closed. The keeper, if any, preserves unsaved changes.
 pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure> {
     let sentence = || keeper.and_then(|keeper| keeper.settle(PATIENCE).sentence());
     static RUNNING: AtomicBool = AtomicBool::new(false);
     RUNNING.store(true, Ordering::SeqCst);
-    // The first panic is the cause of all others, but not one that was caught.
+    // The first panic is the cause of all others, unless it was caught.
     static CULPRIT: Mutex<Option<(usize, String)>> = Mutex::new(None);
     let hook = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
@@ -72,7 +72,7 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
             let known = culprit.take().filter(|(before, _)| *before == caught);
             *culprit = Some(known.unwrap_or_else(|| (caught, described(info))));
         }
-        // Of a lost display the windowing library complains in its own way; ours is below.
+        // The windowing library reports a lost display in its own way; our message follows below.
         if !RUNNING.load(Ordering::SeqCst) || display_answers() {
             hook(info);
         }
@@ -101,7 +101,7 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
     }
 }
 
-/// A panic in a system, by the function if the program has the names of functions, and by its place.
+/// A panic in a system, described by function, if the program has debug symbols, and by location.
 fn described(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let text = payload.downcast_ref::<String>().map(String::as_str);
@@ -112,7 +112,7 @@ fn described(info: &PanicHookInfo<'_>) -> String {
     format!("the system{name} panicked{place}: {why}")
 }
 
-/// The innermost function of a backtrace that is not of the library or of those that it stands on.
+/// The innermost function in a backtrace that belongs neither to this crate nor to its foundations.
 fn culprit(trace: &str) -> Option<&str> {
     const OTHERS: [&str; 9] =
         ["std", "core", "alloc", "backtrace", "rust_", "__rust", "_rust", "bevy", "lights_camera_models"];
@@ -133,7 +133,7 @@ fn lost(what: &str, kept: Option<String>) -> String {
     }
 }
 
-/// True unless the display that the environment names is gone.
+/// False if the display named in the environment is gone.
 #[cfg(target_os = "linux")]
 fn display_answers() -> bool {
     use std::{env, os::unix::net::UnixStream, path::PathBuf};
@@ -146,7 +146,7 @@ fn display_answers() -> bool {
     }
 }
 
-/// Other systems do not part with their display.
+/// Other systems do not lose their display.
 #[cfg(not(target_os = "linux"))]
 fn display_answers() -> bool {
     true

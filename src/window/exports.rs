@@ -1,4 +1,4 @@
-//! Exports of the window: one at a time, beside it.
+//! Exports of the window: one at a time, in the background.
 
 use std::path::{Path, PathBuf};
 
@@ -20,36 +20,36 @@ use crate::{
     scene::Scene,
 };
 
-/// The notes of an export, or why there is none.
+/// The notes on an export, or why it failed.
 type Outcome = Result<Vec<String>, Vec<String>>;
 
-/// The export that runs, by the name of its form.
+/// The running export, labelled with the name of its format.
 #[derive(Debug, Default, Resource)]
 pub(super) struct Exports(Background<&'static str, Ended>);
 
-/// The id of the form, the place, and the outcome.
+/// The id of the format, the destination, and the outcome.
 type Ended = (&'static str, PathBuf, Outcome);
 
-/// An export with everything that it needs.
+/// An export with all its inputs.
 struct Job {
     form: &'static Form,
     scene: Scene,
     registry: Registry,
     stem: String,
     object: usize,
-    /// The pixel that is pinned, and a remark about it.
+    /// The pinned pixel, and a remark about it.
     point: Option<[u32; 2]>,
     remark: Option<&'static str>,
-    /// The view that is being edited.
+    /// The active view.
     view: usize,
     path: PathBuf,
-    /// What was there when the user chose the place.
+    /// State of the destination when the user chose it.
     before: Before,
 }
 
 impl Exports {
-    /// Begins an export and comes back at once, unless something is in its place: then the user is asked. `wake` is
-    /// called at each step.
+    /// Starts an export and returns at once; if the destination exists, asks the user instead. Calls `wake` at each
+    /// step.
     pub(super) fn begin(
         &self,
         id: &str,
@@ -101,7 +101,7 @@ impl Exports {
         self.0.cancel();
     }
 
-    /// Tells the panels how far it is. Returns the folder of one that has just ended well.
+    /// Reports the progress to the panels. Returns the folder of an export that has just succeeded.
     pub(super) fn report(&self, session: &mut ResMut<Session>) -> Option<PathBuf> {
         let running =
             self.0.running().map(|now| Exporting { name: now.label, done: now.done, step: now.step });
@@ -116,7 +116,7 @@ impl Exports {
     }
 }
 
-/// The pixel of the picture of an export that is pinned, and what is to be said about it.
+/// The pinned pixel in the picture of an export, and a remark about it.
 fn pinned(session: &Session) -> (Option<[u32; 2]>, Option<&'static str>) {
     let Some(pin) = session.view.pinned else { return (None, None) };
     let point = pin.inside(SIZE.into(), session.document.view_angle());
@@ -133,7 +133,7 @@ fn pinned(session: &Session) -> (Option<[u32; 2]>, Option<&'static str>) {
     (point, remark)
 }
 
-/// The file with the extension of the form, if the user typed none.
+/// Appends the extension of the format, if the user typed none.
 fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
     match form.makes {
         crate::export::Makes::File(extension) if !extension.is_empty() && path.extension().is_none() => {

@@ -23,31 +23,31 @@ use crate::{
     },
 };
 
-/// Reads and writes scene files, and remembers in which state it saw the last one.
+/// Reads and writes scene files, and remembers the last seen version of the document's file.
 #[derive(Debug, Resource)]
 pub struct DiskFiles {
     seen: Option<(PathBuf, Stamp)>,
-    /// A file that was read, but is not yet the document: there may be something to ask first.
+    /// A file that was read, but is not the document yet, since the user may have to answer a question first.
     read: Option<(PathBuf, Stamp)>,
-    /// A document that came from a pipe or a device, which can be read only once.
+    /// A document from a pipe or a device, which can be read only once.
     stream: Option<PathBuf>,
 }
 
 impl DiskFiles {
-    /// With a file that was read already, and its state then.
+    /// Creates the state for a file that was already read, with its version.
     #[must_use]
     pub fn new(file: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
         let stream = if stamp.is_none() { file.clone() } else { None };
         Self { seen: file.zip(stamp), read: None, stream }
     }
 
-    /// The state in which a file was last read or written, if it was.
+    /// The version of a file when it was last read or written, if ever.
     #[must_use]
     pub fn known(&self, path: &Path) -> Option<Stamp> {
         self.seen.as_ref().filter(|(seen, _)| seen == path).map(|(_, stamp)| *stamp)
     }
 
-    /// Another document is open: what was read of its file is what counts from now on.
+    /// Makes the file that was just read the document's file, if it has this path.
     pub fn document_changed(&mut self, path: Option<&Path>) {
         self.seen = self.read.take().filter(|read| Some(read.0.as_path()) == path);
     }
@@ -82,7 +82,7 @@ impl Files for DiskFiles {
     }
 
     fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved {
-        // What is known of the document's own file stays.
+        // The known version of the document's own file stays.
         let seen = self.seen.take();
         let saved = self.save(path, scene, registry, overwrite);
         self.seen = seen;
@@ -93,7 +93,7 @@ impl Files for DiskFiles {
         match files::kind(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,
             Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return Looked::Same,
-            // Anything else in its place is an error like any other.
+            // Anything else at that path is an error like any other.
             _ => {}
         }
         let bytes = match load::bytes(path, registry) {
@@ -117,7 +117,7 @@ impl Files for DiskFiles {
     }
 }
 
-/// The result of reading a file, for the panels.
+/// Converts the result of reading a file for the panels.
 fn opened(read: Result<Loaded, LoadError>) -> Opened {
     match read {
         Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Opened::Scene(Box::new(scene)),

@@ -1,4 +1,4 @@
-//! Light that is not finite: the window says whose it is.
+//! Warnings about non-finite light, with the model or light that causes it.
 
 use bevy::ecs::prelude::*;
 
@@ -8,7 +8,8 @@ use crate::{
     registry::Registry,
 };
 
-/// Tries what no test of this crate has tried, whenever the document or the registry changed, and reports what is new.
+/// Checks, after changes of the document or the registry, everything that the tests of this crate do not cover, and
+/// reports new findings.
 pub(super) fn report_light_that_is_not_finite(
     mut session: ResMut<Session>,
     registry: Res<Registry>,

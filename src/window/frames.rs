@@ -1,5 +1,5 @@
-//! The cost of a frame: the time between frames that follow each other without a rest, so that the work of the GPU
-//! counts, which goes on after the last system of a frame.
+//! Frame times: measured between frames without a pause, in order to include the work of the GPU, which continues after
+//! the last system of a frame.
 
 use std::time::{Duration, Instant};
 
@@ -13,22 +13,22 @@ use bevy::{
 use super::{redraw::Settling, watching::complain};
 use crate::{panel::state::Session, render::view::Drawing};
 
-/// Number of frames of either kind that are remembered.
+/// Maximum number of remembered frames of each kind.
 const REMEMBERED: usize = 1000;
 
-/// The clock of the frames.
+/// The frame clock.
 #[derive(Default, Resource)]
 pub(super) struct FrameClock {
-    /// When the last frame began, and if it drew a picture, if another was to follow at once.
+    /// Start of the previous frame and whether it drew a picture; `None` if no frame was to follow at once.
     last: Option<(Instant, bool)>,
     mean: f32,
-    /// Durations of the last frames, those that drew panels alone and those that drew a picture too.
+    /// Durations of recent frames, of those with panels only and of those with a picture.
     times: [Vec<Duration>; 2],
-    /// Number of frames of either kind.
+    /// Number of frames of each kind.
     count: [u64; 2],
-    /// Frames in which the session changed.
+    /// Number of frames in which the session changed.
     changes: u64,
-    /// The program says so when it ends.
+    /// True if the program prints a summary at the end.
     tells: bool,
 }
 
@@ -51,7 +51,7 @@ impl FrameClock {
     }
 }
 
-/// Tells the panels which GPU draws.
+/// Reports the GPU to the panels.
 pub(super) fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut session: ResMut<Session>) {
     if let Some(adapter) = adapter {
         let facts = &mut session.bypass_change_detection().facts;
@@ -60,7 +60,7 @@ pub(super) fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut session
     }
 }
 
-/// Measures the frame, and tells the panels.
+/// Measures the frame, and reports to the panels.
 pub(super) fn measure(
     mut clock: ResMut<FrameClock>,
     settling: Res<Settling>,
@@ -78,7 +78,7 @@ pub(super) fn measure(
             times.remove(0);
         }
         times.push(time);
-        // Frames in which panels alone are drawn say nothing of the picture.
+        // Frames with panels only say nothing about the picture.
         if drew {
             let ms = time.as_secs_f32() * 1e3;
             clock.mean = if clock.mean == 0.0 { ms } else { 0.8 * clock.mean + 0.2 * ms };

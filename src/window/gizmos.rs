@@ -1,4 +1,4 @@
-//! The room as an outline, hidden by what stands before it. What explains the picture otherwise is painted over it:
+//! The outline of the room, occluded by whatever is in front of it. Other marks are painted over the picture: see
 //! [`marks`](crate::panel::marks).
 
 use bevy::{
@@ -25,7 +25,7 @@ use crate::{
     },
 };
 
-/// Lines that are hidden by what stands before them.
+/// Lines that are occluded by objects.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct InRoom;
 
@@ -43,7 +43,7 @@ impl Plugin for GizmosPlugin {
     }
 }
 
-/// Neutral, and three times as light or dark as the surround.
+/// Neutral grey, three times as bright or dark as the surround.
 const fn outline(theme: ThemeChoice) -> u8 {
     match theme {
         ThemeChoice::Dark => 122,
@@ -62,7 +62,7 @@ fn draw(session: Res<Session>, scene: Res<CurrentScene>, mut room: Gizmos<InRoom
     draw_floor(&mut room, corner, colour.with_alpha(0.25));
 }
 
-/// Lines on the floor every metre or, in large rooms, every ten.
+/// Draws lines on the floor, one per metre, or in large rooms one per ten metres.
 fn draw_floor(gizmos: &mut Gizmos<InRoom>, corner: Vec3, faint: Color) {
     let step = if corner.x.max(corner.z) > 20.0 { 10.0 } else { 1.0 };
     for i in 1..=(corner.x / step) as u32 {

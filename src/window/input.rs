@@ -1,4 +1,4 @@
-//! Mends the input that bevy_egui passes on.
+//! Corrects the input that bevy_egui passes on.
 
 use bevy::{
     ecs::prelude::*,
@@ -7,11 +7,11 @@ use bevy::{
 };
 use bevy_egui::{EguiContext, EguiInput, egui, input::EguiContextPointerPosition};
 
-/// bevy_egui 0.42 tells egui in every frame which modifier keys are held, and egui draws again after
-/// every event: the window would never rest. Only changes are news.
+/// bevy_egui 0.42 reports the held modifier keys to egui in every frame, and egui redraws after every event: the window
+/// would never be idle. Only changes are passed on.
 ///
-/// It also gives every key of a frame the modifiers as they are at the frame's end, so that a quick
-/// Ctrl+D in a slow frame would be a D: here each key gets those that were held when it was pressed.
+/// It also gives every key of a frame the modifiers at the end of the frame, so that a quick Ctrl+D in a slow frame
+/// would become D: here each key has the modifiers held when it was pressed.
 pub(super) fn mend_input(
     mut contexts: Query<&mut EguiInput>,
     mut keyboard: MessageReader<KeyboardInput>,
@@ -63,8 +63,8 @@ pub(super) fn mend_input(
     }
 }
 
-/// Tells egui where the pointer is when the scale of the window has changed: neither bevy_egui nor egui converts the
-/// place of a pointer at rest, so that the next click would go elsewhere.
+/// Reports the pointer's position to egui when the scale of the window has changed: neither bevy_egui nor egui converts
+/// the position of an idle pointer, and the next click would miss.
 pub(super) fn rescale_pointer(
     mut contexts: Query<(&mut EguiContext, &mut EguiInput, &mut EguiContextPointerPosition)>,
     mut scale: Local<Option<f32>>,

@@ -1,5 +1,5 @@
-//! The law check of the window: `lcm models check` in a process of its own, so that neither a slow driver nor one that
-//! crashes holds the window up.
+//! The law check of the window: runs `lcm models check` in a separate process, so that a slow or crashing driver does
+//! not block the window.
 
 use std::{
     io::Read as _,
@@ -14,10 +14,10 @@ use bevy::ecs::prelude::*;
 
 use crate::{files, library::assets::Folders, reflection::law_report::LawReport};
 
-/// The longest that a check may take: software Vulkan needs seconds for a model at the limits.
+/// Maximum duration of a check: software Vulkan needs seconds for a model at the limits.
 const LONGEST: Duration = Duration::from_secs(120);
 
-/// The result of a check: the findings, or the reason why there are none.
+/// The result of a check: the findings, or why there are none.
 pub type Outcome = Result<LawReport, String>;
 
 /// Checks laws, one model at a time.
@@ -28,13 +28,13 @@ pub struct LawChecks {
 }
 
 impl LawChecks {
-    /// Checks by a program: this one.
+    /// Creates checks that run the given program, normally this one.
     #[must_use]
     pub fn by(program: Option<PathBuf>) -> Self {
         Self { program, done: Arc::default() }
     }
 
-    /// Begins a check and comes back at once. `wake` is called when there is an outcome.
+    /// Starts a check and returns at once. Calls `wake` when there is a result.
     pub fn begin(&self, id: &str, folders: &Folders, wake: impl FnOnce() + Send + 'static) {
         let (program, done) = (self.program.clone(), self.done.clone());
         let (id, folders) = (id.to_owned(), folders.clone());
@@ -48,21 +48,21 @@ impl LawChecks {
         });
     }
 
-    /// The outcome that came since the last call, with the model that it is about.
+    /// The result since the last call, with the id of the model.
     #[must_use]
     pub fn take(&self) -> Option<(String, Outcome)> {
         self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
-/// Runs the check to its end.
+/// Runs a check to completion.
 fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
     let mut command = Command::new(program);
     command.args(["models", "check", id, "--json", "--quiet"]);
     if let Some(assets) = folders.shaders.as_ref().and_then(|shaders| shaders.parent()) {
         command.arg("--assets").arg(assets);
     }
-    // The folder of a new user is not there yet.
+    // The folder of a new user does not exist yet.
     if let Some(models) = folders.models.as_ref().filter(|folder| folder.exists()) {
         command.arg("--models").arg(models);
     }
@@ -71,7 +71,7 @@ fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
     let read = |stream: Option<Box<dyn std::io::Read + Send>>| {
         thread::spawn(move || {
             let mut text = String::new();
-            // A report is text; anything else is none.
+            // Anything but text is not a report.
             let _ = stream.map(|mut stream| stream.read_to_string(&mut text));
             text
         })

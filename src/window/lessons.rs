@@ -1,4 +1,4 @@
-//! The file of the lesson that is open is followed while its author edits it.
+//! Follows the file of the open lesson while its author edits it.
 
 use std::{
     path::{Path, PathBuf},
@@ -10,15 +10,15 @@ use bevy::ecs::prelude::*;
 use super::watching::{FileWatch, FilesChanged, GRACE};
 use crate::panel::state::{Effect, LabEffect, LessonSource, Session};
 
-/// The file, or the folder, of the lesson that is open.
+/// The watched file or folder of the open lesson.
 #[derive(Default)]
 pub(super) struct Watched {
     path: Option<PathBuf>,
-    /// It changed, and may be in the middle of being written.
+    /// True if the file changed, and may still be in the process of being written.
     suspect: bool,
 }
 
-/// Watches the file of the lesson that is open, and reads it again when it changed.
+/// Watches the file of the open lesson, and requests a reload when it has changed.
 pub(super) fn follow_lesson(
     mut changed: MessageReader<FilesChanged>,
     mut watch: ResMut<FileWatch>,
@@ -35,13 +35,13 @@ pub(super) fn follow_lesson(
             watch.0.forget(&path);
         }
         if let Some(path) = wanted {
-            // A folder has the scenes of the lesson too.
+            // A folder also contains the scenes of the lesson.
             if path.is_dir() {
                 watch.0.watch_folder(path)
             } else {
                 watch.0.watch_file(path)
             }
-            // It may have changed between being read and being watched.
+            // The file may have changed after it was read and before it was watched.
             watch.0.report_later(path, Duration::ZERO);
         }
         *watched = Watched { path: wanted.map(Path::to_owned), suspect: false };

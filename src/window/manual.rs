@@ -12,17 +12,17 @@ use crate::{
     },
 };
 
-/// The name of the file.
+/// File name.
 const FILE: &str = "manual.html";
 
-/// Writes the manual of this version into a folder. Returns the file.
+/// Writes the manual of this version to a folder. Returns the file.
 ///
 /// # Errors
-/// A sentence, if the folder or the file cannot be written.
+/// Returns an error, as a sentence, if the folder or the file cannot be written.
 pub fn write(folder: &Path) -> Result<PathBuf, String> {
     let path = folder.join(FILE);
     let page = manual::page();
-    // It stays as it is while a browser shows it.
+    // An up-to-date file stays untouched while a browser shows it.
     if files::read(&path, page.len() as u64).is_ok_and(|known| known == page.as_bytes()) {
         return Ok(path);
     }
@@ -33,7 +33,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Shows the manual in the browser, or says why not.
+/// Shows the manual in the browser, or reports why it cannot.
 pub(super) fn show(session: &mut Session) {
     let folder = data_folder().unwrap_or_else(|| std::env::temp_dir().join("lights-camera-models"));
     let shown = write(&folder).and_then(|path| match ::open::that_detached(&path) {

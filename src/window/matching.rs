@@ -1,4 +1,4 @@
-//! Matches of the window: one at a time, beside it.
+//! Matches of the window: one at a time, in the background.
 
 use bevy::ecs::prelude::*;
 
@@ -10,15 +10,15 @@ use crate::{
     scene::Scene,
 };
 
-/// The match that runs: of a view, on a scene.
+/// The running match of a view, labelled with the view.
 #[derive(Debug, Default, Resource)]
 pub(super) struct Matches(Background<usize, Ended>);
 
-/// The scene on which a view was matched, and the outcome; `None` if the search broke off.
+/// The scene in which a view was matched, and the outcome; `None` if the search crashed.
 type Ended = (Scene, usize, What, Option<Result<Match, MatchError>>);
 
 impl Matches {
-    /// Begins a match and comes back at once. `wake` is called at each step.
+    /// Starts a match and returns at once. Calls `wake` at each step.
     pub(super) fn begin(
         &self,
         (view, what, parameters): (usize, What, Vec<&'static str>),
@@ -28,7 +28,7 @@ impl Matches {
     ) {
         let (scene, registry) = ((*session.document).clone(), registry.clone());
         let same = scene.clone();
-        // Pictures are compared as they are seen: from where the camera stands.
+        // Pictures are compared as seen from the current camera.
         let mut seen = scene.clone();
         seen.observer = session.facts.observer(seen.observer.field_of_view);
         self.0.begin(
@@ -48,7 +48,7 @@ impl Matches {
         self.0.cancel();
     }
 
-    /// Tells the panels how far it is; one that has ended is applied.
+    /// Reports the progress to the panels, and applies a finished match.
     pub(super) fn report(&self, session: &mut ResMut<Session>, registry: &Registry) {
         let running =
             self.0.running().map(|now| Matching { view: now.label, done: now.done, step: now.step });

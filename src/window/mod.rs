@@ -1,6 +1,6 @@
 //! The window: the picture in the middle, the panels around it, and the connection between the two.
 //!
-//! [`panel`](crate::panel) draws and decides; this module does what needs entities, a camera, files or the
+//! [`panel`](crate::panel) draws and decides; this module does everything that needs entities, a camera, files or the
 //! operating system. Frames are drawn only when something changes.
 
 use bevy::{ecs::prelude::*, render::extract_component::ExtractComponent};
@@ -62,8 +62,8 @@ pub use shaders::ShaderFilesPlugin;
 pub use shell::ShellPlugin;
 pub use watching::WatchingPlugin;
 
-/// The view that the window shows between its panels, and whose camera the pointer moves. Other views are their
-/// owners' business.
+/// The view that the window shows between its panels, and whose camera the pointer moves. Other views are controlled by
+/// their owners.
 #[derive(Component, ExtractComponent, Clone, Copy, Debug, Default)]
 pub struct WindowView;
 

@@ -1,4 +1,4 @@
-//! Opening the window: the program around the panels and the picture.
+//! Opens the window: the program around the panels and the picture.
 
 use std::{
     panic::{self, AssertUnwindSafe},
@@ -18,11 +18,11 @@ use super::{
 };
 use crate::failure::Failure;
 
-/// Opens the window and stays until it is closed. `extend` adds more to the app: panels, systems, plugins.
+/// Opens the window and returns once it is closed. `extend` adds panels, systems and plugins to the app.
 ///
 /// # Errors
-/// [`Failure::NoRenderer`] without a display or a driver, [`Failure::Write`] when the capture cannot
-/// be written.
+/// Returns [`Failure::NoRenderer`] without a display or a driver, and [`Failure::Write`] if the capture cannot be
+/// written.
 pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), Failure> {
     need_display()?;
     need_driver()?;
@@ -50,8 +50,8 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
     failure.map_or(Ok(()), Err)
 }
 
-/// Adds the plugins. The windowing library panics when the display that the environment names does not
-/// answer, and offers no way to ask first.
+/// Adds the plugins. The windowing library panics if the display named in the environment does not respond, and offers
+/// no way to check first.
 fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Failure> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
@@ -65,7 +65,7 @@ fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Fa
             .map(String::as_str)
             .or_else(|| payload.downcast_ref::<&str>().copied())
             .and_then(|text| text.lines().next())
-            // The windowing library names its own source files, not the cause.
+            // The windowing library reports its own source files, not the cause.
             .filter(|text| !text.contains("event loop"))
             .map_or_else(|| "it does not answer".to_owned(), str::to_owned);
         let named = ["DISPLAY", "WAYLAND_DISPLAY"]

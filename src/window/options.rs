@@ -1,4 +1,4 @@
-//! The choices with which the window opens.
+//! Start options of the window.
 
 use std::path::PathBuf;
 
@@ -11,46 +11,46 @@ use crate::{
     },
 };
 
-/// The choices with which the window starts.
+/// Start options of the window.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct ViewOptions {
     /// The scene, checked.
     pub scene: Scene,
-    /// The file that it came from, if any.
+    /// The file of the scene, if any.
     pub file: Option<PathBuf>,
-    /// The state of that file when it was read.
+    /// Version of the file when it was read.
     pub stamp: Option<Stamp>,
-    /// A file that the window opens itself, and asks about where there is something to ask.
+    /// A file for the window to open, which may ask the user questions about it.
     pub open: Option<PathBuf>,
-    /// A file whose types the window may know once all of it is there, and what is done about missing parts; what is
-    /// wrong with it ends the program then.
+    /// A file whose types may be unknown until the app is complete, and how to handle missing parts. Problems with the
+    /// file end the program.
     pub late: Option<(PathBuf, Defaults)>,
-    /// A lesson that the window opens.
+    /// A lesson to open.
     pub lesson: Option<LessonSource>,
-    /// The step of the lesson, from 0; else the one that the user was at.
+    /// The step of the lesson, from 0; `None` for the user's last step.
     pub step: Option<usize>,
-    /// True if the window shows the examples: it begins without a scene of the user's.
+    /// True to show the examples, because the window starts without a scene of the user's.
     pub examples: bool,
-    /// True if the defaults are used when the file comes to lack parts.
+    /// True to use defaults if the file is later missing parts.
     pub use_defaults: bool,
-    /// The size of the window in pixels; else 1280×720 points.
+    /// Size of the window in pixels; `None` for 1280×720 points.
     pub size: Option<[u32; 2]>,
-    /// Close the window after so many frames.
+    /// Close the window after this number of frames.
     pub exit_after: Option<u32>,
-    /// Write the whole window to this file before it closes.
+    /// Capture the whole window to this file before closing.
     pub capture: Option<PathBuf>,
-    /// Leave the scene out of that file.
+    /// Leave the scene out of the capture.
     pub no_scene: bool,
-    /// Everything that is known, with the declarations of custom models, if they were read already. What is registered
-    /// with the app and missing here is added.
+    /// The registry, with the declarations of custom models, if it was already built. Types registered with the app are
+    /// added.
     pub registry: Option<Registry>,
-    /// The program that tries shaders when it is called with
-    /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
+    /// The program that tests shaders when called with [`COMMAND`](crate::render::trial::process::COMMAND); `None` to
+    /// test them in the window itself.
     pub trial_program: Option<PathBuf>,
-    /// Warnings for the start.
+    /// Warnings to show at the start.
     pub warnings: Vec<String>,
-    /// Log more.
+    /// Log more messages.
     pub verbose: bool,
     /// Log errors only.
     pub quiet: bool,

@@ -5,21 +5,21 @@ use bevy::ecs::prelude::*;
 #[cfg(doc)]
 use crate::render::schedule::LabSystems;
 
-/// The steps within [`LabSystems::Load`], in their order.
+/// The steps within [`LabSystems::Load`], in order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Loading {
-    /// The watcher is asked for files that changed.
+    /// Collect changed files from the watcher.
     Watch,
-    /// Shaders and custom models are read.
+    /// Read shaders and custom models.
     Shaders,
-    /// The file of the document is looked at.
+    /// Check the file of the document.
     Follow,
-    /// What the panels asked for is carried out.
+    /// Carry out the effects of the panels.
     Effects,
-    /// Copies of unsaved work are offered.
+    /// Offer recovery copies of unsaved work.
     Recovery,
-    /// A click into the picture selects.
+    /// Select on clicks into the picture.
     Pick,
-    /// The document goes into the scene that is shown.
+    /// Copy the document to the displayed scene.
     Publish,
 }

@@ -1,4 +1,4 @@
-//! Clicking into the picture selects what is under the pointer: a light by its mark, a lamp or an object by what is seen of it.
+//! Selection by clicks into the picture: a light by its marker, a lamp or an object by its visible surface.
 
 use bevy::{
     app::{App, Plugin},
@@ -34,7 +34,7 @@ use crate::{
     scene::{Light, Scene, emitter},
 };
 
-/// Selects what is clicked in the picture.
+/// Selects what the user clicks in the picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PickingPlugin;
 
@@ -45,12 +45,12 @@ impl Plugin for PickingPlugin {
     }
 }
 
-/// Distance from a light's mark within which a click means it, points.
+/// Click distance from a light's marker that selects the light, in points.
 const LIGHT_REACH: f32 = 12.0;
-/// Distance that the pointer may move between press and release of a click, points.
+/// Maximum movement of the pointer between press and release of a click, in points.
 const CLICK_SLACK: f32 = 4.0;
 
-/// Selects the light whose mark, or else the object or the lamp whose surface, was clicked.
+/// Selects the light whose marker was clicked, otherwise the object or lamp whose surface was clicked.
 fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
     over: Res<OverPicture>,
@@ -94,7 +94,7 @@ fn pick(
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
         let filter = |e: Entity| objects.contains(e);
-        // A picture that stands still draws no object, but shows all of them.
+        // An idle picture draws no objects, but shows all of them.
         let settings =
             MeshRayCastSettings::default().with_filter(&filter).with_visibility(RayCastVisibility::Visible);
         let object = ray_cast.cast_ray(ray, &settings).first().and_then(|(hit, there)| {
@@ -112,7 +112,7 @@ fn pick(
     }
 }
 
-/// The nearest light with extent that a ray meets in the picture, and its distance. What is all around is the background.
+/// The nearest visible light with extent that a ray hits, and the distance. Surrounding light is the background.
 fn lamp_at(scene: &Scene, registry: &Registry, ray: Ray3d) -> Option<(usize, f32)> {
     let met = |light: &Light| {
         let (entry, emitter, record) = emitter(light, registry, scene.display.encoding)?;
@@ -164,7 +164,7 @@ mod tests {
 
     const SIZE: UVec2 = UVec2::new(400, 300);
 
-    /// What is selected by a click at the place of a point of the room, with so many other cameras.
+    /// The selection after a click at the position of a point in the scene, with `others` additional cameras.
     fn clicked(scene: &Scene, point: Vec3, others: usize) -> Selection {
         let mut session = Session::new(scene.clone());
         session.selection = Selection::Observer;
@@ -192,7 +192,7 @@ mod tests {
         world.init_resource::<ButtonInput<MouseButton>>();
         world.spawn((window, PrimaryWindow));
         for _ in 0..others {
-            // They look elsewhere.
+            // These look elsewhere.
             world.spawn((picture_camera(1), GlobalTransform::from_xyz(0.0, 0.0, -50.0)));
         }
         world.spawn((picture_camera(1), WindowView)).insert((camera, place));
@@ -233,7 +233,7 @@ mod tests {
         let middle = Vec3::new(5.0, 5.0, 13.0);
         for light_type in ["rectangle", "disc", "sphere"] {
             let mut scene = Scene { lights: vec![lamp(light_type, middle)], ..Scene::default() };
-            // Away from its mark.
+            // Away from its marker.
             let (on, beside) = (middle + Vec3::new(0.75, 0.2, 0.0), middle + Vec3::new(1.2, 1.2, 0.0));
             assert_eq!(clicked(&scene, on, 0), Selection::Light(0), "{light_type}");
             assert_eq!(clicked(&scene, beside, 0), Selection::Observer, "{light_type}");

@@ -1,4 +1,4 @@
-//! The picture between the panels: its camera, its size and its place.
+//! The picture between the panels: camera, size and position.
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Startup},
@@ -41,7 +41,7 @@ use crate::{
 /// The view of the scene: fitted into the window between the panels, or alone in a texture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PicturePlugin {
-    /// The size of the picture in pixels where there is no window.
+    /// Size of the picture in pixels if there is no window.
     pub alone: Option<UVec2>,
 }
 
@@ -51,7 +51,7 @@ impl Plugin for PicturePlugin {
         let spawn = move |commands: Commands, adapter: Option<Res<RenderAdapterInfo>>| {
             spawn_cameras(commands, adapter, alone);
         };
-        // It is run for the camera of egui, also if nobody shows panels.
+        // The camera of egui runs this schedule even if nothing shows panels.
         app.init_schedule(EguiPrimaryContextPass)
             .add_plugins(ShowPlugin)
             .add_systems(Startup, spawn)
@@ -59,7 +59,7 @@ impl Plugin for PicturePlugin {
                 PostUpdate,
                 (
                     ViewSystems.after(PanOrbitCameraSystemSet),
-                    // New letters are uploaded for the frame that shows them, not for the next.
+                    // New glyphs are uploaded in time for the frame that shows them, not for the next.
                     EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
                 ),
             )
@@ -74,12 +74,12 @@ impl Plugin for PicturePlugin {
     }
 
     fn finish(&self, app: &mut App) {
-        // egui gets a camera of its own, above the picture.
+        // egui gets a separate camera above the picture.
         if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
             settings.auto_create_primary_context = false;
         }
         if let Some(mut clusters) = app.world_mut().get_resource_mut::<GlobalClusterSettings>() {
-            // Bevy's own lights are not used, so neither is their clustering.
+            // Bevy's own lights are unused, and so is their clustering.
             clusters.gpu_clustering = None;
         }
         run_on_one_thread(app);
@@ -88,14 +88,14 @@ impl Plugin for PicturePlugin {
 
 fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>, alone: Option<UVec2>) {
     let software = adapter.is_some_and(|a| a.device_type == wgpu::DeviceType::Cpu);
-    // Four samples double the cost of a frame where the GPU is a program on the CPU.
+    // With a software renderer, four samples would double the cost of a frame.
     let samples = if software { 1 } else { 4 };
     commands
         .spawn((picture_camera(samples), Hdr, RenderTarget::None { size: UVec2::ONE }, camera::orbit()))
         .insert((
             PictureCamera { follows_observer: true, fits_width: true },
             WindowView,
-            // In a window, the panels say how large.
+            // In a window, the panels determine the size.
             View::for_display(alone.unwrap_or(UVec2::ZERO)),
         ));
     if alone.is_some() {
@@ -113,7 +113,7 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     ));
 }
 
-/// The picture has the size of the room that the panels leave, and is shown there.
+/// Fits the picture into the space between the panels.
 fn fit_picture(
     session: Res<Session>,
     area: Option<Res<PictureArea>>,
@@ -132,7 +132,7 @@ fn fit_picture(
     let at = frame.at.saturating_sub(place.at);
     let inset = (area.cells.is_empty() && frame != place).then(|| URect::from_corners(at, at + frame.size));
     view.set_if_neq(View { inset, ..View::for_display(place.size) });
-    // In the light theme the surround is light.
+    // The light theme has a light surround.
     let grey = Palette::of(&session.view).surround;
     let surround = Color::srgb_u8(grey.r(), grey.g(), grey.b());
     if !matches!(camera.clear_color, ClearColorConfig::Custom(known) if known == surround) {

@@ -1,5 +1,5 @@
-//! Pictures of the window that are saved or copied: views are read back once they have come to rest; the rest is done in a
-//! thread of its own.
+//! Saving and copying pictures of the window: views are read back once they are idle; the rest happens in a separate
+//! thread.
 
 use std::{
     borrow::Cow,
@@ -53,18 +53,18 @@ impl Plugin for PicturesPlugin {
     }
 }
 
-/// The picture that is wanted, and the one that is being written.
+/// The requested pictures, and the one being written.
 #[derive(Debug, Default, Resource)]
 struct Pictures {
-    /// In the order in which they were asked for.
+    /// Requests in their order of arrival.
     wanted: VecDeque<Wanted>,
     reading: Option<Reading>,
-    /// What is done with that which is being read.
+    /// The job for the picture that is being read back.
     job: Option<Job>,
     work: Background<(), PictureEnd>,
 }
 
-/// A picture: of a view alone or of all, to a file or to the clipboard.
+/// A requested picture: of a single view or of all, to a file or to the clipboard.
 #[derive(Clone, Debug)]
 struct Wanted {
     view: Option<usize>,
@@ -72,7 +72,7 @@ struct Wanted {
     since: Instant,
 }
 
-/// The longest that views are waited for: those of a scene that a system moves never rest.
+/// Maximum time to wait for views: those of a scene that a system moves are never idle.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn take(
@@ -107,7 +107,7 @@ fn take(
                 format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
             return session.pictured(PictureEnd::Failed(why));
         };
-        // One that converges comes to rest, however long it takes; one that always begins anew does not.
+        // A converging view becomes idle eventually; one that keeps restarting does not.
         let converges = |drawing: &Drawing| drawing.converged().done > 1 && !drawing.is_done();
         let waits = found.iter().any(|view| converges(view.drawing));
         let rest = found.iter().all(|view| view.drawing.rests()) || !waits && since.elapsed() > PATIENCE;
@@ -123,7 +123,7 @@ fn take(
                 camera: session.facts.observer(session.document.observer.field_of_view),
                 camera_left: session.facts.camera_left,
                 caption: session.view.picture_caption,
-                // In a layout that shows one view, a variant alone is meant too.
+                // A layout that shows a single view also means that view alone.
                 alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
                 file,
             });
@@ -142,8 +142,7 @@ fn take(
     }
 }
 
-/// The views of the picture, in the order of the layout: those on screen, but of views that are shown in turn the one that
-/// is shown now.
+/// The views of the picture, in the order of the layout: those on screen; of alternating views, only the visible one.
 fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usize> {
     let blinks = session.document.comparison.layout == Layout::Blink;
     match (alone, cells.as_slice()) {
@@ -156,19 +155,19 @@ fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usiz
     }
 }
 
-/// The scene of the picture, in which the view is compared that is compared on screen.
+/// The scene of the picture, with the comparison as on screen.
 fn scene(session: &Session, registry: &Registry) -> Scene {
     let mut scene = session.document.named(registry);
     scene.comparison.with = session.compared_with();
     scene
 }
 
-/// The file with the extension of pictures, if the user typed none.
+/// Appends the extension of pictures, if the user typed none.
 fn as_png(file: PathBuf) -> PathBuf {
     if file.extension().is_none() { file.with_extension("png") } else { file }
 }
 
-/// False if the user must be asked first, since there is a picture already.
+/// Returns false if the file exists, so that the user must be asked.
 fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registry) -> Result<bool, String> {
     if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         let png = file.with_extension("png");
@@ -184,20 +183,20 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
     Ok(overwrite || !file.exists())
 }
 
-/// A picture with everything that it needs.
+/// A picture with all its inputs.
 #[derive(Debug)]
 struct Job {
     scene: Scene,
     registry: Registry,
-    /// The views, and the terms that they show.
+    /// The views, with their visible terms.
     shown: Vec<(usize, TermSelection)>,
-    /// The size of each.
+    /// Size of each view.
     size: UVec2,
     camera: Observer,
-    /// The camera is not where the observer of the scene is.
+    /// True if the camera is not at the observer of the scene.
     camera_left: bool,
     caption: bool,
-    /// The picture is that of one view, whatever others the scene has.
+    /// True for a picture of a single view, even if the scene has others.
     alone: bool,
     file: Option<PathBuf>,
 }
@@ -212,7 +211,7 @@ impl Job {
         end.unwrap_or_else(PictureEnd::Failed)
     }
 
-    /// The picture, red, green, blue, and its size.
+    /// The RGB pixels of the picture, and its size.
     fn draw(&self, read: &[Vec<u8>]) -> Result<(Vec<u8>, [u32; 2]), String> {
         let unread = || "The picture was not taken: the GPU gave no pixels.".to_owned();
         let mut comparison = self.scene.comparison;
@@ -259,7 +258,7 @@ impl Job {
             .map_err(|error| format!("{} could not be written: {}.", file.shown(), words(&error)))
     }
 
-    /// The scene that the picture shows, with its observer where the camera is: whoever opens the picture sees the same.
+    /// The scene of the picture, with the observer at the camera, so that opening the picture shows the same view.
     fn pictured(&self) -> Scene {
         let alone = self.shown.first().filter(|_| self.alone);
         let alone = alone.and_then(|(view, _)| self.scene.seen(*view, &self.registry));
@@ -271,7 +270,7 @@ impl Job {
     }
 }
 
-/// Puts a picture on the clipboard. Under X11 it is there as long as this program runs.
+/// Copies a picture to the clipboard. Under X11, it stays there while this program runs.
 fn copy(rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
     static CLIPBOARD: Mutex<Option<Clipboard>> = Mutex::new(None);
     let rgba: Vec<u8> = rgb8.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();

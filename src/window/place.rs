@@ -1,4 +1,4 @@
-//! The place of the picture and of its views in the window.
+//! Positions of the picture and of its views in the window.
 
 use bevy::window::Window;
 use bevy_egui::egui::{Pos2, Rect, vec2};
@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2};
 
 use crate::panel::state::PictureArea;
 
-/// The place that the panels leave; all of the window where there are none.
+/// The area between the panels; without panels, the whole window.
 pub(super) fn area_of(area: Option<&PictureArea>, window: &Window) -> PictureArea {
     area.cloned().unwrap_or_else(|| {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(window.width(), window.height()));
@@ -14,7 +14,7 @@ pub(super) fn area_of(area: Option<&PictureArea>, window: &Window) -> PictureAre
     })
 }
 
-/// The place of the picture in the window, pixels.
+/// Rectangle of the picture in the window, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PicturePlace {
     pub(super) at: UVec2,
@@ -22,7 +22,7 @@ pub(super) struct PicturePlace {
 }
 
 impl PicturePlace {
-    /// The place of the view that the window always has; the others are as large.
+    /// Rectangle of the main view; the other views have the same size.
     pub(super) fn of(area: &PictureArea, window: &Window) -> Self {
         Self::of_rect(area.cells.first().map_or(area.rect, |cell| cell.rect), area.zoom, window)
     }
@@ -38,7 +38,7 @@ impl PicturePlace {
         Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }
     }
 
-    /// The place in the picture of a place in the window, pixels.
+    /// Converts a position in the window to pixels of the picture.
     pub(super) fn within(self, window: &Window, point: Vec2) -> Vec2 {
         point * window.scale_factor() - self.at.as_vec2()
     }

@@ -1,4 +1,4 @@
-//! Plots that are written to files, beside the window.
+//! Saves plots to files in the background.
 
 use std::path::PathBuf;
 
@@ -14,12 +14,12 @@ use crate::{
     registry::Registry,
 };
 
-/// The plot that is being written: its file, and the notes on it or why there is none.
+/// The plot being written: its file, and the notes or the error.
 #[derive(Debug, Default, Resource)]
 pub(super) struct PlotFiles(Background<(), (PathBuf, Result<Vec<String>, String>)>);
 
 impl PlotFiles {
-    /// Begins to write and comes back at once. `wake` is called at the end.
+    /// Starts to write a plot and returns at once. Calls `wake` at the end.
     pub(super) fn begin(
         &self,
         path: PathBuf,
@@ -35,7 +35,7 @@ impl PlotFiles {
         let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
         let place = file.clone();
         let broken = move || (place, Err("an error of this program".to_owned()));
-        // The dialog asked about the file that was typed, and about no other.
+        // The dialog asked only about the exact name that was typed.
         let asked = file == path;
         self.0.begin((), wake, broken, move |progress| {
             let outcome = write(&request, &file, asked, &inputs, progress);
@@ -43,7 +43,7 @@ impl PlotFiles {
         });
     }
 
-    /// Says how it ended.
+    /// Reports the result.
     pub(super) fn report(&self, session: &mut ResMut<Session>) {
         if let Some((path, outcome)) = self.0.take() {
             session.plot_written(path, outcome);

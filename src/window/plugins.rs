@@ -26,7 +26,7 @@ use crate::{
     render::{capture::gpu::wgpu_settings, plugin::ScenePlugin},
 };
 
-/// The size of a new window, points.
+/// Size of a new window, in points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
 
 /// The whole window, as `lcm view` opens it:
@@ -38,8 +38,8 @@ const SIZE: UVec2 = UVec2::new(1280, 720);
 /// App::new().add_plugins(LabPlugins::default()).add_reflection_model::<Velvet>().run();
 /// ```
 ///
-/// Bevy's `DefaultPlugins` are in it, and these parts. [`ScenePlugin`] and [`DocumentPlugin`] carry the others; each of
-/// those can be disabled or replaced, as in every group of plugins, and the rest still works.
+/// The group contains Bevy's `DefaultPlugins` and the parts below. [`ScenePlugin`] and [`DocumentPlugin`] are the basis
+/// of the others; each of the others can be disabled or replaced, as in every plugin group, and the rest still works.
 ///
 /// | plugin | part |
 /// |---|---|
@@ -72,7 +72,7 @@ impl Default for LabPlugins {
 }
 
 impl LabPlugins {
-    /// A window with these choices.
+    /// Creates a window with these options.
     #[must_use]
     pub fn new(options: ViewOptions) -> Self {
         Self { options, headless: false }
@@ -86,30 +86,30 @@ impl LabPlugins {
         self
     }
 
-    /// The size of the window in pixels, or that of the picture where there is no window.
+    /// Sets the size of the window in pixels, or that of the picture if there is no window.
     #[must_use]
     pub fn size(mut self, width: u32, height: u32) -> Self {
         self.options.size = Some([width, height]);
         self
     }
 
-    /// Closes after so many frames.
+    /// Closes the window after a number of frames.
     #[must_use]
     pub fn exit_after(mut self, frames: u32) -> Self {
         self.options.exit_after = Some(frames);
         self
     }
 
-    /// Writes the window, or the picture where there is none, to a PNG file before it closes after
-    /// [so many frames](Self::exit_after).
+    /// Writes the window, or the picture if there is no window, to a PNG file before closing after [a number of
+    /// frames](Self::exit_after).
     #[must_use]
     pub fn capture(mut self, file: impl Into<PathBuf>) -> Self {
         self.options.capture = Some(file.into());
         self
     }
 
-    /// The same without a window, for tests and batches: the document, the entities and the picture, and nothing that
-    /// needs a user, a display, or the user's settings. Frames follow each other without a rest.
+    /// Removes the window, for tests and batch jobs: keeps the document, the entities and the picture, but nothing that
+    /// needs a user, a display, or the user's settings. Frames follow each other without a pause.
     #[must_use]
     pub fn headless(mut self) -> Self {
         self.headless = true;
@@ -145,12 +145,12 @@ impl PluginGroup for LabPlugins {
             .add(DifferencePlugin)
             .add(ShellPlugin { verbose: options.verbose })
             .add(RecoveryPlugin::of(&options))
-            // It lets no window sleep.
+            // It keeps the window awake.
             .add(CapturePlugin::of(&options))
     }
 }
 
-/// Bevy's own plugins.
+/// Bevy's default plugins.
 fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
     let window = Window {
         title: "Lights, Camera, Models!".to_owned(),
@@ -159,28 +159,28 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
             || WindowResolution::new(SIZE.x, SIZE.y),
             |[w, h]| WindowResolution::new(w, h).with_scale_factor_override(1.0),
         ),
-        // Software Vulkan offers no other mode everywhere.
+        // The only mode that software Vulkan supports everywhere.
         present_mode: PresentMode::AutoVsync,
         ..Window::default()
     };
     let group = DefaultPlugins
         .set(WindowPlugin {
             primary_window: (!headless).then_some(window),
-            // Closing asks about unsaved changes first.
+            // Closing the window first asks about unsaved changes.
             close_when_requested: false,
             exit_condition: if headless { ExitCondition::DontExit } else { ExitCondition::OnPrimaryClosed },
             ..WindowPlugin::default()
         })
         .set(RenderPlugin {
             render_creation: RenderCreation::Automatic(Box::new(wgpu_settings())),
-            // A model that is shown for the first time must not cost a frame without its object.
+            // A newly shown model must not cost a frame without its object.
             synchronous_pipeline_compilation: true,
             ..RenderPlugin::default()
         })
         .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
         .set(log_plugin(options))
         .disable::<PipelinedRenderingPlugin>()
-        // Signals are heard elsewhere, also while the window sleeps.
+        // Signals are handled elsewhere, even while the window sleeps.
         .disable::<TerminalCtrlCHandlerPlugin>();
     if headless { group.disable::<WinitPlugin>() } else { group.set(WinitPlugin { run_on_any_thread: true }) }
 }
@@ -191,8 +191,8 @@ fn log_plugin(options: &ViewOptions) -> LogPlugin {
     } else if options.quiet {
         (Level::ERROR, "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error")
     } else {
-        // The status line says that the renderer is a program on the CPU, and problems of a
-        // shader are reported in terms of its file; the other messages silenced here are no news to a user.
+        // The status line says if the renderer runs on the CPU, and problems of a shader are reported in terms of its
+        // file; the other messages silenced here are irrelevant to users.
         (
             Level::WARN,
             "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",

@@ -1,11 +1,11 @@
-//! The way of the pointer that turns the camera: that of the cursor, which every pointer has. Of how far a device was
-//! moved, tablets, remote desktops and virtual machines say nothing, or send places in its stead.
+//! The pointer motion that turns the camera: taken from the cursor, which every pointer has. Tablets, remote desktops
+//! and virtual machines report no device motion, or report positions instead.
 //!
-//! Only where the cursor stands still, as at the edge of the screen, does the way of the device count. The two do not
-//! always come in the same frame, so it counts one frame later.
+//! Device motion counts only while the cursor is stuck, as at the edge of the screen. The two do not always arrive in
+//! the same frame, so device motion takes effect one frame later.
 //!
-//! Pens, fingers and remote desktops send a move and a press at once: the place of the press tells whose it is, and
-//! what came before it turns nothing.
+//! Pens, fingers and remote desktops send a move and a press at once: the position of the press decides where the press
+//! belongs, and earlier motion turns nothing.
 
 use bevy::{
     app::{App, Plugin, PreUpdate},
@@ -21,11 +21,11 @@ use glam::Vec2;
 
 use crate::panel::{is_over_picture, state::PictureArea};
 
-/// Knows whose the pointer is.
+/// Tracks whether the pointer is over the picture.
 pub(super) struct PointerPlugin;
 
 impl PointerPlugin {
-    /// Adds it, unless it is there.
+    /// Adds the plugin, unless it is already present.
     pub(super) fn add_to(app: &mut App) {
         if !app.is_plugin_added::<Self>() {
             app.add_plugins(Self);
@@ -39,31 +39,31 @@ impl Plugin for PointerPlugin {
     }
 }
 
-/// Whose the pointer is, by the input of this frame.
+/// The relation of the pointer to the picture, based on the input of this frame.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(super) struct OverPicture {
-    /// It is over the picture.
+    /// True if the pointer is over the picture.
     pub(super) now: bool,
-    /// Its place in the window when a button was pressed last, if that was over the picture.
+    /// Position in the window of the latest button press, if it was over the picture.
     pub(super) pressed: Option<Vec2>,
 }
 
 /// The state of the pointer.
 #[derive(Default)]
 pub(super) struct Pointer {
-    /// Its place in the window.
+    /// Position in the window.
     place: Option<Vec2>,
-    /// A button is held.
+    /// True if a button is held.
     held: bool,
-    /// The way of the device for which no cursor has moved so far.
+    /// Device motion without corresponding cursor motion so far.
     pending: Option<Vec2>,
-    /// The cursor moved in the frame before.
+    /// True if the cursor moved in the previous frame.
     moved: bool,
 }
 
 impl Pointer {
-    /// The way that counts, from those of the device and of the cursor in a frame, and whether the cursor `moved` in
-    /// it at all; a button is `held` in a drag.
+    /// The effective motion, given those of the device and of the cursor in a frame, and whether the cursor `moved` at
+    /// all; a button is `held` during a drag.
     fn frame(&mut self, device: Option<Vec2>, cursor: Option<Vec2>, moved: bool, held: bool) -> Option<Vec2> {
         let before = self.pending.take();
         let earlier = std::mem::replace(&mut self.moved, moved);
@@ -88,7 +88,7 @@ pub(super) fn follow_cursor(
     let context = contexts.iter_mut().next().map(|mut context| context.get_mut().clone());
     let is_over = |place: Option<Vec2>| {
         let (Some(context), Some(area), Some(place)) = (&context, &area, place) else {
-            // Without panels all of the window is the picture.
+            // Without panels, the picture fills the window.
             return area.is_none() && place.is_some();
         };
         let place = place / area.zoom;
@@ -109,7 +109,7 @@ pub(super) fn follow_cursor(
             WindowEvent::CursorLeft(_) if !pointer.held => pointer.place = None,
             WindowEvent::MouseButtonInput(button) if button.state.is_pressed() => {
                 pointer.held = true;
-                // With Alt held, the pixel is explained.
+                // Alt+click explains the pixel.
                 let explains = context.as_ref().is_some_and(|context| context.input(|i| i.modifiers.alt));
                 over.pressed = pointer.place.filter(|place| !explains && is_over(Some(*place)));
             }
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use crate::window::camera::orbit;
 
-    /// The messages of a device in a frame: its own way, and that of the cursor.
+    /// Messages of a device in a frame: device motion and cursor motion.
     type Sent = (Option<Vec2>, Option<Vec2>);
 
     /// The camera after a drag with this button.
@@ -154,7 +154,8 @@ mod tests {
         drag_after(None, false, button, frames)
     }
 
-    /// The same after the cursor came into the picture, in the frame of the press if both are sent `at_once`.
+    /// The camera after a drag that starts with the cursor entering the picture, in the frame of the press if
+    /// `at_once`.
     fn drag_after(hover: Option<Vec2>, at_once: bool, button: MouseButton, frames: &[Sent]) -> Transform {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, InputPlugin, PanOrbitCameraPlugin))

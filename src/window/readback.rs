@@ -1,4 +1,4 @@
-//! Textures that are read back from the GPU.
+//! Reading back textures from the GPU.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,12 +10,12 @@ use bevy::{
 };
 use glam::UVec2;
 
-/// Textures that are being read: the entities that do it, and what they have read.
+/// Textures being read back: the entities that read them, and the results.
 #[derive(Debug)]
 pub(super) struct Reading(Vec<(Entity, Arc<OnceLock<Vec<u8>>>)>);
 
 impl Reading {
-    /// Begins to read textures.
+    /// Starts to read back textures.
     pub(super) fn begin(textures: &[Handle<Image>], commands: &mut Commands) -> Self {
         let read = textures.iter().map(|texture| {
             let bytes = Arc::<OnceLock<Vec<u8>>>::default();
@@ -26,7 +26,7 @@ impl Reading {
         Self(read.collect())
     }
 
-    /// The bytes of the textures, once they are all there: see [`codes`]. Then nothing is read any more.
+    /// The bytes of the textures, once all are complete, which ends the reading: see [`codes`].
     pub(super) fn end(reading: &mut Option<Self>, commands: &mut Commands) -> Option<Vec<Vec<u8>>> {
         let all = |reading: &mut Self| reading.0.iter().all(|(_, bytes)| bytes.get().is_some());
         let done = reading.take_if(all)?;
@@ -41,7 +41,7 @@ impl Reading {
     }
 }
 
-/// The codes in a texture that was read back, whose rows begin at multiples of 256 bytes.
+/// Display codes of a texture that was read back, whose rows start at multiples of 256 bytes.
 pub(super) fn codes(bytes: &[u8], size: UVec2) -> Option<Vec<u8>> {
     let row = 4 * size.x as usize;
     let stride = if size.y > 1 { row.next_multiple_of(256) } else { row };

@@ -1,5 +1,5 @@
-//! Recovery copies and Ctrl+C in the window: hands unsaved changes to the [`Keeper`], and asks about what an earlier
-//! window left.
+//! Recovery copies and Ctrl+C in the window: hands unsaved changes to the [`Keeper`], and offers those left by earlier
+//! windows.
 
 use std::{
     collections::VecDeque,
@@ -36,14 +36,14 @@ use crate::{
     signals::Interrupt,
 };
 
-/// Keeps copies of unsaved work, asks about those that earlier windows left, and hears Ctrl+C.
+/// Keeps copies of unsaved work, offers those left by earlier windows, and handles Ctrl+C.
 #[derive(Clone, Debug)]
 pub struct RecoveryPlugin {
-    /// The file that the window opens: its copy is asked about first.
+    /// The file that the window opens: its copy is offered first.
     pub file: Option<PathBuf>,
-    /// True if copies of earlier windows are looked for.
+    /// True to look for copies of earlier windows.
     pub look: bool,
-    /// True if the user is asked about them; else they are only mentioned.
+    /// True to ask the user about them; false to only mention them.
     pub ask: bool,
 }
 
@@ -73,17 +73,17 @@ impl Plugin for RecoveryPlugin {
     }
 }
 
-/// The part of the window that outlives it.
+/// Final steps that outlive the window.
 #[derive(Clone)]
 pub(super) struct Farewell {
     pub(super) keeper: Keeper,
     interrupt: Interrupt,
-    /// The user decided to close the window.
+    /// True once the user has decided to close the window.
     closing: Arc<AtomicBool>,
 }
 
 impl Farewell {
-    /// Begins to keep copies, and to listen to signals.
+    /// Starts to keep copies, and to listen to signals.
     fn prepare(store: Option<Store>, world: &World) -> Self {
         let keeper = Keeper::start(store, waker(world));
         let last = keeper.clone();
@@ -99,12 +99,13 @@ impl Farewell {
         Self { keeper, interrupt, closing: Arc::default() }
     }
 
-    /// The user decided to close the window, whatever is unsaved.
+    /// Records that the user has decided to close the window, regardless of unsaved changes.
     pub(super) fn close(&self) {
         self.closing.store(true, Ordering::SeqCst);
     }
 
-    /// The window is closed. What is unsaved and was not given up is kept; Ctrl+C ends the process here.
+    /// Finishes after the window has closed: keeps unsaved changes, unless the user discarded them, and ends the
+    /// process after Ctrl+C.
     pub(super) fn say(&self) {
         if self.closing.load(Ordering::SeqCst) {
             self.keeper.forget();
@@ -116,16 +117,16 @@ impl Farewell {
     }
 }
 
-/// The copies: that of this window, and those that others left.
+/// The copies of this window, and those left by others.
 #[derive(Resource)]
 pub(super) struct Recovery {
     pub(super) farewell: Farewell,
-    /// Copies still to be asked about, the best first.
+    /// Copies still to be offered, the best first.
     left: VecDeque<Left>,
-    /// The copy that the question is about.
+    /// The copy being offered.
     asked: Option<Left>,
     registry: Option<Arc<Registry>>,
-    /// While it is here, this says farewell when the window goes.
+    /// While present, dropping this resource runs the farewell.
     guard: Option<Guard>,
 }
 
@@ -138,19 +139,19 @@ impl Drop for Recovery {
 }
 
 impl Recovery {
-    /// Leaves the farewell to whoever runs the window.
+    /// Hands the farewell over to the caller, which runs the window.
     pub(super) fn hand_over(&mut self) -> Option<(Farewell, Guard)> {
         Some((self.farewell.clone(), self.guard.take()?))
     }
 
-    /// Without anything to ask.
+    /// Creates the state without any copies to offer.
     fn new(farewell: Farewell) -> Self {
         let guard = Guard::set(&farewell.keeper);
         Self { farewell, left: VecDeque::new(), asked: None, registry: None, guard: Some(guard) }
     }
 
-    /// Looks for what earlier windows left, that of the file on the command line first. `ask` is false where there is
-    /// nobody to answer: then it is only said.
+    /// Looks for copies of earlier windows, that of the opened file first. If `ask` is false because nobody can answer,
+    /// they are only mentioned.
     fn look(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
         let mut left = store.map(Store::left).unwrap_or_default();
         let file = file.and_then(|file| path::absolute(file).ok());
@@ -202,14 +203,14 @@ impl Recovery {
 fn about(session: &Session, files: &DiskFiles) -> About {
     About {
         title: session.own_title(),
-        // The next window may be started somewhere else.
+        // The next window may start in another folder.
         path: session.own_path().map(|path| path::absolute(path).unwrap_or_else(|_| path.to_owned())),
         stamp: session.own_path().and_then(|path| files.known(path)),
         process: 0,
     }
 }
 
-/// Ctrl+C in the terminal is Ctrl+Q in the window.
+/// Treats Ctrl+C in the terminal like Ctrl+Q in the window.
 fn interrupted(
     recovery: Res<Recovery>,
     mut session: ResMut<Session>,
@@ -221,15 +222,15 @@ fn interrupted(
     }
 }
 
-/// After Ctrl+C the user may decide to stay. Runs right after the effects are carried out: what closes the window is
-/// none on its way then.
+/// Resets the interrupt if the user decides to stay after Ctrl+C. Runs right after the effects are carried out, when no
+/// closing is pending in between.
 fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
     if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.questions.is_quitting() {
         recovery.farewell.interrupt.stay();
     }
 }
 
-/// Asks about the next copy, as soon as nothing else is asked.
+/// Offers the next copy as soon as no question is open.
 fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
     if recovery.left.is_empty() || session.questions.open.is_some() {
         return;
@@ -237,7 +238,7 @@ fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry:
     let Some(left) = recovery.left.pop_front() else { return };
     let scene = left.scene(&registry);
     if let Err(problems) = &scene {
-        // The latest stands on top: the first problem.
+        // The latest message is on top: the first problem.
         for problem in problems.iter().rev() {
             session.say(Severity::Warning, problem.clone());
         }
@@ -254,7 +255,7 @@ fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry:
     recovery.asked = Some(left);
 }
 
-/// Hands unsaved changes to the keeper; runs after all that changes the document in a frame.
+/// Hands unsaved changes to the keeper; runs after everything that changes the document in a frame.
 fn keep(
     mut recovery: ResMut<Recovery>,
     mut session: ResMut<Session>,

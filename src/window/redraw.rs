@@ -1,4 +1,4 @@
-//! Asks for another frame while something changes, and for none when nothing does.
+//! Requests another frame while something changes, and none otherwise.
 
 use std::time::Duration;
 
@@ -19,13 +19,12 @@ use crate::{
     },
 };
 
-/// The longest sleep of the window when nothing happens; it wakes for input at once.
+/// Maximum sleep of an idle window, which input wakes at once.
 const SLEEP: Duration = Duration::from_secs(3600);
-/// Frames that are drawn after the last change: the panels lay themselves out anew in the first and
-/// settle in the second.
+/// Number of frames drawn after the last change: the panels change their layout in the first and settle in the second.
 pub(super) const SETTLING_FRAMES: u32 = 3;
 
-/// The window sleeps when nothing happens.
+/// Lets the window sleep when nothing happens.
 pub(super) fn sleepy() -> WinitSettings {
     WinitSettings {
         focused_mode: UpdateMode::reactive(SLEEP),
@@ -33,7 +32,7 @@ pub(super) fn sleepy() -> WinitSettings {
     }
 }
 
-/// Frames that are still to be drawn because something changed.
+/// Number of frames still to be drawn because something changed.
 #[derive(Resource)]
 pub(super) struct Settling(u32);
 
@@ -44,7 +43,7 @@ impl Default for Settling {
 }
 
 impl Settling {
-    /// Something changed: at least so many frames are drawn.
+    /// Requests at least this number of frames, because something changed.
     pub(super) fn draw(&mut self, frames: u32) {
         self.0 = self.0.max(frames);
     }
@@ -55,7 +54,7 @@ impl Settling {
     }
 }
 
-/// Asks for another frame while something changes.
+/// Requests another frame while something changes.
 pub(super) fn redraw(
     session: Res<Session>,
     area: Option<Res<PictureArea>>,
@@ -70,14 +69,14 @@ pub(super) fn redraw(
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
 ) {
-    // New letters reach the GPU one frame after they are asked for.
+    // New glyphs reach the GPU one frame after they are requested.
     let letters = painted.iter().any(|output| !output.textures_delta.set.is_empty());
     let camera = cameras.iter().next().copied();
     let moved = std::mem::replace(&mut *seen_from, camera) != camera;
-    // An edit of the panels reaches the scene in the next frame.
+    // An edit in the panels reaches the scene in the next frame.
     let area = area.is_some_and(|area| area.is_changed());
     let changed = session.is_changed() || area || scene.is_changed() || terms.is_changed();
-    // Problems are told after a while, and what is not on the picture is tried one in a frame.
+    // Problems are reported after a delay, and shaders outside the picture are tested one per frame.
     let busy = live.is_busy() && !bench.is_waiting() && !live.is_reading();
     if letters || moved || changed || busy {
         settling.draw(SETTLING_FRAMES);

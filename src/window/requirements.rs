@@ -7,8 +7,8 @@ use bevy::app::{App, Plugin};
 use super::watching::complain;
 use crate::{failure::Failure, render::capture::gpu::find_adapter};
 
-/// Says what is missing where there is no display or no driver, and ends the process with the exit status for it,
-/// before others panic.
+/// Reports a missing display or driver, and ends the process with the appropriate exit status before other plugins
+/// panic.
 #[derive(Clone, Copy, Debug)]
 pub struct RequirementsPlugin {
     /// True if a display is needed.
@@ -30,12 +30,12 @@ impl Plugin for RequirementsPlugin {
     }
 }
 
-/// Without a driver Bevy would panic.
+/// Returns an error without a driver, for which Bevy would panic.
 pub(super) fn need_driver() -> Result<(), Failure> {
     find_adapter().map(drop).map_err(|e| Failure::NoRenderer(e.to_string()))
 }
 
-/// Without a display the windowing library would panic; say what is missing instead.
+/// Returns an error without a display, for which the windowing library would panic.
 pub(super) fn need_display() -> Result<(), Failure> {
     let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     if cfg!(target_os = "linux") && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {

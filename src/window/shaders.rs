@@ -1,5 +1,4 @@
-//! The shaders and custom models of the window: read when it opens, read again when their files change, and their
-//! problems reported.
+//! Shaders and custom models of the window: reads them at the start and after changes, and reports their problems.
 
 use std::{
     io::{self, IsTerminal as _},
@@ -37,15 +36,15 @@ use crate::{
     shader::report::{annotated, coloured},
 };
 
-/// Reads the shaders and custom models in the registry's folders, follows them, and reports their problems.
+/// Reads the shaders and custom models in the registry's folders, watches them, and reports their problems.
 #[derive(Clone, Debug, Default)]
 pub struct ShaderFilesPlugin {
-    /// The program that tries shaders when it is called with
-    /// [`COMMAND`](crate::render::trial::process::COMMAND); without it this one does, between frames.
+    /// The program that tests shaders when called with [`COMMAND`](crate::render::trial::process::COMMAND); `None` to
+    /// test them in this program, between frames.
     pub trial_program: Option<PathBuf>,
 }
 
-/// Tells the panels if the picture is behind the scene, since a shader is not ready.
+/// Reports to the panels if the picture lags behind the scene because a shader is not ready.
 fn feed_compiling(
     waiting: Query<(), With<AwaitsShader>>,
     mut session: ResMut<Session>,
@@ -80,8 +79,8 @@ impl Plugin for ShaderFilesPlugin {
     }
 }
 
-/// Reads the shaders of the registry's folders and watches them. Custom models are in the registry already; shaders that
-/// cannot be drawn with are replaced by the built-in ones and reported.
+/// Reads the shaders of the registry's folders and watches them. Custom models are registered already; invalid shaders
+/// are replaced by the built-in ones and reported.
 fn open(world: &mut World) {
     let mut registry = world.resource_mut::<Registry>();
     let folders = registry.folders().clone();
@@ -90,8 +89,7 @@ fn open(world: &mut World) {
         None => Vec::new(),
     };
     let of_extensions = assets::read_extensions(&mut registry).err().unwrap_or_default();
-    // Their problems are found when they are read. Models with a correct declaration are read
-    // when the scene uses them.
+    // Their problems are found when they are read. Models with a valid declaration are read when the scene uses them.
     let declared = |path: &PathBuf| custom::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
     let broken: Vec<_> = folders
         .models
@@ -108,8 +106,8 @@ fn open(world: &mut World) {
     }
 }
 
-/// Reads shaders from another folder from now on, and custom models too unless there are some where they were read
-/// from.
+/// Switches to shaders from another folder, and to custom models from there unless the current folder of custom models
+/// exists.
 pub(super) fn move_to(world: &mut World, folder: &Path) {
     let folders = match Folders::find(Some(folder), None) {
         Ok(folders) => folders,
@@ -122,13 +120,13 @@ pub(super) fn move_to(world: &mut World, folder: &Path) {
     if !registry.custom_folder().is_some_and(Path::is_dir)
         && let Some(models) = &folders.models
     {
-        // Their problems are reported when they are looked at.
+        // Their problems are reported when the models are checked.
         let _ = custom::folder::declare_folder(models, &mut registry);
     }
     open(world);
 }
 
-/// Looks at the files that changed.
+/// Checks changed files.
 fn follow(world: &mut World, mut last: Local<bevy::ecs::message::MessageCursor<FilesChanged>>) {
     let changed: Vec<_> = {
         let messages = world.resource::<Messages<FilesChanged>>();
@@ -143,15 +141,15 @@ fn look_at(world: &mut World, files: &[PathBuf]) {
     }
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
         let mut registry = world.resource_mut::<Registry>();
-        // Those who wait for another model are told when it was tried.
+        // Systems waiting for another model are notified once it was tested.
         files.iter().for_each(|file| live.look_at(file, registry.bypass_change_detection()));
     });
 }
 
-/// Tells the panels and standard error of the state of the shaders.
+/// Reports the state of the shaders to the panels and to standard error.
 fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Local<bool>) {
     let status = live.status();
-    // A problem may have given way to one that is too young to be told.
+    // A problem may have been replaced by one that is too recent to be reported.
     if *troubled && status.troubles.is_empty() && live.is_up_to_date() {
         *troubled = false;
         complain("All shaders are up to date again.");

@@ -1,4 +1,4 @@
-//! The window on the desktop: its title, its size on the screen, its closing, its rest.
+//! The window on the desktop: title, full screen, closing, sleep.
 
 use bevy::{
     app::{App, Last, Plugin, PostUpdate, PreUpdate, Startup},
@@ -17,7 +17,7 @@ use crate::{
 /// The window on the desktop. It sleeps while nothing changes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShellPlugin {
-    /// Reports the time per frame when it closes.
+    /// True to report the time per frame at the end.
     pub verbose: bool,
 }
 
@@ -40,7 +40,7 @@ impl Plugin for ShellPlugin {
                 PostUpdate,
                 (
                     (window_title, fullscreen).run_if(resource_changed::<Session>),
-                    // The last changes by the panels are known by now, and are to be drawn.
+                    // After the panels' last changes, which must be drawn.
                     redraw::redraw
                         .after(EguiPostUpdateSet::ProcessOutput)
                         .before(EguiPostUpdateSet::PostProcessOutput),
@@ -58,7 +58,7 @@ fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<Prim
     }
 }
 
-/// The window fills the screen where the state says so.
+/// Makes the window fill the screen if the session says so.
 fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mode = if session.view.fullscreen {
         WindowMode::BorderlessFullscreen(MonitorSelection::Current)
@@ -70,7 +70,7 @@ fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<Primar
     }
 }
 
-/// What is dropped on the window opens, or is added to the scene.
+/// Opens files dropped on the window, or adds them to the scene.
 fn file_dropped(
     mut drops: MessageReader<FileDragAndDrop>,
     mut session: ResMut<Session>,

@@ -1,4 +1,4 @@
-//! The views of a comparison in the window: one camera for all, textures of one size, and their places.
+//! The views of a comparison in the window: one shared camera position, textures of equal size, and positions.
 
 use bevy::{
     asset::Handle,
@@ -33,7 +33,7 @@ use crate::{
     scene::{Scene, variant::MAX_VARIANTS},
 };
 
-/// A view beside the one that the window always has: 0 is the scene itself, 1 view B.
+/// A view in addition to the main one: 0 is the scene itself, 1 view B.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct OtherView(pub(super) usize);
 
@@ -41,7 +41,7 @@ pub(super) struct OtherView(pub(super) usize);
 #[derive(Resource, Clone, Debug, Default)]
 pub(super) struct DifferenceMap(pub(super) Option<(Handle<Image>, UVec2)>);
 
-/// The debug channels that the views show, view A first, and the light that is chosen for them.
+/// Debug channels of the views, view A first, and the light selected for them.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct ShownChannels {
     pub(super) by_view: [Option<DebugChannel>; MAX_VARIANTS + 1],
@@ -49,7 +49,7 @@ pub(super) struct ShownChannels {
 }
 
 impl ShownChannels {
-    /// The differences between a view, seen from an eye, and the scene.
+    /// The overrides of a view relative to the scene, seen from an eye.
     fn overrides(&self, scene: &Scene, view: usize, registry: &Registry, eye: Vec3) -> Option<Overrides> {
         let own = Overrides::of_view(scene, view);
         let Some(channel) = self.by_view.get(view).copied().flatten() else { return own };
@@ -58,12 +58,12 @@ impl ShownChannels {
     }
 }
 
-/// The number of the view that the window always has: that of the first cell.
+/// The number of the main view: that of the first cell.
 pub(super) fn first(area: &PictureArea) -> usize {
     area.cells.first().map_or(0, |cell| cell.view)
 }
 
-/// Gives every view that is to be seen a camera, which follows that of the window, and takes it from the others.
+/// Creates a camera, which follows that of the window, for every visible view, and removes the others.
 pub(super) fn set_views(
     area: Option<Res<PictureArea>>,
     scene: Res<CurrentScene>,
@@ -116,7 +116,7 @@ pub(super) fn set_views(
             OtherView(number),
             *view,
         ));
-        // Where the window's camera stands, whoever moves it.
+        // At the window's camera, whatever moves that one.
         new.insert((PictureCamera { follows_observer: false, fits_width: true }, *place));
         if let Some(overrides) = overrides_of(number) {
             new.insert(overrides);
@@ -124,7 +124,7 @@ pub(super) fn set_views(
     }
 }
 
-/// A view that is shown.
+/// A visible view.
 #[derive(Clone, Copy)]
 pub(super) struct ShownView<'a> {
     entity: Entity,
@@ -139,7 +139,7 @@ impl<'a> ShownView<'a> {
     }
 }
 
-/// The views that are shown, by their number: 0 is the scene itself, 1 view B.
+/// The visible views, by number: 0 is the scene itself, 1 view B.
 #[derive(SystemParam)]
 pub(super) struct ShownViews<'w, 's> {
     area: Option<Res<'w, PictureArea>>,
@@ -152,12 +152,12 @@ pub(super) struct ShownViews<'w, 's> {
 }
 
 impl ShownViews<'_, '_> {
-    /// Their places; none where there is but one.
+    /// Areas of the visible views; empty if there is only one view.
     pub(super) fn cells(&self) -> &[Cell] {
         self.area.as_deref().map_or(&[], |area| &area.cells)
     }
 
-    /// The view with a number.
+    /// The view with the given number.
     pub(super) fn find(&self, number: usize) -> Option<ShownView<'_>> {
         let own = self.area.as_deref().map_or(0, first);
         let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
@@ -166,7 +166,7 @@ impl ShownViews<'_, '_> {
     }
 }
 
-/// Tells the panels how far the pictures of the views have converged.
+/// Reports to the panels how far the pictures of the views have converged.
 pub(super) fn tell_convergence(
     views: ShownViews,
     noise: Option<Res<Noise>>,
@@ -186,7 +186,7 @@ pub(super) fn tell_convergence(
     }
 }
 
-/// Shows the textures of the views, and the map of their difference, in their places.
+/// Shows the textures of the views, and the map of their difference, in their areas.
 pub(super) fn show_views(
     views: ShownViews,
     map: Option<Res<DifferenceMap>>,
@@ -211,7 +211,7 @@ pub(super) fn show_views(
     if let Some(rect) = area.map {
         let place = place(rect);
         let map = map.and_then(|map| map.0.clone()).filter(|(_, size)| *size == place.size);
-        // Until there is a map for a place of this size, view A is shown.
+        // Until there is a map of this size, view A is shown.
         let image = map.map(|(image, _)| image).or_else(|| texture(own));
         pictures.extend(image.map(|image| ShownPicture { image, at: place.at, part: None }));
     }

@@ -1,4 +1,4 @@
-//! Changes on disk reach the window, which sleeps meanwhile.
+//! Wakes the sleeping window when files change on disk.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -23,18 +23,18 @@ use crate::{
     watch::Watcher,
 };
 
-/// Time for which a file that can't be used may be in the middle of being written.
+/// Time for which an unusable file may still be in the process of being written.
 pub(super) const GRACE: Duration = Duration::from_millis(150);
 
-/// The watcher of the window: one for everything. It wakes the window.
+/// The file watcher of the window, shared by everything. It wakes the window.
 #[derive(Debug, Resource)]
 pub struct FileWatch(pub Watcher);
 
-/// Files that may have changed on disk, the oldest change first, named as they are watched.
+/// Files that may have changed on disk, the oldest change first, with the paths under which they are watched.
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct FilesChanged(pub Vec<PathBuf>);
 
-/// Follows files on disk: [`FileWatch`], and the file of the document.
+/// Watches files on disk: [`FileWatch`], and the file of the document.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WatchingPlugin;
 
@@ -57,18 +57,18 @@ impl Plugin for WatchingPlugin {
     }
 }
 
-/// Wakes the window, which sleeps when nothing happens; from any thread.
+/// A function that wakes the sleeping window, from any thread.
 pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
     let proxy = world.get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
     move || {
         if let Some(proxy) = &proxy {
-            // An error: the window is closed.
+            // An error means that the window is closed.
             let _ = proxy.send_event(WinitUserEvent::WakeUp);
         }
     }
 }
 
-/// Asks the watcher for changes.
+/// Collects changes from the watcher.
 fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,
@@ -88,7 +88,7 @@ fn collect(
     }
 }
 
-/// Watches the file of the document, whichever that is.
+/// Watches the file of the current document.
 fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<Option<PathBuf>>) {
     if *watched == session.path {
         return;
@@ -99,12 +99,12 @@ fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watch
     watched.clone_from(&session.path);
     if let Some(path) = watched.as_deref().filter(|path| !files::is_stream(path)) {
         watch.0.watch_file(path);
-        // It may have changed between being read and being watched.
+        // The file may have changed after it was read and before it was watched.
         watch.0.report_later(path, Duration::ZERO);
     }
 }
 
-/// Watches the files that lights and objects of the document name.
+/// Watches the files that lights and objects of the document refer to.
 fn watch_named_files(
     mut watch: ResMut<FileWatch>,
     session: Res<Session>,
@@ -118,14 +118,14 @@ fn watch_named_files(
     watched.difference(&named).for_each(|path| watch.0.forget(path));
     for path in named.difference(&watched) {
         watch.0.watch_file(path);
-        // It may have changed between being read and being watched.
+        // The file may have changed after it was read and before it was watched.
         watch.0.report_later(path, Duration::ZERO);
     }
     *watched = named;
 }
 
-/// When a file changed that a light or an object names, it is read again. If it cannot be used, the last version that could is shown;
-/// that is said after a moment, since many editors write in steps.
+/// Reloads changed files that lights and objects refer to. If a file is unusable, its last good version stays in use;
+/// that is reported after a moment, since many editors write in steps.
 fn follow_named_files(
     mut changed: MessageReader<FilesChanged>,
     watch: Res<FileWatch>,
@@ -162,7 +162,7 @@ fn follow_named_files(
     }
 }
 
-/// When the document's file changed, it is looked at.
+/// Requests a check of the document's file when it has changed.
 fn follow_document(
     mut changed: MessageReader<FilesChanged>,
     session: Res<Session>,
@@ -174,13 +174,13 @@ fn follow_document(
     }
 }
 
-/// Writes to standard error, without what a terminal would obey.
+/// Writes to standard error, with control characters removed.
 pub(super) fn complain(text: &str) {
     complain_in_colour(&files::printable(text));
 }
 
-/// Writes to standard error a text that is free of such things but for its own colours. That nobody reads it is no
-/// reason to panic.
+/// Writes to standard error a text whose only control characters are its own colours. A failure to write is no reason
+/// to panic.
 pub(super) fn complain_in_colour(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }

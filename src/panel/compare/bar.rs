@@ -1,4 +1,4 @@
-//! The bar below the views of a comparison: the layout, its choices, and the numbers.
+//! The bar below the views of a comparison: the layout, its options, and the statistics.
 
 use bevy_egui::egui::{
     self, Align, Button, Layout as Direction, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, WidgetInfo,
@@ -18,12 +18,12 @@ use crate::{
     },
 };
 
-/// Height of a row of the bar, points.
+/// Height of a row of the bar, in points.
 pub(super) const ROW: f32 = 34.0;
-/// In a narrower bar, the numbers have a row of their own.
+/// Width below which the statistics have a row of their own, in points.
 pub(super) const NARROW: f32 = 560.0;
 
-/// The layout, its choices, and the numbers.
+/// Shows the layout, its options, and the statistics.
 pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     ui.painter().rect_filled(rect, 0.0, palette.panel);
@@ -32,7 +32,7 @@ pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<
     let row = |i: f32| {
         Rect::from_min_size(rect.min + vec2(0.0, i * ROW), vec2(rect.width(), ROW)).shrink2(vec2(6.0, 2.0))
     };
-    // In the second row of a difference there is room for its largest.
+    // The largest difference has room in the second row.
     let first = |name: &str| comparison.layout != Layout::Difference || name != LARGEST;
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
     ui.scope_builder(left(row(0.0)), |ui| {
@@ -111,17 +111,17 @@ pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<
     }
 }
 
-/// The choice of what is compared.
+/// Selects the values to compare.
 fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
     choose(ui, "channel", Channel::ALL, &mut now.channel, Channel::name, Channel::summary);
     choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
 }
 
-/// The amplification: a number, or the one that fits the largest difference.
+/// The amplification: a number, or automatic to fit the largest difference.
 fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     let help = "Differences are multiplied by this before they become colours, 1 to 100.";
     ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
-    // Where views are equal, no difference is largest.
+    // Equal views have no largest difference.
     let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
     let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
     let mut factor = used.unwrap_or(*AMPLIFICATIONS.start());
@@ -141,7 +141,7 @@ fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     }
 }
 
-/// A list of choices.
+/// A drop-down list of options.
 fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
     label: &str,
@@ -160,13 +160,13 @@ fn choose<T: Copy + PartialEq>(
     shown.response.on_hover_text(summary(*value));
 }
 
-/// Between two numbers, points.
+/// Space between two statistics, in points.
 const SPACE: f32 = 14.0;
 
-/// Those numbers of the comparison that are wanted; those that have no room are left out.
+/// Shows the requested statistics of the comparison, leaving out those that do not fit.
 fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
     let palette = Palette::here(ui);
-    // Once, where the usual numbers would be.
+    // Once, in place of the main statistics.
     if let Some(reason) = session.no_difference() {
         if wanted("RMSE") {
             let later =

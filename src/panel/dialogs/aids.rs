@@ -1,14 +1,14 @@
-//! Aids that the dialogs lack: words for their icons, and a button that opens a folder.
+//! Features that the file dialogs lack: tooltips for their icons, and a button that opens a folder.
 
 use bevy_egui::egui::{
     Area, Button, Context, Id, LayerId, Order, Rect, Shape, Tooltip, epaint::ClippedShape, vec2,
 };
 use egui_file_dialog::FileDialogConfig;
 
-/// The room of an icon around its sign, points.
+/// Padding around an icon, in points.
 const ICON: f32 = 6.0;
 
-/// The sign of each icon at the top, and what it does.
+/// The glyph of each icon at the top, and its tooltip.
 fn icons(config: &FileDialogConfig) -> [(&str, &'static str); 7] {
     [
         (&config.parent_directory_icon, "The folder that this one is in"),
@@ -22,7 +22,7 @@ fn icons(config: &FileDialogConfig) -> [(&str, &'static str); 7] {
     .map(|(icon, words)| (icon.as_str(), words))
 }
 
-/// Says what the icon under the pointer does.
+/// Shows the tooltip of the icon under the pointer.
 pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &FileDialogConfig) {
     let pointer = ctx.pointer_hover_pos().filter(|at| top.contains(*at));
     let Some(pointer) = pointer.filter(|at| ctx.layer_id_at(*at) == Some(layer)) else { return };
@@ -39,7 +39,7 @@ pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &File
             shape => named(shape),
         })
     });
-    // One frame measures the words, the next shows them, and a window at rest draws none by itself.
+    // One frame measures the tooltip and the next shows it; an idle window would not draw the second.
     let id = Id::new("words of an icon");
     let now = found.map(|(_, words)| words);
     if ctx.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default::<Option<&str>>(id), now)) != now {
@@ -51,9 +51,9 @@ pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &File
     }
 }
 
-/// A button over that of the dialog, which opens files alone. True if it was clicked.
+/// Covers the dialog's own button, which opens only files. Returns true if clicked.
 pub(super) fn open_folder(ctx: &Context, layer: LayerId, bottom: Rect, label: &str) -> bool {
-    // The only thing there that is disabled.
+    // The only disabled widget there.
     let place = ctx.viewport(|v| {
         let widgets = v.this_pass.widgets.get_layer(layer);
         widgets.filter(|w| !w.enabled && bottom.contains_rect(w.rect)).map(|w| w.rect).last()

@@ -1,4 +1,4 @@
-//! Two views of one point beside each other: the lines of the equation of each, and a mark where they differ.
+//! Two views of one point side by side: the lines of each equation, with a mark where they differ.
 
 use bevy_egui::egui::{self, Color32, Rect, Stroke, Ui, pos2, vec2};
 
@@ -18,10 +18,10 @@ use crate::{
     scene::variant::LETTERS,
 };
 
-/// Between the two sides, points.
+/// Gap between the two sides, in points.
 const GAP: f32 = 20.0;
 
-/// The explanation in sight, and that of the other view.
+/// Shows the current explanation next to that of the other view.
 pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, registry: &Registry) {
     let choice = probe::choice(ui.ctx());
     egui::ScrollArea::vertical().id_salt("beside").auto_shrink(false).show(ui, |ui| {
@@ -36,7 +36,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         if a.object.index != b.object.index {
             rows::note(ui, "The views show different objects here.");
         }
-        // The same light in both, which may be the brightest in one alone.
+        // The same light on both sides: the brightest light may differ between views.
         let first = shown(a, choice);
         let index = first.map(|lit| lit.light.index);
         let lit = [
@@ -81,18 +81,18 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
     });
 }
 
-/// The light whose block is unfolded, at the point that counts most.
+/// The light whose block is unfolded, at the point with the largest weight.
 fn shown(seen: &Seen, choice: Choice) -> Option<&Lit> {
     let spot = spot(seen, choice)?;
     probe::shown_light(spot, choice).or_else(|| spot.brightest().first().copied())
 }
 
-/// The point that is shown.
+/// The current point.
 fn spot(seen: &Seen, choice: Choice) -> Option<&Spot> {
     probe::spots(seen).get(probe::shown_spot(seen, choice)).copied()
 }
 
-/// The name of a view, its models and its code.
+/// Shows the name of a view, its models and its display code.
 fn head(ui: &mut Ui, explained: &Explained, session: &Session) {
     let letter = LETTERS.get(explained.view).copied().unwrap_or("?");
     let [r, g, b] = explained.explanation.code();
@@ -111,7 +111,7 @@ fn head(ui: &mut Ui, explained: &Explained, session: &Session) {
     });
 }
 
-/// Two halves beside each other, with a mark between them where they differ.
+/// Two columns, with a mark between them if they differ.
 fn halves(ui: &mut Ui, differ: bool, mut add: impl FnMut(&mut Ui, usize)) {
     let room = ui.available_rect_before_wrap();
     let width = 0.5 * (room.width() - GAP);

@@ -1,4 +1,4 @@
-//! The way from light to the code on the display.
+//! The conversion of light to the display code.
 
 use bevy_egui::egui::Ui;
 use glam::Vec3;
@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::rows;
 use crate::{explain::Explanation, optics::colour::Encoding, panel::theme, reference::DisplaySteps};
 
-/// The steps, one below the other, each with its result.
+/// Shows the steps one below the other, each with its result.
 pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     rows::close(ui);
     let (steps, display) = (&explanation.steps, &explanation.display);
@@ -35,7 +35,7 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
         rows::note(ui, "What is beyond 0–1 is clipped.");
     }
-    // Not light any more: the numbers of the display.
+    // From here on, display values rather than light.
     let encoded = explanation.error_of(|steps| steps.encoded);
     rows::named_within(ui, "sRGB encoding:", steps.encoded, encoded);
     let [r, g, b] = steps.codes;

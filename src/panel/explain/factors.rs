@@ -1,5 +1,5 @@
-//! The quantities of an equation, one row each: its value, and unfolded its own equation, a plot of it with the present
-//! point, and its source.
+//! The quantities of an equation, one row each: the value and, when unfolded, the quantity's equation, a plot with the
+//! current point, and the source.
 
 use std::sync::Arc;
 
@@ -17,18 +17,18 @@ use crate::{
     },
 };
 
-/// Size of the plot of a factor, points.
+/// Size of the plot of a factor, in points.
 const PLOT: [f32; 2] = [232.0, 72.0];
-/// Size of the letters of a quantity.
+/// Font size of a quantity's symbol.
 const LETTER: f32 = 14.5;
-/// Red, green and blue of a curve that has colours, light enough for a dark ground.
+/// Red, green and blue for curves with colour channels, light enough for a dark background.
 const CHANNELS: [Color32; 3] = [
     Color32::from_rgb(0xe8, 0x6a, 0x5c),
     Color32::from_rgb(0x3f, 0xb8, 0x6b),
     Color32::from_rgb(0x5a, 0x9d, 0xf0),
 ];
 
-/// The row of a quantity, and what it unfolds to. Returns the symbol of a number that was clicked.
+/// The row of a quantity and its unfolded details. Returns the symbol of a clicked number.
 pub(super) fn factor(
     ui: &mut Ui,
     model: &Model,
@@ -72,7 +72,7 @@ pub(super) fn factor(
     clicked
 }
 
-/// The symbol, the value and the name of a quantity, with a triangle that says if it is unfolded.
+/// The symbol, value and name of a quantity, with a triangle that shows if it is unfolded.
 fn head(ui: &mut Ui, line: &Line, open: bool) -> Response {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
@@ -102,7 +102,7 @@ fn head(ui: &mut Ui, line: &Line, open: bool) -> Response {
     response.on_hover_text(format!("{}{whole}", line.defines()))
 }
 
-/// The curve of a quantity, calculated once for each explanation.
+/// The curve of a quantity, calculated once per explanation.
 fn curve(ui: &Ui, model: &Model, geometry: &Geometry, name: &str) -> Option<Arc<FactorCurve>> {
     let id = Id::new(("curve of a factor", name));
     let key = (probe::calculations(ui.ctx()), geometry.l.to_array().map(f32::to_bits));
@@ -117,7 +117,7 @@ fn curve(ui: &Ui, model: &Model, geometry: &Geometry, name: &str) -> Option<Arc<
     curve
 }
 
-/// A small plot with the present point.
+/// A small plot with the current point.
 fn plot(ui: &mut Ui, curve: &FactorCurve, line: &Line) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);

@@ -1,4 +1,4 @@
-//! The point that a pin holds: it stays on its object.
+//! The point held by a pin, which stays on its object.
 
 use crate::{
     document::PartId,
@@ -7,32 +7,32 @@ use crate::{
     scene::observer::rotation,
 };
 
-/// So many points are remembered: those of the user's own document and of a lesson's.
+/// Maximum number of remembered points: those of the user's document and of a lesson's.
 const MOST: usize = 4;
-/// A camera that is this near to the observer, metres, and has the direction within this cosine, stands there.
+/// Tolerances for a camera at the observer: distance in metres, and cosine of the angle between the directions.
 const THERE: (f32, f32) = (0.1, 0.999);
 
-/// The point of an object that a pin met.
+/// The point of an object at which a pin was placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Held {
-    /// The number of the pin.
+    /// Number of the pin.
     pin: u64,
     pub(super) object: PartId,
     pub(super) anchor: Anchor,
 }
 
-/// What pins hold, the latest at the end.
+/// Points held by pins, the latest at the end.
 #[derive(Debug, Default)]
 pub(super) struct Holding(Vec<Held>);
 
 impl Holding {
-    /// The point that the present pin holds.
+    /// The point held by the current pin.
     pub(super) fn now(&self, session: &Session) -> Option<Held> {
         let pin = session.view.pinned.map(|_| session.view.pin_number)?;
         self.0.iter().find(|held| held.pin == pin).copied()
     }
 
-    /// Holds the point that the present pin has met.
+    /// Stores the point at which the current pin was placed.
     pub(super) fn hold(&mut self, session: &Session, seen: &Seen) -> Option<()> {
         if session.view.pinned.is_none() || !has_arrived(session) {
             return None;
@@ -51,8 +51,7 @@ impl Holding {
     }
 }
 
-/// False while the camera is on its way to the observer of a scene that was just opened: what it sees there is not what
-/// a pin means.
+/// False while the camera moves to the observer of a newly opened scene: on the way, the pin points at something else.
 fn has_arrived(session: &Session) -> bool {
     let (facts, observer) = (&session.facts, &session.document.observer);
     let along = (facts.camera * glam::Vec3::Z).dot(rotation(observer.direction) * glam::Vec3::Z);

@@ -1,8 +1,8 @@
-//! The hemisphere above the explained point, where light with extent shines on it: three discs, in which the pointer shows what
-//! comes from a direction.
+//! The hemisphere above the explained point, shown for light with extent as three discs. The pointer shows the light
+//! from a direction.
 //!
-//! It is calculated in a thread, since it asks the model for thousands of directions; what was shown before stays meanwhile, if it
-//! is of the same point.
+//! It is calculated in a thread because it evaluates the model for thousands of directions. Meanwhile, the previous
+//! discs stay if they belong to the same point.
 
 use std::{
     sync::{
@@ -31,18 +31,18 @@ use crate::{
     registry::Registry,
 };
 
-/// Pixels per disc.
+/// Side of a disc, in pixels.
 const SIDE: usize = 96;
-/// The largest disc, and between discs, points.
+/// Largest diameter of a disc, and gap between discs, in points.
 const LARGEST: f32 = 150.0;
 const GAP: f32 = 10.0;
-/// Points that are this near are the same, metres.
+/// Distance below which two points count as the same, in metres.
 const SAME: f32 = 1e-4;
-/// The colours of V and R, as those of the vectors in the picture.
+/// Colours of V and R, as those of the vectors in the picture.
 const MARKS: [(&str, Color32); 2] =
     [("V", Color32::from_rgb(86, 180, 233)), ("R", Color32::from_rgb(230, 110, 40))];
 
-/// The explanation that discs are of, and the point in it.
+/// The explanation that the discs belong to, and the index of the point in it.
 #[derive(Clone)]
 struct Question(Arc<Explained>, usize);
 
@@ -52,7 +52,7 @@ impl PartialEq for Question {
     }
 }
 
-/// Discs as they are shown.
+/// Calculated discs with their textures.
 struct Discs {
     position: Vec3,
     hemisphere: Hemisphere,
@@ -66,7 +66,7 @@ struct Work {
 }
 
 impl Work {
-    /// The discs; while they are calculated those before, if they are of the same point.
+    /// The discs or, while they are calculated, the previous discs if they belong to the same point.
     fn answer(
         &mut self,
         ctx: &Context,
@@ -95,7 +95,7 @@ impl Work {
             let (sender, receiver) = mpsc::channel();
             self.running = Some((question, spot.position, receiver));
             thread::spawn(move || {
-                // Nobody listens once the window is closed.
+                // The receiver is gone once the window is closed.
                 drop(sender.send(Hemisphere::new(&shining, &*surface, &spot, terms, SIDE)));
                 ctx.request_repaint();
             });
@@ -113,7 +113,7 @@ fn textures(ctx: &Context, hemisphere: &Hemisphere) -> Vec<TextureHandle> {
     DISCS.iter().map(|disc| ctx.load_texture(disc.name, image(disc.of), TextureOptions::LINEAR)).collect()
 }
 
-/// The discs, where light with extent shines on the point that is shown.
+/// Shows the discs if light with extent shines on the current point.
 pub(super) fn hemisphere(
     ui: &mut Ui,
     explained: &Arc<Explained>,
@@ -157,7 +157,7 @@ pub(super) fn hemisphere(
             });
         }
     });
-    // From the pixels of the disc, which give two digits; the integral of the samples stands below its light.
+    // From the pixels of the disc, which give two digits; the integral of the samples is shown below its light.
     let integral = crate::explain::rounded_number_or_triple(discs.hemisphere.integral, 2);
     rows::note(
         ui,
@@ -165,7 +165,7 @@ pub(super) fn hemisphere(
     );
 }
 
-/// One disc with its marks; the pointer shows the direction and what comes from there.
+/// One disc with its marks. The pointer shows a direction and the light from there.
 fn one(ui: &mut Ui, discs: &Discs, number: usize, width: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, width), Sense::hover());
     let painter = ui.painter();
@@ -193,7 +193,7 @@ fn one(ui: &mut Ui, discs: &Discs, number: usize, width: f32) {
     }
 }
 
-/// A direction and what comes from there, in words.
+/// A direction and the light from there, in words.
 fn told(l: Vec3, Above { arriving, lobe, product }: &Above) -> String {
     let around = l.y.atan2(l.x).to_degrees();
     format!(

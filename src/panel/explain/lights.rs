@@ -1,4 +1,4 @@
-//! The equation at a point, light by light: as it is written, with numbers, and its result. One light is unfolded.
+//! The equation at a point, light by light: symbolic, with numbers, and the result. One light is unfolded.
 
 use bevy_egui::egui::{Context, Id, Label, Ui};
 use glam::Vec3;
@@ -20,10 +20,10 @@ use crate::{
     text::plural,
 };
 
-/// More lights are not listed.
+/// Maximum number of lights in the list.
 const MOST: usize = 32;
 
-/// The point that is shown, and its lights, the brightest first.
+/// Shows the current point and its lights, the brightest first.
 pub(super) fn lights(
     ui: &mut Ui,
     explanation: &Explanation,
@@ -65,7 +65,7 @@ pub(super) fn lights(
     for lit in lights.iter().take(MOST) {
         let open = unfolded == Some(lit.light.index);
         let name = name(lit.light.index);
-        // A light without a name of its own is called by its type.
+        // An unnamed light is labelled with its type.
         let kind = if lit.light.name.is_some() { lit.light.type_name } else { "" };
         let id = Id::new(("light of an explanation", lit.light.index));
         let shown = (lit.contribution, lit.error());
@@ -91,13 +91,13 @@ pub(super) fn lights(
     }
 }
 
-/// The longest of the names of points, and the shortest.
+/// Levels of abbreviation for the names of points: the longest and the shortest.
 const LONGEST: usize = 0;
 const SHORTEST: usize = 2;
 
-/// The names of points in the room that there is, the longest that fit.
+/// Names of points, as long as the width allows.
 fn names(ui: &Ui, spots: &[&Spot]) -> Vec<String> {
-    // The frame around them, and the scroll bar.
+    // Leaves room for the frame and the scroll bar.
     let room = ui.available_width() - 8.0;
     let all = |short: usize| spots.iter().map(|spot| name_of(spot, short)).collect::<Vec<_>>();
     let fits = |names: &Vec<String>| names.iter().map(|name| segment_width(ui, name)).sum::<f32>() <= room;
@@ -124,7 +124,7 @@ fn at(seen: &Seen, spot: &Spot) -> String {
     }
 }
 
-/// Position, normal and observer.
+/// Shows position, normal and observer.
 fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     if spot.position != seen.position {
         rows::named_triple(ui, "position", spot.position, " m");
@@ -139,8 +139,8 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     }
 }
 
-/// All about one light: the answer of the model first, since it is what was asked for, then the light that arrives, and
-/// the directions on which both depend.
+/// Shows one light: the result of the model first, since the user asked for it, then the arriving light, and the
+/// directions that both depend on.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if let Some(remark) = lit.remark() {
         rows::note(ui, remark);
@@ -168,7 +168,8 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
 }
 
-/// The direction of a light with extent that gives most; at the level of factors with the equation for light from there.
+/// The direction of a light with extent that contributes most; at the level of factors, with the equation for that
+/// direction.
 fn most(ui: &mut Ui, seen: &Seen, brightest: &Brightest) {
     ui.add_space(4.0);
     rows::note(ui, "of the directions that were sampled, the one that gives most");
@@ -181,7 +182,7 @@ fn most(ui: &mut Ui, seen: &Seen, brightest: &Brightest) {
     }
 }
 
-/// The terms of the equation as they are written, with numbers, and the light to the observer.
+/// Shows the terms of the equation, symbolic and with numbers, and the light to the observer.
 fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     let lines = probe::lines(ui.ctx(), lit, &seen.model);
     let name = |symbol: &str| {
@@ -190,12 +191,12 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     };
     let mut clicked = None;
     let factors = probe::choice(ui.ctx()).level == Level::Factors;
-    // The sum of the terms stands in the light to the observer.
+    // The sum of the terms appears in the light to the observer.
     let is_sum = |line: &Line| {
         line.term == Term::Total && line.is_term() && lines.iter().any(|l| l.term != Term::Total)
     };
     for line in lines.iter().filter(|line| !is_sum(line)) {
-        // The second level has the equation, whose symbols have their numbers; the third has all.
+        // The second level shows the equation, whose symbols show their values; the third shows everything.
         let factor = !line.is_term() && (line.quantity.is_some() || factors);
         if factor {
             if factors {
@@ -229,7 +230,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
 }
 
-/// The meaning of a symbol: the parameter of the model, or what it means everywhere.
+/// The meaning of a symbol: that of the model's parameter, otherwise its general meaning.
 pub(super) fn meaning(model: &Model, symbol: &str) -> Option<String> {
     let parameter = model.settings.iter().find(|s| maths::same_symbol(s.parameter.symbol, symbol));
     parameter
@@ -237,7 +238,7 @@ pub(super) fn meaning(model: &Model, symbol: &str) -> Option<String> {
         .or_else(|| maths::meaning(symbol).map(str::to_owned))
 }
 
-/// A line of the equation as it is written, with numbers, and its value. Returns the symbol of a number that was clicked.
+/// A line of the equation: symbolic, with numbers, and the value. Returns the symbol of a clicked number.
 pub(super) fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> Option<String> {
     let bare = !line.text.contains('=');
     let head = if bare { format!("{} =", line.defines()) } else { line.text.clone() };
@@ -259,7 +260,7 @@ pub(super) fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<St
     clicked
 }
 
-/// Shows where a number comes from: the row of the quantity, or the knob, the vector or the light of the symbol.
+/// Points to the origin of a number: the row of the quantity, or the control, vector or light of the symbol.
 fn origin(ui: &Ui, symbol: &str, lines: &[Line]) {
     let plain = |text: &str| text.replace([' ', '{', '}'], "");
     match lines.iter().find(|line| !line.is_term() && plain(line.defines()) == plain(symbol)) {
@@ -268,10 +269,10 @@ fn origin(ui: &Ui, symbol: &str, lines: &[Line]) {
     }
 }
 
-/// The directions to and from the light, as far as the equation has them, and their angles.
+/// Shows the directions to and from the light that the equation uses, and their angles.
 fn directions(ui: &mut Ui, seen: &Seen, geometry: Option<&Geometry>) {
     if let Some(geometry) = geometry {
-        // Half vector and mirror direction where the equation has them.
+        // Half vector and mirror direction, if the equation uses them.
         let all = [("L", geometry.l), ("H", geometry.h), ("R", geometry.r)];
         let belongs = |letter: &str| pairs::belongs(&seen.model, letter);
         let all: Vec<_> = all.into_iter().filter(|(letter, _)| belongs(letter)).collect();
@@ -293,7 +294,7 @@ fn directions(ui: &mut Ui, seen: &Seen, geometry: Option<&Geometry>) {
     }
 }
 
-/// Distance and position of a light that has them.
+/// Distance and position of a light, if it has them.
 fn place_of(ui: &mut Ui, lit: &Lit) {
     if let (Some(position), Some(distance)) = (lit.position, lit.distance) {
         let from = format!("{} m, at {} m", rows::short(distance), rows::short_triple(position));
@@ -301,7 +302,7 @@ fn place_of(ui: &mut Ui, lit: &Lit) {
     }
 }
 
-/// The light that arrives at the point.
+/// Shows the light that arrives at the point.
 fn arriving(ui: &mut Ui, lit: &Lit) {
     place_of(ui, lit);
     let equation = lit.arrival();

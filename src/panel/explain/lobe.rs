@@ -1,8 +1,8 @@
-//! The lobe of the reflection model at the explained point: for the light that is unfolded, or for each that reaches the
-//! point, the BRDF towards all viewers as a surface over it.
+//! The lobe of the reflection model at the explained point: the BRDF towards all viewers as a surface over the point,
+//! for the unfolded light or for every light that reaches the point.
 //!
-//! It is calculated in a thread when the explanation, the point or the lights have changed. Most lobes are there in a
-//! millisecond and appear in the same frame; an interpreted model takes longer, and the frames do not wait.
+//! It is calculated in a thread when the explanation, the point or the lights have changed. Most lobes are ready within
+//! a millisecond and appear in the same frame; an interpreted model takes longer, and frames do not wait for it.
 
 use std::{
     collections::BTreeMap,
@@ -40,28 +40,28 @@ use crate::{
     progress::Progress,
 };
 
-/// Lobes whose points are this near are of the same point, metres.
+/// Distance below which lobes belong to the same point, in metres.
 const SAME: f32 = 1e-4;
-/// A frame waits so long for a lobe, and no longer.
+/// Maximum time that a frame waits for a lobe.
 const PATIENCE: Duration = Duration::from_millis(2);
-/// More lobes at once have no colours of their own.
+/// Maximum number of lobes: as many as there are distinct colours.
 const MOST: usize = COLOURS.len();
-/// A narrower picture has no legend, and a lower one none with a scale, points.
+/// Minimum width of a picture for a legend, and minimum height for one with a scale, in points.
 const ROOM: f32 = 240.0;
-/// Width of the legend at most, points.
+/// Maximum width of the legend, in points.
 const LEGEND: f32 = 320.0;
 
-/// The lobes that are drawn.
+/// Lobes as drawn.
 #[derive(Debug)]
 pub struct Lobes {
     question: Question,
-    /// The point.
+    /// The explained point.
     pub position: Vec3,
-    /// Lobe by lobe, the brightest light first; or the reason why there is none.
+    /// The lobes, the brightest light first; or why there are none.
     pub lobes: Result<Vec<LightLobe>, String>,
 }
 
-/// Everything that lobes depend on. An explanation is made anew when anything of it changes.
+/// Inputs of the lobes. A change of any other input produces a new explanation.
 #[derive(Clone, Debug)]
 struct Question {
     explained: Arc<Explained>,
@@ -76,7 +76,7 @@ impl PartialEq for Question {
     }
 }
 
-/// The lobes of a view.
+/// Lobes of one view, and their calculation.
 #[derive(Default)]
 struct Work {
     shown: Option<Arc<Lobes>>,
@@ -87,11 +87,11 @@ struct Work {
 #[derive(Default)]
 struct Works {
     views: BTreeMap<usize, Work>,
-    /// The end of the scale, which a pinned pixel keeps, and which all views have.
+    /// End of the scale, shared by all views and kept while a pixel is pinned.
     kept: Option<(Pin, LobeScale, f64)>,
 }
 
-/// The name of a light, as the list of the scene has it.
+/// Looks up the name of a light as in the scene list.
 type Name<'a> = &'a dyn Fn(usize) -> String;
 
 type Shared = Arc<Mutex<Works>>;
@@ -104,19 +104,19 @@ fn shared(ctx: &Context) -> Shared {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("lobes of the explained point")).clone())
 }
 
-/// The number of times that lobes were calculated.
+/// Number of lobe calculations so far.
 #[must_use]
 pub fn lobe_calculations(ctx: &Context) -> u64 {
     lock(&shared(ctx)).views.values().map(|work| work.calculations).sum()
 }
 
-/// True while lobes are calculated; those before are shown meanwhile.
+/// True while lobes are being calculated; meanwhile the previous ones stay visible.
 #[must_use]
 pub fn lobes_are_due(ctx: &Context) -> bool {
     lock(&shared(ctx)).views.values().any(|work| work.running.is_some())
 }
 
-/// The lobes that were drawn last in the view that is explained.
+/// The most recently drawn lobes of the explained view.
 #[must_use]
 pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {
     let view = probe::explained(ctx).map(|explained| explained.view);
@@ -126,13 +126,13 @@ pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {
     work?.shown.clone()
 }
 
-/// Those of a view.
+/// The most recently drawn lobes of the given view.
 #[must_use]
 pub fn lobes_shown_in(ctx: &Context, view: usize) -> Option<Arc<Lobes>> {
     lock(&shared(ctx)).views.get(&view)?.shown.clone()
 }
 
-/// The lights whose lobes are shown, the brightest first, and how many there would be.
+/// The lights whose lobes are shown, the brightest first, and the number of lobes without the limit [`MOST`].
 fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), String> {
     let reason = |lit: &Lit| match () {
         () if lit.leading().is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
@@ -157,7 +157,7 @@ fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), 
 }
 
 impl Works {
-    /// The scale of lobes; while the same pixel is pinned it never gets smaller.
+    /// Scale of the lobes, which never shrinks while the same pixel is pinned.
     fn scale(&mut self, lobes: &[LightLobe], wanted: LobeScale, pinned: Option<Pin>) -> Axis {
         let kept = self.kept.filter(|(pin, of, _)| Some(*pin) == pinned && *of == wanted);
         let each: Vec<_> = lobes.iter().map(|light| &light.lobe).collect();
@@ -168,7 +168,7 @@ impl Works {
 }
 
 impl Work {
-    /// The lobes; while they are calculated those before, if they are of the same point.
+    /// The lobes or, while they are calculated, the previous lobes if they belong to the same point.
     fn answer(
         &mut self,
         ctx: &Context,
@@ -178,7 +178,7 @@ impl Work {
         name: Name<'_>,
     ) -> Option<Arc<Lobes>> {
         let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
-        // What still runs may be older.
+        // A running calculation may answer an older question.
         for _ in 0..2 {
             if fits(self).is_some() {
                 break;
@@ -205,13 +205,13 @@ impl Work {
     }
 }
 
-/// The point of a question.
+/// Position of the point that a question refers to.
 fn place(question: &Question) -> Option<Vec3> {
     let seen = question.explained.explanation.seen.as_ref()?;
     Some(probe::spots(seen).get(question.spot)?.position)
 }
 
-/// Begins to calculate lobes.
+/// Starts the calculation of lobes.
 fn start(
     ctx: &Context,
     question: &Question,
@@ -232,15 +232,15 @@ fn start(
             let lobe = Lobe::new(&*surface, l, &frame, terms, &Progress::NONE).ok()?;
             Some(LightLobe { light, name, l, extends, rims: surface::rims(&lobe), lobe })
         };
-        // Nobody listens once the window is closed.
+        // The receiver is gone once the window is closed.
         drop(sender.send(lights.into_iter().filter_map(lobe).collect()));
         ctx.request_repaint();
     });
     receiver
 }
 
-/// Paints the lobes of an explained point into the picture, whose room they take, and their legend, whose place it
-/// returns.
+/// Paints the lobes of an explained point into the picture, marking their area as occupied, and their legend. Returns
+/// the legend's rectangle.
 pub(super) fn paint(
     ui: &Ui,
     rect: Rect,
@@ -277,7 +277,7 @@ pub(super) fn paint(
     };
     let shared = shared(ui.ctx());
     let mut works = lock(&shared);
-    // Nobody asks for the lobes of views that do not show the point any more.
+    // Drops the lobes of views that no longer show the point.
     works.views.retain(|view, _| probe::explained_in(ui.ctx(), *view).is_some());
     let work = works.views.entry(explained.view).or_default();
     let shown = work.answer(ui.ctx(), &question, seen, spot, name);
@@ -285,7 +285,7 @@ pub(super) fn paint(
     let before = works.kept;
     let scale = scale.map(|lobes| works.scale(lobes, wanted, session.view.pinned));
     if works.views.len() > 1 && works.kept != before {
-        // The other views have the same scale from the next frame on.
+        // The other views adopt the new scale in the next frame.
         ui.ctx().request_repaint();
     }
     drop(works);
@@ -302,10 +302,10 @@ pub(super) fn paint(
     }
 }
 
-/// Said where a light fills many directions.
+/// Addition to the legend of a light with extent.
 const OF_EXTENT: &str = "Light with extent: from the direction\nthat gives most";
 
-/// What is written beside lobes.
+/// Legend of the lobes.
 fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection) -> Legend {
     let number = |v: f64| rows::short(v as f32);
     let mut lines = vec![match (terms, scale.log) {
@@ -352,7 +352,7 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
     }
 }
 
-/// Paints a legend at the right, where there is room for it.
+/// Paints a legend at the right if there is room.
 fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
     // In a low picture the scale would cover the middle; a sentence does not.
     if rect.width() < ROOM || legend.scale.is_some() && rect.height() < ROOM {
@@ -363,7 +363,7 @@ fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
     Some(channels::plate(ui, side, Align2::RIGHT_TOP, rect.top() + 8.0, &legend))
 }
 
-/// The choices, for menus.
+/// Adds the display options to a menu.
 pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let now = session.view.lobe;
     let mut ask = |lobe: LobeChoice| actions.push(Action::View(ViewChange::Lobe(lobe)));
@@ -385,7 +385,7 @@ pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Ve
     });
 }
 
-/// The button of the choices.
+/// The button of the display options.
 pub(super) fn button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let now = session.view.lobe;
     let word = match now.scale {

@@ -1,8 +1,8 @@
-//! Why this pixel has this colour: the explanation of the pixel under the pointer, or of one that is pinned, as a worked
-//! example; and the vectors of its point in the picture.
+//! Why this pixel has this colour: a worked example for the pixel under the pointer or the pinned one, with the vectors
+//! of the point in the picture.
 //!
-//! The numbers are those of [`explain`](crate::explain), which watches the CPU renderer. They are calculated when the
-//! pixel, the scene, the camera or the view has changed, and only while the panel is open.
+//! The numbers are those of [`explain`](crate::explain), which traces the CPU renderer. They are recalculated when the
+//! pixel, the scene, the camera or the view changes, and only while the panel is open.
 
 use std::sync::Arc;
 
@@ -50,14 +50,14 @@ pub use side::{has_sides, placed};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;
 
-/// The least width of a column, points; in less there are fewer.
+/// Minimum width of a column, in points; a narrower panel has fewer columns.
 const COLUMN: f32 = 272.0;
-/// Size of the letters of a sentence that stands alone, points.
+/// Font size of a sentence that stands alone, in points.
 const SENTENCE: f32 = 20.0;
-/// Between columns, points.
+/// Gap between columns, in points.
 const GAP: f32 = 24.0;
 
-/// See the module.
+/// The *Explain* panel; see the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Explain;
 
@@ -92,7 +92,7 @@ impl Panel for Explain {
         };
         header(ui, session, &explained, actions);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
-        // What nobody sees is no pixel.
+        // A hidden point has no pixel.
         let subject = match explained.sight {
             None | Some(Sight::Clear) => "This pixel is",
             Some(_) => "The pinned point would be",
@@ -101,7 +101,7 @@ impl Panel for Explain {
         let level = probe::choice(ui.ctx()).level;
         let mut text = theme::strong(ui, text);
         if level == Level::Sentence {
-            // For those at the back of the room.
+            // Readable from the back of the room.
             text = text.size(SENTENCE * theme::scale_here(ui));
         }
         ui.add(egui::Label::new(text).wrap().selectable(true));
@@ -123,7 +123,7 @@ impl Panel for Explain {
     }
 }
 
-/// The pixel, its code, and the buttons.
+/// The pixel, its display code, and the buttons.
 fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut Vec<Action>) {
     let Explanation { pixel, size, .. } = explained.explanation;
     let (pinned, fov) = (session.view.pinned.is_some(), session.document.view_angle());
@@ -173,7 +173,7 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
     });
 }
 
-/// Explains another view beside this one.
+/// The button that explains another view beside this one.
 fn beside_button(ui: &mut Ui, view: usize) {
     let choice = probe::choice(ui.ctx());
     let other = if view == 0 { LETTERS[1] } else { LETTERS[0] };
@@ -184,7 +184,7 @@ fn beside_button(ui: &mut Ui, view: usize) {
     }
 }
 
-/// How far the explanation goes.
+/// Chooses the level of detail.
 fn levels(ui: &mut Ui) {
     let choice = probe::choice(ui.ctx());
     // From right to left, as the row is laid out.
@@ -201,7 +201,7 @@ fn levels(ui: &mut Ui) {
     }
 }
 
-/// What is to be said before the numbers.
+/// Remarks shown before the numbers.
 fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let mut all = Vec::new();
@@ -285,11 +285,11 @@ fn remark(ui: &mut Ui, severity: Severity, text: &str) {
     });
 }
 
-/// A part of the explanation: its share of the width in columns, and how it is shown.
+/// A part of the explanation: relative width, and the function that shows it.
 type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 
-/// The explanation in columns, as light goes: from the surface and the lights to the display. In less room the lights
-/// stand beside the two others, and in little room one is below the other.
+/// The explanation in columns that follow the light: from the surface and the lights to the display. With less width,
+/// the lights stand beside the two other parts; with little width, the parts are stacked.
 fn columns(
     ui: &mut Ui,
     explained: &Arc<Explained>,
@@ -350,7 +350,7 @@ fn columns(
                 if k > 0 {
                     ui.add_space(10.0);
                 }
-                // Parts set distances between lines of their own.
+                // Parts set their own line spacing.
                 ui.scope(part);
             }
             ui.add_space(8.0);
@@ -359,7 +359,7 @@ fn columns(
     ui.advance_cursor_after_rect(room);
 }
 
-/// The column of each of some parts: of three parts in two columns, the middle one has a column of its own.
+/// Column of each part. With three parts in two columns, the middle part has the second column to itself.
 fn column_of(columns: usize, parts: usize) -> Vec<usize> {
     match (columns, parts) {
         (2, 3) => vec![0, 1, 0],
@@ -367,12 +367,12 @@ fn column_of(columns: usize, parts: usize) -> Vec<usize> {
     }
 }
 
-/// The columns for parts with these shares of a width: where each begins, and its width. As many as have room.
+/// Left edge and width of each column, for parts with the given relative widths: as many columns as fit.
 fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
     let of = |count: usize| {
         let mut wanted = vec![0.0; count];
         for (share, column) in shares.iter().zip(column_of(count, shares.len())) {
-            // Of what stands below each other, the wider one counts.
+            // Of stacked parts, the wider one counts.
             wanted[column] = f32::max(wanted[column], *share);
         }
         let whole: f32 = wanted.iter().sum();
@@ -389,7 +389,7 @@ fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
     (1..=shares.len()).rev().map(of).find(fits).unwrap_or_default()
 }
 
-/// The object, and where and how its light is calculated.
+/// Shows the object, the point on it, and how its light is calculated.
 fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, registry: &Registry) {
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;

@@ -1,4 +1,4 @@
-//! The vectors of a surface that a symbol stands for: `N` for one, `θ_i` for the two between which it is.
+//! The vectors of a surface that a symbol refers to: `N` to one, `θ_i` to the two that enclose the angle.
 
 use bevy_egui::egui::Context;
 
@@ -10,10 +10,10 @@ use crate::{
     },
 };
 
-/// The vectors that are drawn.
+/// Letters of the drawn vectors.
 const LETTERS: [&str; 5] = ["N", "L", "V", "H", "R"];
 
-/// Angles, and cosines of angles, each between two vectors.
+/// Angles, and cosines of angles, each with its two vectors.
 const ANGLES: [(&str, [&str; 2]); 10] = [
     ("θ_i", ["N", "L"]),
     ("μ_i", ["N", "L"]),
@@ -27,26 +27,26 @@ const ANGLES: [(&str, [&str; 2]); 10] = [
     ("θ_d", ["H", "L"]),
 ];
 
-/// The symbols of the angle between two vectors.
+/// Symbols of the angle between two vectors.
 pub(super) fn angles(a: &str, b: &str) -> impl Iterator<Item = &'static str> {
     let is = move |pair: [&str; 2]| pair == [a, b] || pair == [b, a];
     ANGLES.into_iter().filter(move |(_, pair)| is(*pair)).map(|(symbol, _)| symbol)
 }
 
-/// True if the equation of a model has a letter for something of its own, which then is no vector.
+/// True if the equation of a model uses a letter for a quantity of the model, and thus not for a vector.
 fn is_own(model: &Model, letter: &str) -> bool {
     definition(model.declaration.equation, letter).is_some()
         || model.settings.iter().any(|setting| same_symbol(setting.parameter.symbol, letter))
 }
 
-/// True if a vector belongs to the explanation of a model: normal, light and viewer always, the half vector and the
-/// mirror direction where its equation has them, or an angle to them. An equation that was not told may have any.
+/// True if a vector belongs to the explanation of a model: always for normal, light and viewer; for half vector and
+/// mirror direction if the equation uses them or an angle to them. An undeclared equation may use any vector.
 pub(super) fn belongs(model: &Model, letter: &str) -> bool {
     let equation = model.declaration.equation;
     if !matches!(letter, "H" | "R") || equation.is_empty() || is_own(model, letter) {
         return true;
     }
-    // The distribution of microfacets is one of half vectors.
+    // The microfacet distribution is a function of the half vector.
     let distribution = |symbol: &str| letter == "H" && (symbol == "D" || symbol.starts_with("D_"));
     let angle = |symbol: &str| {
         ANGLES.iter().any(|(angle, pair)| pair.contains(&letter) && same_symbol(symbol, angle))
@@ -55,12 +55,12 @@ pub(super) fn belongs(model: &Model, letter: &str) -> bool {
     has_symbol(equation, is)
 }
 
-/// The letters of vectors that are their symbols in the equation of a model.
+/// The letters that denote vectors in the equation of a model.
 pub(super) fn symbols<'l>(model: &Model, letters: &[&'l str]) -> Vec<&'l str> {
     letters.iter().copied().filter(|letter| !is_own(model, letter)).collect()
 }
 
-/// The vectors that the symbols which light stand for.
+/// The vectors of the highlighted symbols.
 pub(super) fn lit(ctx: &Context, model: &Model) -> Vec<&'static str> {
     let symbols = lit_in(ctx, Domain::Surface);
     let named = |symbol: &str| symbols.iter().any(|lit| same_symbol(lit, symbol)) && !is_own(model, symbol);
@@ -68,7 +68,7 @@ pub(super) fn lit(ctx: &Context, model: &Model) -> Vec<&'static str> {
     LETTERS.into_iter().filter(|letter| named(letter) || between(letter)).collect()
 }
 
-/// True if just these vectors light.
+/// True if exactly these vectors are highlighted.
 pub(super) fn are_lit(ctx: &Context, model: &Model, letters: &[&str]) -> bool {
     let lit = lit(ctx, model);
     lit.len() == letters.len() && letters.iter().all(|letter| lit.contains(letter))

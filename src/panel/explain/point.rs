@@ -1,4 +1,5 @@
-//! Where the equation was evaluated: the polygon, the vertices with their weights, or the point of the pixel.
+//! The point at which the equation was evaluated: the polygon, the vertices with their weights, or the point of the
+//! pixel.
 
 use bevy_egui::egui::{Grid, Ui};
 use glam::Vec3;
@@ -6,12 +7,13 @@ use glam::Vec3;
 use super::rows;
 use crate::{explain::Seen, panel::theme, shading::Stage};
 
-/// The point of the pixel, or the one that is pinned, and what its shading model makes of it.
+/// Shows the point of the pixel, or the pinned one, and how the shading model uses it.
 pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
     rows::close(ui);
     let name = if pinned { "pinned point" } else { "point at the pixel's centre" };
     rows::named_triple(ui, name, seen.position, " m");
-    // The normal at which the equation was evaluated: per pixel that of the vertices, or that of the polygon.
+    // Per-pixel shading evaluates the equation with the interpolated normal or with that of the polygon: mark the one in
+    // use.
     let per_pixel = seen.shading.stage == Stage::Pixel;
     let of_polygon =
         seen.spots.first().is_some_and(|spot| per_pixel && is_along(spot.normal, seen.face_normal))
@@ -38,12 +40,12 @@ pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
     }
 }
 
-/// True for one direction, on either side of a surface.
+/// True if two directions are parallel or opposite.
 fn is_along(a: Vec3, b: Vec3) -> bool {
     a.cross(b).length() < 1e-4 * a.length() * b.length()
 }
 
-/// The colours of the vertices, weighted.
+/// Shows the colours of the vertices with their weights.
 fn vertices(ui: &mut Ui, seen: &Seen) {
     rows::heading(ui, "Interpolated between the vertices");
     let id = ui.id().with("weights");

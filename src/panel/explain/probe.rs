@@ -1,5 +1,4 @@
-//! The pixel that is explained: which one it is, and the explanation, calculated when something has changed and only
-//! while it is in sight.
+//! The explained pixel, and its explanation, which is calculated only while it is visible and something has changed.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -27,9 +26,9 @@ use crate::{
     scene::{Observer, Scene, comparison::Layout, observer::ViewAngle},
 };
 
-/// The centre of the pixel that was pinned shows the point that is held if it is this near, metres.
+/// Tolerance for the centre of the pinned pixel to show the held point, in metres.
 const SAME: f32 = 1e-4;
-/// A click this near to what is pinned lets go of it, points.
+/// Distance of a click from the pinned point that unpins it, in points.
 const NEAR: f32 = 6.0;
 
 /// The explanation of a pixel of the window.
@@ -39,33 +38,33 @@ pub struct Explained {
     pub view: usize,
     /// The explanation.
     pub explanation: Explanation,
-    /// How the point that is pinned is seen; none where it is the one at the centre of the pixel.
+    /// Visibility of the pinned point; `None` if the point is at the centre of the pixel.
     pub sight: Option<Sight>,
-    /// The edited shaders that the picture follows and the explanation does not, by their paths.
+    /// Paths of edited shaders that affect the picture but not the explanation.
     pub ignored: Vec<String>,
 }
 
 /// The light whose block is unfolded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Unfolded {
-    /// That which gives the most.
+    /// The light that contributes most.
     #[default]
     Brightest,
-    /// The one with this number in the scene.
+    /// The light with this index in the scene.
     Light(usize),
-    /// None.
+    /// No light.
     None,
 }
 
-/// How far an explanation goes.
+/// The level of detail of an explanation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Level {
-    /// What happened, in a sentence.
+    /// A sentence that says what happened.
     Sentence,
     /// The equation with numbers.
     #[default]
     Equation,
-    /// Each factor with its own equation, its plot and its source.
+    /// Each factor with its own equation, plot and source.
     Factors,
 }
 
@@ -73,31 +72,31 @@ impl Level {
     pub(super) const ALL: [Self; 3] = [Self::Sentence, Self::Equation, Self::Factors];
 }
 
-/// The choice of what is shown of an explanation.
+/// Display options of an explanation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Choice {
-    /// How far it goes.
+    /// The level of detail.
     pub(super) level: Level,
     /// True if another view is explained beside it.
     pub(super) beside: bool,
-    /// The point, among those of [`spots`]; the one that counts most if none was chosen.
+    /// Index of the point among [`spots`]; by default the one with the largest weight.
     pub(super) spot: Option<usize>,
     pub(super) light: Unfolded,
 }
 
-/// Everything that an explanation depends on.
+/// Inputs of an explanation.
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     revision: Revision,
     /// The line of sight.
     pin: Pin,
-    /// The point that the pin holds, wherever the line of sight goes.
+    /// The point held by the pin, even if the line of sight misses it.
     held: Option<Held>,
-    /// The view of the pin, and those beside it in which the point is shown too.
+    /// The view of the pin, and other views in which the point is shown too.
     views: Vec<Shown>,
     /// The camera.
     observer: Observer,
-    /// The change of a shader that came through last.
+    /// The latest successful shader reload.
     reloaded: Option<Reloaded>,
 }
 
@@ -111,35 +110,35 @@ struct Shown {
 
 #[derive(Default)]
 struct Probe {
-    /// The place that the pointer was at last.
+    /// Latest position of the pointer.
     pointed: Option<Pin>,
-    /// The pin that is explained.
+    /// The explained pin.
     pin: Option<Pin>,
-    /// It is there now.
+    /// True if the pointer is at the pin.
     hovered: bool,
     asked: Option<Question>,
     answer: Option<Arc<Explained>>,
-    /// The same point in the views beside.
+    /// Explanations of the same point in the other views.
     beside: Vec<Arc<Explained>>,
     holding: Holding,
     calculations: u64,
     explainer: Explainer,
-    /// The scenes of views, without the camera of the window.
+    /// Scenes of views, without the camera of the window.
     scenes: Vec<(Revision, usize, Scene)>,
     choice: Choice,
-    /// The frame in which something was turned over last, counted from 1.
+    /// Number of the frame of the latest toggle, counted from 1.
     turned: u64,
-    /// The quantities that are unfolded.
+    /// The unfolded quantities.
     unfolded: HashSet<String>,
-    /// The quantity that is to come into sight.
+    /// The quantity to scroll to.
     sought: Option<String>,
-    /// The pixel before its numbers were changed here: its code, and the pin that it belongs to.
+    /// The pixel before its numbers were changed in the panel: its pin and display code.
     before: Option<(Pin, [u8; 3])>,
-    /// The lines of the lights of one explanation.
+    /// Equation lines of the lights of one explanation, by address.
     lines: (u64, HashMap<usize, Arc<Vec<Line>>>),
-    /// The numbers that are listed, in the order that they had when the pixel was chosen.
+    /// The listed numbers, in their order at the time when the pixel was chosen.
     ranking: Option<(Pin, Vec<Knob>)>,
-    /// The numbers that move the pixel, for one explanation.
+    /// The numbers that change the pixel, for one explanation.
     influences: Option<(u64, Arc<Vec<Influence>>)>,
 }
 
@@ -153,13 +152,13 @@ fn lock(probe: &Shared) -> MutexGuard<'_, Probe> {
     probe.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The explanation in sight; none while there is none, or the panel is closed.
+/// The current explanation; `None` if there is none or the panel is closed.
 #[must_use]
 pub fn explained(ctx: &Context) -> Option<Arc<Explained>> {
     lock(&shared(ctx)).answer.clone()
 }
 
-/// The explanation of the same point in another view, if both are shown beside each other.
+/// The explanation of the same point in another view, if both are shown side by side.
 pub(super) fn other(ctx: &Context) -> Option<Arc<Explained>> {
     let shared = shared(ctx);
     let probe = lock(&shared);
@@ -167,25 +166,25 @@ pub(super) fn other(ctx: &Context) -> Option<Arc<Explained>> {
     probe.beside.iter().find(|e| probe.choice.beside && e.view == beside_of(own)).cloned()
 }
 
-/// The view that is explained beside another one.
+/// The view that is explained beside the given one.
 fn beside_of(view: usize) -> usize {
     if view == 0 { 1 } else { 0 }
 }
 
-/// The explanation in sight of a view: that of the pixel in it, or of the same point beside.
+/// The current explanation for a view: of the explained pixel, or of the same point if the view is beside it.
 pub(super) fn explained_in(ctx: &Context, view: usize) -> Option<Arc<Explained>> {
     let shared = shared(ctx);
     let probe = lock(&shared);
     probe.answer.iter().chain(&probe.beside).find(|explained| explained.view == view).cloned()
 }
 
-/// The number of explanations calculated so far.
+/// Number of explanations calculated so far.
 #[must_use]
 pub fn calculations(ctx: &Context) -> u64 {
     lock(&shared(ctx)).calculations
 }
 
-/// True while the pointer is at the pixel that is explained.
+/// True while the pointer is at the explained pixel.
 pub(super) fn is_hovered(ctx: &Context) -> bool {
     lock(&shared(ctx)).hovered
 }
@@ -194,7 +193,7 @@ pub(super) fn choice(ctx: &Context) -> Choice {
     lock(&shared(ctx)).choice
 }
 
-/// True once in a frame, for what turns something over: egui may lay out a frame twice, with the same click.
+/// True once per frame. Guards toggles, since egui may lay out a frame twice with the same click.
 pub(super) fn once(ctx: &Context) -> bool {
     let frame = ctx.cumulative_frame_nr() + 1;
     std::mem::replace(&mut lock(&shared(ctx)).turned, frame) != frame
@@ -205,7 +204,7 @@ pub(super) fn choose(ctx: &Context, choice: Choice) {
     ctx.request_repaint();
 }
 
-/// The lines of the equation for a light of the explanation in sight, calculated once for each explanation.
+/// Equation lines for a light of the current explanation, calculated once per explanation.
 pub(super) fn lines(ctx: &Context, lit: &Lit, model: &Model) -> Arc<Vec<Line>> {
     let shared = shared(ctx);
     let mut probe = lock(&shared);
@@ -213,7 +212,7 @@ pub(super) fn lines(ctx: &Context, lit: &Lit, model: &Model) -> Arc<Vec<Line>> {
     if probe.lines.0 != probe.calculations {
         probe.lines = (probe.calculations, HashMap::new());
     }
-    // The explanation keeps its place as long as it is in sight.
+    // An explanation keeps its address for as long as it is shown.
     let lines = || Arc::new(lit.rounded_lines(model, rows::DIGITS));
     probe.lines.1.entry(std::ptr::from_ref(lit).addr()).or_insert_with(lines).clone()
 }
@@ -223,7 +222,7 @@ pub(super) fn unfolds(ctx: &Context, quantity: &str) -> bool {
     lock(&shared(ctx)).unfolded.contains(quantity)
 }
 
-/// Unfolds a quantity, or folds it.
+/// Unfolds or folds a quantity.
 pub(super) fn unfold(ctx: &Context, quantity: &str, open: bool) {
     let shared = shared(ctx);
     let unfolded = &mut lock(&shared).unfolded;
@@ -235,7 +234,7 @@ pub(super) fn unfold(ctx: &Context, quantity: &str, open: bool) {
     ctx.request_repaint();
 }
 
-/// Unfolds a quantity among all others, and brings it into sight.
+/// Shows all factors, unfolds a quantity, and scrolls to it.
 pub(super) fn seek(ctx: &Context, quantity: &str) {
     unfold(ctx, quantity, true);
     let shared = shared(ctx);
@@ -244,7 +243,7 @@ pub(super) fn seek(ctx: &Context, quantity: &str) {
     probe.choice.level = Level::Factors;
 }
 
-/// True once for the quantity that is to come into sight.
+/// True once for the quantity to scroll to.
 pub(super) fn is_sought(ctx: &Context, quantity: &str) -> bool {
     let shared = shared(ctx);
     let mut probe = lock(&shared);
@@ -255,7 +254,7 @@ pub(super) fn is_sought(ctx: &Context, quantity: &str) -> bool {
     found
 }
 
-/// The code of the pixel before its numbers were changed here.
+/// Display code of the pixel before its numbers were changed in the panel.
 pub(super) fn before(ctx: &Context) -> Option<[u8; 3]> {
     let shared = shared(ctx);
     let probe = lock(&shared);
@@ -263,7 +262,7 @@ pub(super) fn before(ctx: &Context) -> Option<[u8; 3]> {
     probe.before.filter(|(of, _)| *of == pin).map(|(_, code)| code)
 }
 
-/// Keeps the code of the pixel as it is before a change, unless one is kept.
+/// Keeps the current display code of the pixel before a change, unless an earlier one is kept.
 pub(super) fn keep_before(ctx: &Context) {
     let shared = shared(ctx);
     let mut probe = lock(&shared);
@@ -275,13 +274,13 @@ pub(super) fn keep_before(ctx: &Context) {
     }
 }
 
-/// Forgets the pixel before the changes.
+/// Forgets the display code from before the changes.
 pub(super) fn forget_before(ctx: &Context) {
     lock(&shared(ctx)).before = None;
 }
 
-/// The numbers that are listed for a pixel: those that moved it most when it was chosen, so that none leaves its place while it
-/// is changed.
+/// The listed numbers of a pixel: those that changed it most when it was chosen, so that a number keeps its row while
+/// it is changed.
 pub(super) fn ranking(ctx: &Context, all: &[Influence], most: usize) -> Vec<Knob> {
     let shared = shared(ctx);
     let mut probe = lock(&shared);
@@ -299,7 +298,7 @@ pub(super) fn ranking(ctx: &Context, all: &[Influence], most: usize) -> Vec<Knob
     }
 }
 
-/// The numbers of the scene that move the pixel most, calculated once for each explanation.
+/// The numbers of the scene that change the pixel most, calculated once per explanation.
 pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influence>> {
     let shared = shared(ctx);
     let mut probe = lock(&shared);
@@ -309,7 +308,7 @@ pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influenc
     {
         return known.clone();
     }
-    // A point that is not seen is no pixel that could be drawn with other numbers.
+    // A hidden point has no pixel that could be redrawn with other numbers.
     let answer = probe.answer.clone().filter(|a| a.sight.is_none_or(|sight| sight == Sight::Clear));
     let scene = answer.as_ref().and_then(|a| probe.scenes.iter().find(|(_, view, _)| *view == a.view));
     let found = match (&answer, scene) {
@@ -325,14 +324,14 @@ pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influenc
     found
 }
 
-/// Something about the scene of a view that is explained.
+/// Applies a function to the scene of an explained view.
 pub(super) fn with_scene<T>(ctx: &Context, view: usize, of: impl FnOnce(&Scene) -> T) -> Option<T> {
     let shared = shared(ctx);
     let probe = lock(&shared);
     probe.scenes.iter().find(|(_, known, _)| *known == view).map(|(.., scene)| of(scene))
 }
 
-/// The rectangle of a view, points.
+/// Rectangle of a view, in points.
 fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
     let cell = area.cells.iter().find(|cell| cell.view == view).or(area.cells.first());
     Some(cell.map_or(area.rect, |cell| cell.rect)).filter(|rect| rect.is_finite() && rect.is_positive())
@@ -342,7 +341,7 @@ fn field_of_view(session: &Session) -> ViewAngle {
     session.document.view_angle()
 }
 
-/// The size of a picture in pixels, as the window draws it, and the place of its corner.
+/// Size of a picture in pixels, as the window draws it, and its top left corner.
 fn pixels(ctx: &Context, rect: Rect) -> ([u32; 2], Pos2) {
     let pixel = |points: f32| (points * ctx.pixels_per_point()).round().max(0.0);
     let corner = pos2(pixel(rect.min.x), pixel(rect.min.y));
@@ -350,7 +349,7 @@ fn pixels(ctx: &Context, rect: Rect) -> ([u32; 2], Pos2) {
     (size.map(|side| (side as u32).max(1)), corner)
 }
 
-/// The pixel under the pointer, if it is over a picture with nothing between.
+/// The pixel under the pointer, if the pointer is over a picture and nothing covers it.
 fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> {
     let at = ctx.input(|i| i.pointer.latest_pos()).filter(|at| is_in_sight(ctx, area.frame, *at))?;
     if area.written.iter().any(|place| place.contains(at)) {
@@ -367,7 +366,7 @@ fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> 
         .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, field_of_view(session)))
 }
 
-/// The place of what is explained in the rectangle of its picture, also beside it; none behind the camera.
+/// Position of the explained point in the rectangle of a picture, possibly outside it; `None` behind the camera.
 pub(super) fn place(session: &Session, rect: Rect, explained: &Explained) -> Option<Pos2> {
     let explanation = &explained.explanation;
     if let (Some(_), Some(seen)) = (explained.sight, &explanation.seen) {
@@ -377,7 +376,7 @@ pub(super) fn place(session: &Session, rect: Rect, explained: &Explained) -> Opt
     Some(rect.lerp_inside(vec2(part(0), part(1))))
 }
 
-/// An action with the pixel that it is about: that under the pointer, if there is one.
+/// Completes the pin action with the pixel under the pointer, if there is one and nothing is pinned.
 pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Action) -> Action {
     let lets_go = session.view.pinned.is_some();
     match pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go) {
@@ -386,11 +385,11 @@ pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Actio
     }
 }
 
-/// Pins the pixel that was clicked with Alt held, or lets go of it.
+/// Pins the pixel clicked with Alt held, or unpins it.
 pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let (clicked, alt) = ctx.input(|i| (i.pointer.primary_clicked(), i.modifiers.alt));
     if clicked && !alt && session.seeks_pixel() {
-        // What is to be found is clicked, and nothing more.
+        // While a lesson asks for a pixel, a click only answers the lesson.
         return pointed(ctx, session, area).map(|pin| Action::Lesson(LessonCommand::Point(pin)));
     }
     let pin = pointed(ctx, session, area).filter(|_| clicked && alt && !session.view.presenting)?;
@@ -411,15 +410,16 @@ pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<A
     Some(Action::View(ViewChange::Pin(Some(pin).filter(|_| !same))))
 }
 
-/// Escape lets go of what is pinned, if nothing else takes it.
+/// Unpins on Escape, unless something else handles the key.
 pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let pinned = session.view.pinned.is_some() && session.explains() && !session.view.examples_open;
     let left = pinned && ctx.dragged_id().is_none() && keys::escapes(ctx, session, area);
     left.then_some(Action::View(ViewChange::Pin(None)))
 }
 
-/// Explains the pixel that is pinned, or else the one that the pointer was at last, if the panel is open and something
-/// has changed. A pin holds the point of the object that it has met; it lets go of one that is gone, which is the action.
+/// Explains the pinned pixel, or else the one under the latest pointer position, if the panel is open and something has
+/// changed. A pin holds the point of the object that it has hit; if that object is gone, returns the action that unpins
+/// it.
 pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) -> Option<Action> {
     let shared = shared(ctx);
     if !session.shows_vectors() && !session.needs_probe() {
@@ -450,7 +450,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     }
     let beside = probe.choice.beside && !session.document.variants.is_empty();
     if beside && !views.iter().any(|shown| shown.view == beside_of(pin.view)) {
-        // A view that is not in the picture has the size of the one that is.
+        // A view outside the picture takes the size of the visible one.
         let view = beside_of(pin.view);
         views.push(Shown { view, terms: session.terms_of(view), ..own });
     }
@@ -465,7 +465,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     if probe.asked.as_ref() == Some(&question) {
         return None;
     }
-    // Another camera is no change of a number.
+    // The kept code is for changed numbers, not for a changed camera.
     if probe.asked.as_ref().is_some_and(|asked| asked.observer != question.observer) {
         probe.before = None;
     }
@@ -496,13 +496,13 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
 }
 
 impl Probe {
-    /// Nothing is explained.
+    /// Clears the explanation.
     fn forget(&mut self) {
         (self.asked, self.answer) = (None, None);
         self.beside.clear();
     }
 
-    /// The scene of a view, seen by the camera.
+    /// The scene of a view from the camera of the window.
     fn scene(
         &mut self,
         question: &Question,
@@ -544,7 +544,7 @@ impl Probe {
             return Some(Explained { view, explanation: of_pixel()?, sight: None, ignored: ignored() });
         };
         let object = session.document.object(object)?;
-        // Where the line of sight still meets the point, the numbers are those of the picture.
+        // Where the line of sight still hits the point, use the numbers of the picture.
         let place = anchor.place(scene.objects.get(object)?);
         let is_there = |explanation: &Explanation| {
             let seen = explanation.seen.as_ref();
@@ -559,17 +559,17 @@ impl Probe {
     }
 }
 
-/// The points that can be shown: those that made the colour, and the one of per-pixel shading for comparison.
+/// Points that can be shown: those that produced the colour, and that of per-pixel shading for comparison.
 pub(super) fn spots(seen: &Seen) -> Vec<&Spot> {
     seen.spots.iter().chain(&seen.per_pixel).collect()
 }
 
-/// The number of the point that is shown: the one that was chosen, or the one that counts most.
+/// Index of the shown point: the chosen one, otherwise the one with the largest weight.
 pub(super) fn shown_spot(seen: &Seen, choice: Choice) -> usize {
     choice.spot.filter(|i| *i < spots(seen).len()).or(seen.main_spot()).unwrap_or(0)
 }
 
-/// The light of a point whose block is unfolded.
+/// The light whose block is unfolded, at a point.
 pub(super) fn shown_light(spot: &Spot, choice: Choice) -> Option<&Lit> {
     match choice.light {
         Unfolded::None => None,

@@ -1,25 +1,25 @@
-//! The parts of a picture that letters keep clear of.
+//! Free space in a picture, for labels.
 
 use std::collections::HashSet;
 
 use bevy_egui::egui::{Pos2, Rect, Vec2};
 
-/// The side of a cell, points.
+/// Side of a cell, in points.
 const CELL: f32 = 6.0;
-/// Distance of the places in question from each other, points, and how far out the farthest are, in such steps.
+/// Distance between candidate positions, in points, and the number of such steps to the farthest.
 const STEP: f32 = 18.0;
 const STEPS: usize = 12;
-/// What is written farther from its place than this has a line to it, points.
+/// Distance beyond which a label is connected to its point by a line, in points.
 pub(super) const APART: f32 = 30.0;
 
-/// The parts of a picture that are taken: by a surface, in cells, and by plates.
+/// Occupied parts of a picture: cells covered by surfaces, and plates.
 #[derive(Debug, Default)]
 pub(super) struct Room {
     cells: HashSet<[i32; 2]>,
     plates: Vec<Rect>,
 }
 
-/// The cells that a rectangle touches.
+/// Cells that a rectangle touches.
 fn cells(rect: Rect) -> impl Iterator<Item = [i32; 2]> {
     let cell = |points: f32| (points / CELL).floor() as i32;
     let (left, right) = (cell(rect.left()), cell(rect.right()));
@@ -28,7 +28,7 @@ fn cells(rect: Rect) -> impl Iterator<Item = [i32; 2]> {
 }
 
 impl Room {
-    /// Takes the place of a small triangle.
+    /// Marks the area of a small triangle as occupied.
     pub(super) fn take_triangle(&mut self, corners: [Pos2; 3], picture: Rect) {
         let place = Rect::from_points(&corners).intersect(picture);
         if place.is_finite() && !place.is_negative() {
@@ -40,14 +40,14 @@ impl Room {
         self.plates.push(plate);
     }
 
-    /// True if no plate is there, and no surface unless that does not matter.
+    /// True if no plate overlaps and, unless `over_surface`, no surface does.
     fn is_free(&self, plate: Rect, over_surface: bool) -> bool {
         let written = self.plates.iter().any(|other| other.intersects(plate));
         !written && (over_surface || !cells(plate).any(|cell| self.cells.contains(&cell)))
     }
 
-    /// The place for a plate of that size as near to a point as there is room within a rectangle; at the point itself if
-    /// there is none.
+    /// The free position nearest to a point for a plate of the given size within a rectangle; the point itself if
+    /// nothing is free.
     pub(super) fn find(&self, at: Pos2, size: Vec2, within: Rect) -> Rect {
         let place = |offset: Vec2| Rect::from_center_size(at + offset, size);
         let around = (0..=STEPS).flat_map(|ring| {
@@ -83,7 +83,7 @@ mod tests {
         room.take_plate(first);
         let second = room.find(at, size, picture);
         assert!(!second.intersects(first) && !second.intersects(surface), "{second}");
-        // With a surface everywhere it stands on it, but on no plate.
+        // With a surface everywhere, the plate overlaps the surface, but no other plate.
         room.take_triangle([Pos2::ZERO, pos2(400.0, 0.0), pos2(0.0, 300.0)], picture);
         room.take_plate(Rect::from_center_size(at, vec2(6.0, 6.0)));
         let third = room.find(at, size, picture);

@@ -1,4 +1,4 @@
-//! The rows of an explanation: numbers of three digits, of which the pointer shows all, and colours with their samples.
+//! Rows of an explanation: numbers rounded to three digits, with all digits in the tooltip, and colours with samples.
 
 use bevy_egui::egui::{
     self, Color32, Label, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
@@ -19,38 +19,38 @@ use crate::{
     reflection::Term,
 };
 
-/// Digits that are shown.
+/// Number of digits shown.
 pub(super) const DIGITS: usize = 3;
-/// Digits of the whole number.
+/// Number of digits in a tooltip.
 const ALL: usize = 8;
-/// Size of the letters of a symbol in a row.
+/// Font size of a symbol in a row.
 const SYMBOL: f32 = 14.0;
-/// Width of a vector with its symbol, points.
+/// Width of a vector with its symbol, in points.
 const VECTOR: f32 = 192.0;
-/// By so much a line is set in that follows from the one above.
+/// Indentation of a line that follows from the one above, in points.
 pub(super) const INDENT: f32 = 14.0;
 
-/// A number of three digits.
+/// A number rounded to three digits.
 pub(super) fn short(v: f32) -> String {
     raised(&rounded(v, DIGITS))
 }
 
-/// A number of so many digits, at most three.
+/// A number rounded to `digits` digits, at most three.
 pub(super) fn of_digits(v: f32, digits: usize) -> String {
     raised(&rounded(v, digits.min(DIGITS)))
 }
 
-/// Three numbers of three digits.
+/// Three numbers rounded to three digits.
 pub(super) fn short_triple(v: Vec3) -> String {
     raised(&rounded_triple(v, DIGITS))
 }
 
-/// A number, or three if they differ.
+/// One number, or three if they differ.
 pub(super) fn short_or_triple(v: Vec3) -> String {
     raised(&formula(v))
 }
 
-/// Powers of ten in raised digits.
+/// Powers of ten with superscript digits.
 fn raised(text: &str) -> String {
     let mut power = false;
     let raise = |c: char| match c {
@@ -82,12 +82,12 @@ fn raised(text: &str) -> String {
         .collect()
 }
 
-/// A number, or three if they differ, as equations are written.
+/// One number, or three if they differ, in the notation of equations.
 pub(super) fn formula(v: Vec3) -> String {
     rounded_number_or_triple(v, DIGITS)
 }
 
-/// The same with braces around powers that begin with a minus sign.
+/// Puts braces around exponents that begin with a minus sign.
 fn braced(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -111,7 +111,7 @@ pub(super) fn note(ui: &mut Ui, text: &str) -> Response {
     ui.add(Label::new(theme::small(ui, text)).wrap())
 }
 
-/// A sample of a colour as the display shows these codes.
+/// A colour sample for the given display code.
 pub(super) fn chip(ui: &mut Ui, [r, g, b]: [u8; 3], size: Vec2) -> Response {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -121,7 +121,7 @@ pub(super) fn chip(ui: &mut Ui, [r, g, b]: [u8; 3], size: Vec2) -> Response {
     response
 }
 
-/// A sample of linear light, beyond the display's range cut off; crossed out where it is no number.
+/// A sample of linear light, clamped to the range of the display, and crossed out if it is not a number.
 pub(super) fn sample(ui: &mut Ui, light: Vec3) {
     let side = SYMBOL * theme::scale_here(ui);
     let colour = theme::swatch(light.clamp(Vec3::ZERO, Vec3::ONE));
@@ -138,12 +138,12 @@ fn text(ui: &Ui, text: impl Into<String>) -> RichText {
     RichText::new(text).color(Palette::here(ui).text)
 }
 
-/// A symbol, an equals sign and a value, with all digits under the pointer.
+/// A symbol, an equals sign and a value, with all digits in the tooltip.
 pub(super) fn value(ui: &mut Ui, symbol: &str, shown: &str, all: &str) -> Response {
     linked_value(ui, symbol, &[symbol], |ctx| linked::is_lit(ctx, symbol), shown, all)
 }
 
-/// The same with the symbols to which it is linked, and if these light.
+/// A value linked to symbols, and highlighted with them.
 fn linked_value(
     ui: &mut Ui,
     symbol: &str,
@@ -165,7 +165,7 @@ fn linked_value(
     row.on_hover_text(format!("{all}{help}"))
 }
 
-/// Vectors by their symbols, as many in a line as fit.
+/// Vectors with their symbols, as many per line as fit.
 pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
     let width = VECTOR * theme::scale_here(ui);
     let in_line = ((ui.available_width() / width) as usize).max(1);
@@ -183,7 +183,7 @@ pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
     }
 }
 
-/// Words and a value behind them.
+/// A name and a value.
 pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -196,17 +196,17 @@ pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response
     row.response.on_hover_text(all)
 }
 
-/// Words and three numbers.
+/// A name and three numbers.
 pub(super) fn named_triple(ui: &mut Ui, name: &str, v: Vec3, unit: &str) -> Response {
     named(ui, name, &format!("{}{unit}", short_triple(v)), &rounded_triple(v, ALL))
 }
 
-/// Words and three numbers with the digits that their standard errors leave.
+/// A name and three numbers, rounded to the digits that their standard errors justify.
 pub(super) fn named_within(ui: &mut Ui, name: &str, v: Vec3, error: Option<Vec3>) -> Response {
     named(ui, name, &short_within(v, error), &all_within(v, error))
 }
 
-/// Three numbers of three digits, or of those that their standard errors leave.
+/// Three numbers rounded to three digits, or to those that their standard errors justify.
 fn short_within(v: Vec3, error: Option<Vec3>) -> String {
     raised(&triple_within(v, error, DIGITS))
 }
@@ -216,7 +216,7 @@ fn all_within(v: Vec3, error: Option<Vec3>) -> String {
     explain::told(v, error, ALL)
 }
 
-/// A step on the way to the display, and its result with its standard error, if it has one.
+/// A step of the conversion to the display code, with its result and the standard error, if any.
 pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -228,18 +228,18 @@ pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
     row.response.on_hover_text(all_within(v, error));
 }
 
-/// Lines that stand closer than widgets do.
+/// Sets a line spacing smaller than that of widgets.
 pub(super) fn close(ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 3.0;
     ui.spacing_mut().interact_size.y = 16.0 * theme::scale_here(ui);
 }
 
-/// A colour behind words: its sample and its numbers.
+/// A label and a colour: sample and numbers.
 pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response {
     estimate(ui, before, v, None, bold)
 }
 
-/// The same with the digits that a standard error leaves.
+/// A label and a colour, rounded to the digits that a standard error justifies.
 pub(super) fn estimate(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, bold: bool) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -255,7 +255,7 @@ pub(super) fn estimate(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, 
     row.response.on_hover_text(all_within(v, error))
 }
 
-/// A colour with its standard error behind words: as many digits as the error allows.
+/// A label and a colour with its standard error, rounded to the digits that the error justifies.
 pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bool) {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -269,7 +269,7 @@ pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bo
     row.response.on_hover_text("The integral and its standard error, from sixteen parts of the samples");
 }
 
-/// An equation, or what it becomes with numbers, over the width that is left.
+/// An equation, symbolic or with numbers, over the remaining width.
 pub(super) fn equation(
     ui: &mut Ui,
     term: Term,
@@ -288,7 +288,7 @@ pub(super) fn equation(
     });
 }
 
-/// What an equation becomes with numbers, each of which shows where it comes from. Returns the symbol of one that was clicked.
+/// An equation with numbers, each of which shows its origin. Returns the symbol of a clicked number.
 pub(super) fn calculation(
     ui: &mut Ui,
     numbers: &str,
@@ -304,7 +304,7 @@ pub(super) fn calculation(
     clicked
 }
 
-/// Sets in what follows from the line above.
+/// Indents what follows from the line above.
 pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -316,17 +316,17 @@ pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// All digits of a number.
+/// A number with all digits.
 pub(super) fn all(v: f32) -> String {
     rounded(v, ALL)
 }
 
-/// As text for people who listen: four digits are enough.
+/// Text for screen readers: four digits are enough.
 pub(super) fn spoken(v: Vec3) -> String {
     if v.x == v.y && v.y == v.z { number(v.x) } else { triple(v) }
 }
 
-/// A row that can be clicked, with a triangle that says if it is unfolded.
+/// A clickable row, with a triangle that shows if it is unfolded.
 pub(super) fn fold(
     ui: &mut Ui,
     id: egui::Id,

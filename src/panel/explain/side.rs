@@ -1,4 +1,4 @@
-//! The command that looks at the pinned point from the side.
+//! The command that views the pinned point from the side.
 
 use bevy_egui::egui::Context;
 use glam::Vec3;
@@ -6,11 +6,11 @@ use glam::Vec3;
 use super::probe;
 use crate::panel::state::{Action, Session, Steer};
 
-/// Vectors whose sine is less span no plane that could be seen face on.
+/// Sine of the angle below which two vectors span no usable plane.
 const APART: f32 = 0.02;
 
-/// The pinned point, and the direction along which the plane of its vectors is seen face on: that of `N` and `L`, or of
-/// `N` and `V` where those coincide, or any with `N` in it.
+/// The pinned point, and the direction that views the plane of its vectors face on: that of `N` and `L`, that of `N`
+/// and `V` if the former coincide, otherwise any plane with `N` in it.
 fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     session.view.pinned?;
     let explained = probe::explained(ctx)?;
@@ -24,12 +24,12 @@ fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     Some(Steer::Along { point: seen.position, way: way.normalize() })
 }
 
-/// True if there is a pinned point that can be looked at from the side.
+/// True if there is a pinned point that can be viewed from the side.
 pub fn has_sides(ctx: &Context, session: &Session) -> bool {
     side(ctx, session).is_some()
 }
 
-/// An action with the place that it is about: a look from the side is one at the pinned point.
+/// Completes the action that views from the side with the pinned point.
 pub fn placed(ctx: &Context, session: &Session, action: Action) -> Action {
     match side(ctx, session).filter(|_| action == Action::LookFromSide) {
         Some(steer) => Action::Steer(steer),

@@ -1,4 +1,4 @@
-//! A lobe in the picture: translucent, from back to front, with lines around it.
+//! A lobe in the picture: translucent, drawn back to front, with an outline.
 
 use std::collections::HashMap;
 
@@ -19,37 +19,37 @@ use crate::{
     },
 };
 
-/// Length of a vector that lies in the plane of the picture, and of the longest value that the scale has, points.
+/// Length of a vector in the picture plane, and of the largest value of the scale, in points.
 pub(super) const LENGTH: f32 = 96.0;
 /// Opacity of the surface.
 const OPACITY: f32 = 0.68;
-/// Brightness where the surface is seen from its side.
+/// Brightness of the surface at grazing angles.
 const SIDE: f32 = 0.45;
 
 /// The lobe for one light.
 #[derive(Debug)]
 pub struct LightLobe {
-    /// The light, by its place in the scene.
+    /// Index of the light in the scene.
     pub light: usize,
-    /// Its name.
+    /// Name of the light.
     pub name: String,
-    /// The direction to it: of a light with extent, the one that gives most.
+    /// Direction to the light; for a light with extent, the direction that contributes most.
     pub l: Vec3,
     /// True if the light has extent.
     pub extends: bool,
     /// The lobe.
     pub lobe: Lobe,
-    /// The lines around it.
+    /// Edges that may belong to the outline.
     pub(super) rims: Vec<Rim>,
 }
 
-/// The colour of a lobe among several.
+/// Colour of a lobe among several.
 pub(super) fn tint(number: usize) -> [u8; 3] {
     let lighter = |c: u8| c + (255 - c) / 4;
     COLOURS[number % COLOURS.len()].map(lighter)
 }
 
-/// An edge of the surface, and the triangles at it: one at the rim or at a gap.
+/// An edge of the surface with its adjacent triangles: only one at the rim or at a gap.
 pub(super) type Rim = ([u32; 2], [Option<u32>; 2]);
 
 /// The edges of a lobe.
@@ -66,13 +66,13 @@ pub(super) fn rims(lobe: &Lobe) -> Vec<Rim> {
     all
 }
 
-/// A lobe as it is seen.
+/// A lobe as projected into the picture.
 struct Drawn {
     places: Vec<Option<Pos2>>,
     colours: Vec<Color32>,
-    /// The distance of each triangle from the eye.
+    /// Distance of each triangle from the eye.
     depths: Vec<f32>,
-    /// True for each triangle that is seen from outside.
+    /// True for each triangle seen from outside.
     outside: Vec<bool>,
 }
 
@@ -104,8 +104,8 @@ fn drawn(lens: &Lens, from: Vec3, lobe: &Lobe, scale: &Axis, colour: impl Fn(f32
     Drawn { places, colours, depths, outside }
 }
 
-/// Paints lobes over a point: a lone one by its values, several in colours of their own, each with the way to its light.
-/// Their room in the picture is taken.
+/// Paints lobes over a point: a single one coloured by value, several in distinct colours, each with a line to its
+/// light. Marks their area in the picture as occupied.
 pub(super) fn paint(
     ui: &Ui,
     rect: Rect,

@@ -1,4 +1,4 @@
-//! The vectors of the explained point in the picture, and the polygon or the vertices in question.
+//! The vectors of the explained point in the picture, and its polygon or vertices.
 
 use bevy_egui::egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
@@ -29,29 +29,30 @@ const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
 const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
-/// Width of a line, points, and of one that lights.
+/// Width of a line and of a highlighted line, in points.
 const LINE: f32 = 2.25;
 const LIT: f32 = 4.5;
-/// The part of the opacity of a line that it keeps while others light.
+/// Opacity factor of lines while others are highlighted.
 const DIM: f32 = 0.5;
-/// The pointer is at a line that is this near, points. All of them are near their origin.
+/// Distance at which the pointer is on a line, in points, and radius around the origin that is excluded because all
+/// lines meet there.
 const GRASP: f32 = 6.0;
 const ORIGIN: f32 = 16.0;
-/// Height of the caption below a picture, points.
+/// Height of the caption below a picture, in points.
 const CAPTION: f32 = 36.0;
-/// Height of letters, points.
+/// Font size of labels, in points.
 const LETTER: f32 = 13.0;
-/// A vector that is seen shorter than this points at the eye, or away from it, points.
+/// Projected length below which a vector counts as pointing at or away from the eye, in points.
 const END_ON: f32 = 7.0;
-/// The sides of a triangle whose corners have room for their weights, points.
+/// Side length of a triangle above which the vertices have room for their weights, in points.
 const ROOMY: f32 = 48.0;
-/// In a smaller picture there is no room for them, points.
+/// Minimum picture size for vectors, in points.
 const SMALLEST: f32 = 120.0;
 
-/// Lengths of dashes and of what is left out between them, points; none for a line without.
+/// Lengths of dashes and gaps, in points; empty for a solid line.
 type Dashes = &'static [f32];
 
-/// A vector in the picture: its letter, its direction, its colour and its dashes.
+/// A vector in the picture: letter, direction, colour and dash pattern.
 struct Arrow {
     letter: &'static str,
     way: Vec3,
@@ -73,13 +74,13 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
     all
 }
 
-/// Paints the vectors of what is explained into the rectangle of its view, while the pointer is there or it is pinned;
-/// those of a pinned point also into the views beside. Returns the place of the legend of their lobe.
+/// Paints the vectors of the explained point into a view, while the point is pinned or under the pointer; those of a
+/// pinned point also into the other views. Returns the rectangle of the legend of the lobe.
 pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Option<Rect> {
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let explained =
         probe::explained_in(ui.ctx(), view).filter(|_| shown && rect.size().min_elem() >= SMALLEST)?;
-    // With the panel closed, a lesson wants to see which pixel it is about, and no more.
+    // With the panel closed, a lesson only needs to show which pixel it is about.
     let explains = session.shows_vectors();
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
     let mut room = Room::default();
@@ -101,13 +102,13 @@ pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &R
 
 struct Drawing {
     ink: Ink,
-    /// Letters and degrees, each with its place, and the symbols that it stands for.
+    /// Letters and angles, each with its position and the symbols it stands for.
     words: Vec<(Pos2, String, Color32, Vec<&'static str>)>,
     rect: Rect,
     pointer: Option<Pos2>,
-    /// The vectors that light.
+    /// The highlighted vectors.
     lit: Vec<&'static str>,
-    /// The symbols of what is nearest to the pointer, and how far it is.
+    /// Distance from the pointer to the nearest line, and the symbols of that line.
     near: Option<(f32, Vec<&'static str>)>,
 }
 
@@ -133,7 +134,7 @@ impl Drawing {
         }
     }
 
-    /// The polygon, or the triangle between the vertices, whose weights stand beside them.
+    /// The polygon, or the triangle between the vertices, with their weights.
     fn polygon(&mut self, seen: &Seen, spot: &Spot) {
         let lens = self.ink.lens();
         let corners = |points: &[Vec3]| {
@@ -155,7 +156,7 @@ impl Drawing {
             return;
         }
         let places = triangle.map(|p| lens.project(p));
-        // Beside a small triangle there is no room; the panel has them too.
+        // A small triangle has no room for them; the panel shows them too.
         let apart = |i: usize| match (places[i], places[(i + 1) % 3]) {
             (Some(a), Some(b)) => a.distance(b) >= ROOMY,
             _ => false,
@@ -178,7 +179,7 @@ impl Drawing {
         }
     }
 
-    /// The width and the colour of what stands for these vectors.
+    /// Width and colour of a mark for the given vectors.
     fn look(&self, ends: &[&str], width: f32, colour: Color32) -> (f32, Color32) {
         match () {
             () if self.lit.is_empty() => (width, colour),
@@ -187,7 +188,7 @@ impl Drawing {
         }
     }
 
-    /// Notes how near the pointer is to a line that begins at the origin, or around it.
+    /// Records the distance from the pointer to a line that starts at the origin or runs around it.
     fn approach(&mut self, origin: Pos2, line: &[Pos2], symbols: &[&'static str]) {
         let Some(at) = self.pointer.filter(|at| at.distance(origin) > ORIGIN) else { return };
         let off = linked::distance(at, line);
@@ -205,7 +206,7 @@ impl Drawing {
         let (width, colour) = self.look(&[arrow.letter], LINE, arrow.colour);
         self.approach(origin, &[origin, tip], &[arrow.letter]);
         if along.length() < END_ON {
-            // As in textbooks: a dot is the point of an arrow, a cross its feathers.
+            // As in textbooks: a dot is the tip of an arrow, a cross its feathers.
             let ahead = lens.metres(to, 1.0) < lens.metres(from, 1.0);
             let ring: Vec<Pos2> = (0..=24)
                 .map(|k| origin + 9.0 * Vec2::angled(k as f32 / 24.0 * std::f32::consts::TAU))
@@ -232,7 +233,7 @@ impl Drawing {
         self.words.push((tip + 12.0 * ahead, arrow.letter.to_owned(), colour, vec![arrow.letter]));
     }
 
-    /// Arcs between the vectors, where they are seen apart.
+    /// Arcs between the vectors, where their directions are distinct in the picture.
     fn angles(&mut self, lens: &Lens, spot: &Spot, lit: Option<&Lit>, reach: f32, shown: &[Arrow]) {
         let Some(geometry) = lit.and_then(Lit::leading) else { return };
         let n = spot.normal;
@@ -276,7 +277,7 @@ impl Drawing {
         }
     }
 
-    /// The pixel itself: the arms of a cross around it, closed to a ring where it is pinned.
+    /// Marks the pixel itself with the arms of a cross, surrounded by a ring if it is pinned.
     fn cross(&mut self, at: Pos2, pinned: bool) {
         for k in 0..4 {
             let arm = Vec2::angled(k as f32 * std::f32::consts::FRAC_PI_2);
@@ -320,7 +321,7 @@ impl Drawing {
     }
 }
 
-/// A line in dashes.
+/// The segments of a dashed line.
 fn dashes(from: Pos2, to: Pos2, pattern: Dashes) -> Vec<[Pos2; 2]> {
     let (length, way) = ((to - from).length(), (to - from).normalized());
     if pattern.is_empty() {

@@ -1,4 +1,4 @@
-//! What would change the pixel: the numbers of the scene that move it most, by differences, each with its knob; and the pixel
+//! The numbers of the scene that influence the pixel most, by finite differences, each with its control; and the pixel
 //! before and after a change.
 
 use bevy_egui::egui::{self, Align, Id, Layout, Ui, vec2};
@@ -20,15 +20,15 @@ use crate::{
     scene::limits::{self, Limits},
 };
 
-/// More numbers are not listed.
+/// Maximum number of listed numbers.
 const MOST: usize = 8;
-/// The longest bar, points.
+/// Length of the longest bar, in points.
 const BAR: f32 = 48.0;
-/// The columns of symbols and of effects, points.
+/// Widths of the columns of symbols and of effects, in points.
 const SYMBOL: f32 = 26.0;
 const EFFECT: f32 = 68.0;
 
-/// The list, folded at first.
+/// Shows the list, initially folded.
 pub(super) fn what_if(
     ui: &mut Ui,
     explained: &Explained,
@@ -47,7 +47,7 @@ pub(super) fn what_if(
     );
 }
 
-/// The numbers with their knobs.
+/// The numbers with their controls.
 fn list(
     ui: &mut Ui,
     explained: &Explained,
@@ -76,7 +76,7 @@ fn list(
     rows::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
 }
 
-/// The pixel before and after changes that were made here.
+/// The pixel before and after changes made in this list.
 fn change(ui: &mut Ui, explained: &Explained, actions: &mut Vec<Action>) {
     let Some(before) = probe::before(ui.ctx()) else { return };
     let after = explained.explanation.code();

@@ -1,4 +1,4 @@
-//! A handle in the hand: from the way of the pointer to the value that it means.
+//! A dragged handle: from the motion of the pointer to a value.
 
 use std::f32::consts::{PI, TAU};
 
@@ -19,53 +19,55 @@ use crate::{
     },
 };
 
-/// With Ctrl, positions and sizes go in such steps, metres.
+/// Step of positions and sizes with Ctrl, in metres.
 const METRES: f32 = 0.25;
-/// With Ctrl, angles go in such steps, degrees.
+/// Step of angles with Ctrl, in degrees.
 const DEGREES: f32 = 15.0;
-/// A ring whose axis is nearer to a right angle with the view than this sine is turned as a wheel seen from its side.
+/// Sine of the angle between a ring's plane and the line of sight below which the ring turns like a wheel seen from the
+/// side.
 const EDGE_ON: f32 = 0.2;
-/// A cone whose plane is nearer to a right angle with the picture than this sine is seen from its end.
+/// Sine of the angle between the line of sight and the plane of a cone's axis and handle, below which the cone is seen
+/// end on.
 const SIDEWAYS: f32 = 0.35;
-/// Farther than so many radii from the middle, a handle is off its sphere.
+/// Distance from the centre, in radii, beyond which a handle is off its sphere.
 const OFF: f32 = 1.15;
 
-/// What a drag sets.
+/// The value that a drag sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Dragged {
-    /// The position, metres.
+    /// The position, in metres.
     Position(Vec3),
-    /// The rotation, degrees; and the angle about the axis.
+    /// The rotation, in degrees, and the angle about the axis.
     Rotation(Vec3, f32),
-    /// The size, metres.
+    /// The size, in metres.
     Size(f32),
     /// The direction of a light.
     Direction(Vec3),
-    /// A parameter of a light, in its unit.
+    /// A parameter of a light, in the parameter's unit.
     Parameter(f32),
 }
 
-/// A handle in the hand, and what it had when it was grasped.
+/// A dragged handle, with the values from the start of the drag.
 #[derive(Clone, Debug)]
 pub(super) struct Grasp {
     pub(super) handle: Handle,
     pub(super) part: Selection,
-    /// The middle of the handles.
+    /// Centre of the handles.
     pub(super) at: Vec3,
-    /// The place of the pointer.
+    /// Position of the pointer.
     pub(super) pointer: Pos2,
-    /// The point of the room that the handle holds.
+    /// The point in the scene that the handle represents.
     point: Vec3,
     rotation: Quat,
     size: f32,
     direction: Vec3,
-    /// The parameter of a light that it changes, and its value.
+    /// The parameter of a light that the handle changes, and the value.
     parameter: Option<(&'static Parameter, f32)>,
-    /// The way to the end of a size of a light, and the part of it that lies there.
+    /// Vector to the end of a size of a light, and the fraction of the size that it covers.
     end: Option<(Vec3, f32)>,
-    /// The handle is on the side of its sphere that is towards the camera.
+    /// True if the handle is on the side of its sphere that faces the camera.
     near: bool,
-    /// It was pulled off its sphere; back on it, it is on the other side.
+    /// True if the handle was pulled off its sphere; when it returns, it changes sides.
     off: bool,
 }
 
@@ -80,19 +82,19 @@ fn wrapped(radians: f32) -> f32 {
     if degrees <= -179.999 { 180.0 } else { degrees }
 }
 
-/// The largest decimal step of a length that is no larger than another.
+/// The largest power of ten up to a length, between 0.0001 and 0.01.
 fn decimal(length: f32) -> f32 {
     10f32.powf(length.max(1e-6).log10().floor()).clamp(1e-4, 0.01)
 }
 
-/// The place where a line of sight meets a plane.
+/// The point at which a line of sight meets a plane.
 fn on_plane(ray: Ray, through: Vec3, normal: Vec3) -> Option<Vec3> {
     let t = (through - ray.eye).dot(normal) / ray.way.dot(normal);
     (t.is_finite() && t > 0.0).then(|| ray.eye + t * ray.way)
 }
 
-/// The direction from the middle of a sphere to where a line of sight meets its near or its far side; beside it, to the
-/// point of its edge that is nearest.
+/// The direction from the centre of a sphere to the near or far intersection with a line of sight; if the line misses,
+/// to the nearest point of the outline.
 fn on_sphere(ray: Ray, middle: Vec3, radius: f32, near: bool) -> Option<Vec3> {
     let to = middle - ray.eye;
     let closest = to.dot(ray.way);
@@ -102,7 +104,7 @@ fn on_sphere(ray: Ray, middle: Vec3, radius: f32, near: bool) -> Option<Vec3> {
     (ray.eye + t * ray.way - middle).try_normalize()
 }
 
-/// True if the end of an arm is on the side of a sphere that is seen from a place.
+/// True if the end of an arm is on the side of a sphere that is visible from `eye`.
 fn is_near(arm: Vec3, eye: Vec3) -> bool {
     let limb = arm.length() / eye.length().max(1e-6);
     arm.normalize_or_zero().dot(eye.normalize_or_zero()) > limb - 0.01
@@ -113,13 +115,13 @@ fn twist(rotation: Quat, axis: Vec3) -> f32 {
     2.0 * rotation.xyz().dot(axis).atan2(rotation.w)
 }
 
-/// The angles of a direction in degrees: about y from +z, and above the horizon.
+/// Azimuth and elevation of a direction in degrees: about y from +z, and above the horizon.
 fn angles(direction: Vec3) -> [f32; 2] {
     [direction.x.atan2(direction.z), direction.y.clamp(-1.0, 1.0).asin()].map(f32::to_degrees)
 }
 
 impl Grasp {
-    /// Takes a handle in the hand.
+    /// Starts to drag a handle.
     pub(super) fn of(placed: &Placed, target: &Target, lens: &Lens, pointer: Pos2) -> Self {
         let mut grasp = Self {
             handle: placed.handle,
@@ -154,7 +156,7 @@ impl Grasp {
         grasp
     }
 
-    /// The value that a place of the pointer means; in steps if it is to `snap`. None where it means nothing.
+    /// The value for a pointer position, in steps if `snap` is set; `None` if the position is meaningless.
     pub(super) fn drag(&self, lens: &Lens, pointer: Pos2, snap: bool, room: SceneSize) -> Option<Dragged> {
         let [right, up, ahead] = lens.axes();
         let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
@@ -187,7 +189,7 @@ impl Grasp {
                 Some(Dragged::Rotation(degrees, after + 0.0))
             }
             Handle::Size => {
-                // As seen from the middle, so that it is no matter where it was grasped.
+                // Distances from the centre, so that the grabbed point does not matter.
                 let radius = |ray: Ray| {
                     let arm = flat(ray)? - self.at;
                     Some(arm.dot(right).hypot(arm.dot(up)))
@@ -224,8 +226,9 @@ impl Grasp {
         }
     }
 
-    /// How far the pointer moves a point along an axis, metres. Along the axis as it is seen: what the pointer does across it
-    /// moves nothing. The point goes as far in the picture as the pointer, wherever on the handle that is.
+    /// Displacement of a point along an axis, in metres, for the motion of the pointer. Only the motion along the
+    /// projected axis counts, and the point moves as far in the picture as the pointer, wherever the handle was
+    /// grabbed.
     fn moved_along(&self, lens: &Lens, pointer: Pos2, from: Vec3, axis: Vec3) -> Option<f32> {
         let place = lens.project(from)?;
         let end = lens.project(from + lens.metres(from, 10.0) * axis)?;
@@ -233,7 +236,7 @@ impl Grasp {
         lens.ray(place + seen * (pointer - self.pointer).dot(seen)).along(from, axis)
     }
 
-    /// The angle by which the pointer turns a ring about an axis, radians.
+    /// The angle by which the pointer turns a ring about an axis, in radians.
     fn turned_about(&self, lens: &Lens, pointer: Pos2, axis: Vec3) -> Option<f32> {
         let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
         let to_eye = (lens.eye() - self.at).normalize_or_zero();
@@ -252,7 +255,7 @@ impl Grasp {
         Some(angle(now)? - angle(start)?)
     }
 
-    /// Takes note of a place of the pointer: pulled off its sphere and back, the handle of a direction is on the other side.
+    /// Tracks the pointer: a direction handle that is pulled off its sphere and back changes sides.
     pub(super) fn follow(&mut self, lens: &Lens, pointer: Pos2) {
         let Some(end) = self.end(lens, pointer).filter(|_| self.handle == Handle::Direction) else { return };
         let (ray, to) = (lens.ray(end), self.at - lens.eye());
@@ -264,30 +267,31 @@ impl Grasp {
         }
     }
 
-    /// The place at which the point is seen that the handle holds, when it was not grasped in its middle.
+    /// The position in the picture of the point that the handle represents, corrected for the point where it was
+    /// grabbed.
     fn end(&self, lens: &Lens, pointer: Pos2) -> Option<Pos2> {
         Some(pointer + (lens.project(self.point)? - self.pointer))
     }
 
-    /// The direction to the point that the handle holds when the pointer pulls it along its sphere.
+    /// The direction to the represented point when the pointer pulls it along its sphere.
     fn pulled(&self, lens: &Lens, pointer: Pos2) -> Option<Vec3> {
         let ray = lens.ray(self.end(lens, pointer)?);
         on_sphere(ray, self.at, (self.point - self.at).length(), self.near)
     }
 
-    /// The angle between the axis of a cone and the place to which its edge is pulled.
+    /// The angle between the axis of a cone and the point to which the cone's edge is pulled.
     fn opened(&self, lens: &Lens, pointer: Pos2) -> Option<f32> {
         let side = (self.point - self.at).reject_from(self.direction).normalize_or_zero();
         let normal = self.direction.cross(side);
         if normal.dot((lens.eye() - self.at).normalize_or_zero()).abs() < SIDEWAYS {
             return Some(self.direction.angle_between(self.pulled(lens, pointer)?));
         }
-        // Seen from its side, the cone opens in a plane.
+        // Seen from the side, the cone opens in a plane.
         let arm = on_plane(lens.ray(self.end(lens, pointer)?), self.at, normal)? - self.at;
         Some(arm.dot(side).abs().atan2(arm.dot(self.direction)))
     }
 
-    /// The change of the scene that gives the part a value.
+    /// The edit that gives the part a value.
     pub(super) fn edit(&self, dragged: Dragged) -> Option<Edit> {
         Some(match (self.part, dragged) {
             (Selection::Object(i), Dragged::Position(p)) => Edit::Object(i, ObjectField::Position(p)),
@@ -346,7 +350,7 @@ mod tests {
         scene::{Light, Scene},
     };
 
-    /// A view from the right and above, so that every axis can be seen.
+    /// A view from the right and above, in which every axis is visible.
     fn session() -> Session {
         let mut scene = Scene::default();
         scene.lights[0] = Light {
@@ -386,13 +390,13 @@ mod tests {
         for axis in 0..3 {
             let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Axis(axis));
             let way = Vec3::AXES[axis];
-            // As far as half a metre is in the picture.
+            // Half a metre further in the picture.
             let [from, after] = [0.0, 0.5].map(|t| lens.project(grasp.at + t * way).expect("in view"));
             let to = grasp.pointer + (after - from);
             let Dragged::Position(p) = drag(&session, &grasp, to, false) else { panic!("it moves") };
             assert!((p - grasp.at - 0.5 * way).length() < 0.011, "{axis}: {p}");
             assert!((0..3).all(|other| other == axis || p[other] == grasp.at[other]), "{axis}: {p}");
-            // Across the axis, it stays nearly where it is.
+            // Across the axis, it hardly moves.
             let side = (to - grasp.pointer).rot90();
             let Dragged::Position(p) = drag(&session, &grasp, grasp.pointer + side, false) else { panic!() };
             assert!((p - grasp.at).length() < 0.011, "{axis}: {p}");
@@ -471,7 +475,7 @@ mod tests {
         else {
             panic!()
         };
-        // The side towards the eye goes to the right.
+        // The side towards the eye turns to the right.
         assert!(right.y > 20.0 && right.x == 0.0 && right.z == 0.0, "{right}");
     }
 
@@ -525,7 +529,7 @@ mod tests {
             d.dot(to_eye)
         };
         assert!(pull(&mut grasp, 0.5) < -0.5);
-        // A little beyond the edge does not count.
+        // Slightly beyond the edge does not count.
         pull(&mut grasp, 1.05);
         assert!(pull(&mut grasp, 0.5) < -0.5);
         pull(&mut grasp, 1.4);

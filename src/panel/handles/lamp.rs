@@ -1,4 +1,4 @@
-//! The handles of what a light type declares: at the ends of its sizes, and one that turns it about its direction.
+//! Handles that a light type declares: at the ends of its sizes, and one for its roll.
 
 use bevy_egui::egui::Pos2;
 use glam::Vec3;
@@ -10,14 +10,15 @@ use crate::{
     scene::Light,
 };
 
-/// The nearest that the handle of a size comes to the middle, points.
+/// Minimum distance of a size handle from the centre, in points.
 const NEAREST: f32 = 26.0;
-/// The distance of a handle from the edge of the view, points.
+/// Minimum distance of a handle from the edge of the view, in points.
 const INSET: f32 = 14.0;
-/// An axis that is seen shorter than this part of it has no handles at its ends: it cannot be dragged along.
+/// Projected length of an axis, relative to its full length, below which it has no handles at its ends: it could not be
+/// dragged along.
 const FLAT: f32 = 0.2;
 
-/// The way from the middle of a light to the handle of a size.
+/// The direction from the centre of a light to the handle of a size.
 pub(super) fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: Vec3, lens: &Lens) -> Vec3 {
     let [right, up, _] = lens.axes();
     let direction = light.direction.and_then(Vec3::try_normalize);
@@ -26,7 +27,7 @@ pub(super) fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: V
         (Size::Width(_), _) => x,
         (Size::Height(_), _) => y,
         (Size::Length(_), Some(direction)) => direction,
-        // Where a circle reaches farthest to the side, to the right.
+        // The point of a circle that is farthest to the right.
         (_, Some(direction)) => {
             let across = lens.across(at, direction);
             if across.dot(right) < 0.0 { -across } else { across }
@@ -36,7 +37,7 @@ pub(super) fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: V
     if end == End::First { way } else { -way }
 }
 
-/// The handles of a light for its sizes and its roll.
+/// The handles for the sizes and the roll of a light.
 pub(super) fn placed(target: &Target, mode: HandleMode, lens: &Lens) -> Vec<Placed> {
     let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
         return Vec::new();
@@ -64,7 +65,7 @@ fn sizes(target: &Target, light: &Light, entry: &LightEntry, middle: Pos2, lens:
     all
 }
 
-/// The handle at an end of a size: there, but in the view, and apart from the middle.
+/// The handle at an end of a size, kept inside the view and away from the centre.
 fn at_end(handle: Handle, at: Vec3, middle: Pos2, arm: Vec3, way: Vec3, lens: &Lens) -> Option<Placed> {
     let step = lens.project(at + lens.metres(at, 10.0) * way)? - middle;
     let (length, seen) = (step.length(), step.normalized());
@@ -78,7 +79,7 @@ fn at_end(handle: Handle, at: Vec3, middle: Pos2, arm: Vec3, way: Vec3, lens: &L
     let across = room(middle.x, seen.x, [view.left(), view.right()]);
     let most = across.min(room(middle.y, seen.y, [view.top(), view.bottom()]));
     let ahead = lens.project(at + arm).map(|end| (end - middle).dot(seen)).filter(|points| *points <= most);
-    // Beyond the edge of the view the handle holds the axis where it leaves it.
+    // Outside the view, the handle sits where the axis leaves it.
     let (points, point) = match ahead {
         Some(points) => (points, at + arm),
         None => (most, at + lens.ray(middle + most * seen).along(at, way)? * way),

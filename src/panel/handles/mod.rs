@@ -1,10 +1,10 @@
-//! The handles of what is selected: arrows that move it, rings that turn it, one for its size; for a light one for its
-//! direction and one for its cone, and those for the sizes and the roll that its type declares.
+//! The handles of the selection: arrows that move it, rings that turn it, and one for its size; for a light, handles
+//! for its direction, its cone, and the sizes and the roll that its type declares.
 //!
-//! Bevy's `TransformGizmo` does not serve here. It takes the cursor of the window for one in the target of its camera,
-//! but the cameras of the window draw into textures that are shown beside panels and beside each other; and it draws
-//! into the picture, where tone mapping and exposure would change it and a capture would show it. These are painted over
-//! the picture, as the [`marks`] are, and what they change is an edit as that of any knob.
+//! Bevy's `TransformGizmo` is unsuitable here. It assumes that the cursor of the window refers to the target of its
+//! camera, but the cameras of the window draw into textures that are shown beside panels and beside each other. It also
+//! draws into the picture, where tone mapping and exposure would change it and a capture would show it. These handles
+//! are painted over the picture, as the [`marks`] are, and their changes are edits like those of any control.
 
 use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, WidgetType};
 
@@ -27,34 +27,34 @@ mod lamp;
 mod paint;
 mod shape;
 
-/// In a smaller picture there is no room for them, points.
+/// Minimum picture size for handles, in points.
 const SMALLEST: f32 = 120.0;
-/// The pointer rests after this, seconds.
+/// Time after which the pointer counts as resting, in seconds.
 const REST: f64 = 2.0;
-/// Handles fade in and out in this time, seconds.
+/// Duration of fading in and out, in seconds.
 const FADE: f32 = 0.15;
-/// A press that moves the pointer less is no drag, points.
+/// Drag threshold, in points.
 const SLACK: f32 = 1.5;
 
-/// A handle in the hand.
+/// The handle being dragged.
 #[derive(Clone, Debug)]
 struct Hold {
-    /// The view in which it is.
+    /// The view of the drag.
     view: Id,
     grasp: Grasp,
-    /// What it had before: Escape brings it back.
+    /// The original value, which Escape restores.
     before: Edit,
-    /// The pointer has moved.
+    /// True once the pointer has moved.
     moved: bool,
 }
 
-/// The key of the handle in the hand.
+/// Key of the handle being dragged.
 fn held() -> Id {
     Id::new("handle in the hand")
 }
 
-/// Shows the handles of what is selected in the rectangle of a view. Returns what was asked for, and the places that do
-/// not belong to the picture.
+/// Shows the handles of the selection in a view. Returns the requested actions, and the rectangles that cover the
+/// picture.
 pub(super) fn handles(
     ui: &Ui,
     rect: Rect,
@@ -121,21 +121,20 @@ pub(super) fn handles(
     (actions, places)
 }
 
-/// The reason for which handles were shown last.
+/// The latest reason to show the handles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Woken {
-    /// What they change, and how.
+    /// The selection, and the kind of handles.
     what: (Selection, HandleMode),
-    /// When, seconds.
+    /// Time of the reason, in seconds.
     at: f64,
-    /// Another part or another sort of handles was chosen: they are shown wherever the pointer is.
+    /// True if another part or another kind of handles was chosen, which shows them wherever the pointer is.
     chosen: bool,
-    /// When the window is woken to let them fade, seconds.
+    /// Time at which the window is woken to let them fade, in seconds.
     wakes: f64,
 }
 
-/// The opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that the picture can be
-/// seen as it is.
+/// Opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that nothing covers it.
 fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use: bool) -> f32 {
     let (now, over, moved) = ui.input(|i| {
         let over = i.pointer.latest_pos().is_some_and(|at| rect.contains(at));
@@ -143,7 +142,7 @@ fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use:
     });
     let key = view.with("woken");
     let known: Option<Woken> = ui.data(|data| data.get_temp(key));
-    // A window that has just been opened shows its picture.
+    // A newly opened window shows the picture without handles.
     let mut woken = known.unwrap_or(Woken { what, at: f64::NEG_INFINITY, chosen: false, wakes: 0.0 });
     if woken.what != what {
         woken = Woken { what, at: now, chosen: true, ..woken };
@@ -162,7 +161,7 @@ fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use:
     ui.ctx().animate_bool_with_time(view.with("opacity"), shown, FADE)
 }
 
-/// Lets go of the handle once the button is up.
+/// Ends the drag once the button is up.
 fn release(ui: &Ui) {
     if !ui.input(|i| i.pointer.primary_down()) {
         ui.data_mut(|data| data.remove::<Hold>(held()));
@@ -170,7 +169,7 @@ fn release(ui: &Ui) {
     }
 }
 
-/// The place of the pointer, if nothing is over the picture there and nothing else has it.
+/// Position of the pointer, if the picture is uncovered there and nothing else uses the pointer.
 fn free_pointer(ui: &Ui, rect: Rect, written: &[Rect], session: &Session) -> Option<Pos2> {
     let ctx = ui.ctx();
     let busy = session.questions.open.is_some()
@@ -183,14 +182,14 @@ fn free_pointer(ui: &Ui, rect: Rect, written: &[Rect], session: &Session) -> Opt
     (!busy && open && !covered && rect.contains(at)).then_some(at)
 }
 
-/// The handle at a place.
+/// The handle at a position.
 fn under(all: &[Placed], at: Pos2) -> Option<&Placed> {
     let near = all.iter().filter_map(|placed| Some((placed.distance(at)?, placed)));
-    // What is painted later lies over what is painted first.
+    // The handle painted last is on top.
     near.rev().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, placed)| placed)
 }
 
-/// The handles for screen readers, and their tooltips.
+/// Describes the handles for screen readers.
 fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], target: &Target, part: &str) {
     for placed in all {
         let place = Rect::from_center_size(placed.end, Vec2::splat(2.0 * placed.radius)).intersect(rect);
@@ -200,7 +199,7 @@ fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], target: &Target, part: &
     }
 }
 
-/// The value that a part has now, of the kind that a handle sets.
+/// The current value of a part, of the kind that a handle sets.
 fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
     let now = match (&target.body, grasp.handle) {
         (shape::Body::Object(object, _), Handle::Axis(_) | Handle::Plane) => {
@@ -221,7 +220,7 @@ fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
 /// True if an edit leaves the scene as it is.
 fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
     match (edit, now) {
-        // The same rotation in other angles is the same.
+        // Different angles can describe the same rotation.
         (Edit::Object(_, ObjectField::Rotation(a)), Some(Edit::Object(_, ObjectField::Rotation(b)))) => {
             rotation(*a).angle_between(rotation(b)) < 1e-4
         }
@@ -232,7 +231,7 @@ fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
     }
 }
 
-/// Goes on with a drag, and paints its numbers.
+/// Continues a drag, and paints its numbers.
 fn drag(
     ui: &Ui,
     lens: &Lens,
@@ -257,7 +256,7 @@ fn drag(
     let room = session.document.scene_size;
     let wanted = grasp.drag(lens, pointer, snap, room).filter(|_| hold.moved);
     let edit = wanted.and_then(|wanted| grasp.edit(wanted));
-    // Where another thing stands, the last place that was free stays.
+    // Where another part is in the way, keep the last valid value.
     let legal = edit.filter(|edit| session.document.allows(edit, registry));
     if hold.moved {
         let shown = wanted.filter(|_| legal.is_some()).or(now);

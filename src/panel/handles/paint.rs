@@ -1,4 +1,4 @@
-//! The handles as they are painted.
+//! Painting of the handles.
 
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, TextStyle, Ui, pos2, vec2};
 use glam::Vec3;
@@ -18,21 +18,21 @@ const AXES: [Color32; 3] = [
     Color32::from_rgb(0x2e, 0xd0, 0x9c),
     Color32::from_rgb(0x5a, 0xa9, 0xf5),
 ];
-/// What belongs to no axis.
+/// Colour of handles that belong to no axis.
 const WHITE: Color32 = Color32::from_rgb(0xf6, 0xf6, 0xf6);
-/// Width of a line, points.
+/// Width of a line, in points.
 const LINE: f32 = 2.25;
-/// Width of the line under the pointer, points.
+/// Width of the line under the pointer, in points.
 const HOT: f32 = 3.75;
 
-/// The state of a handle.
+/// State of a handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
-    /// It can be grasped.
+    /// Idle.
     Free,
-    /// The pointer is over it, or holds it.
+    /// Under the pointer, or dragged.
     Hot,
-    /// Another one is held.
+    /// Dimmed while another handle is dragged.
     Dim,
 }
 
@@ -48,7 +48,7 @@ fn colour_of(handle: Handle, state: State) -> Color32 {
     }
 }
 
-/// Paints the handles, as opaque as told, each in its state: the one under the pointer over the others.
+/// Paints the handles with the given opacity, each in its state; the one under the pointer is on top.
 pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: impl Fn(Handle) -> State) {
     let painter = ui.painter_at(lens.rect());
     for hot in [false, true] {
@@ -98,12 +98,12 @@ pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: 
     }
 }
 
-/// The beginning of the first line.
+/// The start of the first line.
 fn middle(placed: &Placed) -> Pos2 {
     placed.lines.first().and_then(|line| line.first()).copied().unwrap_or(placed.end)
 }
 
-/// The axis along which something is moved, through the room.
+/// The axis along which something is moved, through the whole scene.
 pub(super) fn guide(ui: &Ui, lens: Lens, at: Vec3, axis: usize, room: SceneSize) {
     let ends = [0.0, room.corner()[axis]].map(|v| {
         let mut end = at;
@@ -127,7 +127,7 @@ pub(super) fn angle(ui: &Ui, lens: Lens, at: Vec3, ends: [Pos2; 2]) {
     ink.paint(&ui.painter_at(lens.rect()));
 }
 
-/// Numbers beside the pointer.
+/// A plate with numbers beside the pointer.
 pub(super) fn plate(ui: &Ui, rect: Rect, pointer: Pos2, text: String) {
     let palette = Palette::here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());

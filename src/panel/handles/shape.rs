@@ -1,4 +1,4 @@
-//! The handles of what is selected, and their places in the picture.
+//! The handles of the selection, and their positions in the picture.
 
 use std::f32::consts::TAU;
 
@@ -17,53 +17,54 @@ use crate::{
     scene::{Light, Object, rotation::rotation},
 };
 
-/// Length of the arrows, points.
+/// Length of an arrow, in points.
 const ARM: f32 = 76.0;
-/// Radius of the rings, points.
+/// Radius of a ring, in points.
 pub(super) const RING: f32 = 78.0;
-/// Around the middle there is no handle, so that the picture can be turned there.
+/// Radius of the area around the centre without handles, which leaves room for turning the view, in points.
 const GAP: f32 = 13.0;
-/// The shortest arrow, points: seen from its end, an axis cannot be dragged along.
+/// Minimum projected length of an arrow, in points: an axis seen end on cannot be dragged along.
 const SHORTEST: f32 = 30.0;
-/// Distance of the disc that moves sideways from the middle, points.
+/// Distance from the centre of the disc that moves in the picture plane, in points.
 const ASIDE: f32 = 34.0;
-/// The distance of the handle of the size from the middle, as a multiple of the largest half extent.
+/// Distance of the size handle from the centre, as a multiple of the largest half extent.
 const OUTWARD: f32 = 1.2;
-/// The nearest that the handle of the size comes to the middle, points.
+/// Minimum distance of the size handle from the centre, in points.
 const NEAREST: f32 = 44.0;
-/// Distance of a letter from the end of its arrow, points.
+/// Distance of a letter from the end of its arrow, in points.
 pub(super) const LETTER: f32 = 13.0;
-/// Radius of a disc, points.
+/// Radius of a disc, in points.
 pub(super) const DISC: f32 = 6.0;
-/// Distance within which a line is grasped, points.
+/// Grab distance of a line, in points.
 const REACH: f32 = 6.0;
-/// Distance of handles from the object that they belong to, points: they cover none of it.
+/// Distance of handles from their object, which they must not cover, in points.
 const CLEAR: f32 = 7.0;
-/// The shortest arrow beyond the object, as a part of its length; at the edge of the view, all have this part.
+/// Minimum length of an arrow beyond the object, relative to [`ARM`]; also the length of arrows at the edge of the
+/// view.
 const STUB: f32 = 0.5;
-/// The longest arrow, as a part of its length.
+/// Maximum length of an arrow, relative to [`ARM`].
 const LONGEST: f32 = 1.2;
-/// The radius within which a letter is grasped, points.
+/// Grab radius of a letter, in points.
 const LETTER_RADIUS: f32 = 8.0;
-/// Lines of a ring.
+/// Number of segments of a ring.
 const SIDES: usize = 72;
 
 /// A handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Handle {
-    /// Moves along an axis of the room.
+    /// Moves along a world axis.
     Axis(usize),
-    /// Moves in the plane of the picture.
+    /// Moves in the picture plane.
     Plane,
-    /// Turns about an axis of the room.
+    /// Turns about a world axis.
     Ring(usize),
-    /// Makes larger and smaller.
+    /// Changes the size.
     Size,
     /// Turns the direction of a light.
     Direction,
     /// Opens the cone of a light.
     Cone,
-    /// Changes a size of a light: which of those that its type declares, and at which of its ends.
+    /// Changes a size of a light: index among the declared sizes, and the dragged end.
     Extent(usize, End),
     /// Turns a light about its direction.
     Roll,
@@ -72,33 +73,33 @@ pub(super) enum Handle {
 /// An end of a size of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum End {
-    /// The end to which its axis points.
+    /// The end in the direction of the size's axis.
     First,
-    /// The end opposite.
+    /// The opposite end.
     Second,
 }
 
-/// The names of the axes.
+/// Names of the axes.
 pub(super) const LETTERS: [&str; 3] = ["x", "y", "z"];
 
 /// The part of the scene that the handles change.
 pub(super) enum Body<'a> {
-    /// An object, with half its extents as parts of its size.
+    /// An object, with half its extents relative to its size.
     Object(&'a Object, Vec3),
     /// A light.
     Light(&'a Light, &'a LightEntry),
 }
 
-/// What the handles belong to.
+/// The part that the handles belong to.
 pub(super) struct Target<'a> {
     pub(super) part: Selection,
-    /// The middle of the handles.
+    /// Centre of the handles.
     pub(super) at: Vec3,
     pub(super) body: Body<'a>,
 }
 
 impl<'a> Target<'a> {
-    /// What is selected, if it has handles; `places` are those of the marks of lights.
+    /// The selection, if it has handles; `places` returns the positions of the light markers.
     pub(super) fn of(
         session: &'a Session,
         registry: &'a Registry,
@@ -132,7 +133,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The name of a handle for people; `part` is that of what it belongs to.
+    /// The display name of a handle; `part` is the name of the part it belongs to.
     pub(super) fn name(&self, handle: Handle, part: &str) -> String {
         let label = || self.parameter(handle).map_or("size", |p| p.label);
         match handle {
@@ -152,20 +153,20 @@ impl<'a> Target<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
     pub(super) handle: Handle,
-    /// Its lines.
+    /// Lines of the handle.
     pub(super) lines: Vec<Vec<Pos2>>,
-    /// The lines on its far side, which are fainter.
+    /// Lines on the far side, which are fainter.
     pub(super) far: Vec<Vec<Pos2>>,
-    /// The place of its end or its letter.
+    /// Position of the end or the letter.
     pub(super) end: Pos2,
-    /// The radius within which the end is grasped.
+    /// Grab radius of the end.
     pub(super) radius: f32,
-    /// The point of the room that it holds.
+    /// The point in the scene that the handle represents.
     pub(super) point: Vec3,
 }
 
 impl Placed {
-    /// The distance of a place in the picture from the handle if that is within its reach; 0 on it.
+    /// Distance of a position from the handle, 0 if it is on the handle; `None` if it is out of reach.
     pub(super) fn distance(&self, from: Pos2) -> Option<f32> {
         let end = (self.end.distance(from) - self.radius).max(0.0);
         let lines = self.lines.iter().map(|line| (line, 0.0)).chain(self.far.iter().map(|line| (line, 3.0)));
@@ -174,7 +175,7 @@ impl Placed {
         Some(nearest.fold(end, f32::min)).filter(|distance| *distance <= REACH)
     }
 
-    /// Points of it, so close to each other that squares around them cover it.
+    /// Points along the handle, dense enough that squares around them cover it.
     pub(super) fn points(&self) -> impl Iterator<Item = Pos2> + '_ {
         let lines = self.lines.iter().chain(&self.far);
         let along = lines.flat_map(|line| line.windows(2)).flat_map(|pair| {
@@ -184,7 +185,7 @@ impl Placed {
         along.chain([self.end])
     }
 
-    /// Without the lines before the object.
+    /// Removes the parts of the lines that lie in front of the object.
     fn beyond(mut self, middle: Pos2, object: Option<Extent>) -> Self {
         let Some(object) = object else { return self };
         for lines in [&mut self.lines, &mut self.far] {
@@ -196,25 +197,25 @@ impl Placed {
         self
     }
 
-    /// The half side of the squares around its points.
+    /// Half the side of the squares around [`points`](Self::points).
     pub(super) fn half(&self) -> f32 {
         REACH.max(self.radius)
     }
 }
 
-/// The distance of a point from a segment.
+/// Distance of a point from a segment.
 fn apart(p: Pos2, a: Pos2, b: Pos2) -> f32 {
     let along = b - a;
     let t = ((p - a).dot(along) / along.length_sq().max(1e-6)).clamp(0.0, 1.0);
     p.distance(a + t * along)
 }
 
-/// The size of handles in a view: in a small one they are small.
+/// Relative size of the handles in a view: smaller in a small view.
 pub(super) fn part_of(lens: &Lens) -> f32 {
     (0.0034 * lens.rect().size().min_elem()).min(1.0)
 }
 
-/// The handles of a target in a mode, but for those of sizes and rolls of lights, in the order in which they are painted.
+/// The handles of a target in a mode, in painting order, without those for the sizes and the roll of a light.
 pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens: &Lens) -> Vec<Placed> {
     let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
         return Vec::new();
@@ -246,7 +247,7 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
         (Body::Light(..), _) => {}
     }
     if let Body::Light(light, entry) = target.body
-        // Sizes may end where it is.
+        // Size handles may be at the same position.
         && (mode != HandleMode::Size || entry.declaration.sizes.is_empty())
         && let Some(direction) = light.direction.and_then(Vec3::try_normalize)
     {
@@ -268,12 +269,12 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     all
 }
 
-/// The extent of an object in the picture: half the axes of the ellipsoid that its bounds hold, points.
+/// Extent of an object in the picture: the projected half axes of the ellipsoid inscribed in its bounds, in points.
 #[derive(Clone, Copy, Debug)]
 struct Extent([Vec2; 3]);
 
 impl Extent {
-    /// That of the object of a target; none if the camera is within it.
+    /// Extent of the target's object; `None` if the target is a light or an axis ends behind the camera.
     fn of(target: &Target, middle: Pos2, lens: &Lens) -> Option<Self> {
         let Body::Object(object, half) = target.body else { return None };
         let turned = rotation(object.rotation);
@@ -284,31 +285,31 @@ impl Extent {
         Some(Self([axis(0)?, axis(1)?, axis(2)?]))
     }
 
-    /// True if it leaves room in the picture for handles around it.
+    /// True if the picture has room for handles around the object.
     fn leaves_room(&self, part: f32, lens: &Lens) -> bool {
         let needed = STUB * part * ARM + 2.0 * LETTER;
         self.most() + needed < 0.5 * lens.rect().size().min_elem()
     }
 
-    /// The distance from the middle beyond which a handle covers nothing of it, in a direction of the picture.
+    /// Distance from the centre, in a direction of the picture, beyond which a handle does not cover the object.
     fn towards(&self, way: Vec2) -> f32 {
         let way = way.normalized();
         self.0.iter().map(|axis| axis.dot(way).powi(2)).sum::<f32>().sqrt() + CLEAR
     }
 
-    /// The same in whichever direction.
+    /// The largest such distance in any direction.
     fn most(&self) -> f32 {
         let ways = (0..16).map(|k| Vec2::angled(k as f32 / 16.0 * 0.5 * TAU));
         ways.map(|way| self.towards(way)).fold(0.0, f32::max)
     }
 }
 
-/// The arrows where the object leaves no room around it: at an edge of the view that it leaves free, or nearly so. They are
-/// pulled there as they are elsewhere: it is the way of the pointer that counts.
+/// Arrows for an object that leaves no room around it, at an edge of the view where they cover the object least. They
+/// are dragged like any others: only the motion of the pointer counts.
 fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens: &Lens) -> Vec<Placed> {
     let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect().size().min_elem());
     let inside = lens.rect().shrink(inset);
-    // Badges and captions are rather at the top.
+    // Bottom corners first: badges and captions tend to be at the top.
     let places = [
         inside.left_bottom(),
         inside.right_bottom(),
@@ -334,8 +335,8 @@ fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens
     best.map(|(_, all)| all).unwrap_or_default()
 }
 
-/// The arrows along the axes of the room, and the disc that moves in the plane of the picture, around an origin; `middle` is
-/// that of what they move.
+/// Arrows along the world axes, and the disc that moves in the picture plane, around `origin`; `middle` is the centre
+/// of the moved part.
 fn arrows(
     at: Vec3,
     [origin, middle]: [Pos2; 2],
@@ -355,11 +356,11 @@ fn arrows(
         let way = along.normalized();
         let arrow = |clear: Option<f32>| {
             let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
-            // Towards the camera it would grow without end.
+            // An arrow that points at the camera would grow without bound.
             let to = along.length().min(LONGEST * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
             (vec![origin + from * way, origin + to * way], origin + (to + LETTER) * way)
         };
-        // Outside the view it could not be grasped.
+        // A letter outside the view could not be grabbed.
         let inside = lens.rect().shrink(LETTER);
         let beyond =
             Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
@@ -373,7 +374,7 @@ fn arrows(
             point,
         });
     }
-    // Where the arrows leave most room: to the upper right, if they leave it there.
+    // In the widest gap between the arrows, preferably at the upper right.
     let ways: Vec<Vec2> = all.iter().map(|p: &Placed| (p.end - origin).normalized()).collect();
     let corners = [vec2(1.0, -1.0), vec2(-1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)].map(Vec2::normalized);
     let nearest = |corner: &Vec2| ways.iter().map(|way| way.dot(*corner)).fold(-1.0, f32::max);
@@ -391,7 +392,7 @@ fn arrows(
     all
 }
 
-/// The lines of a circle from the first of two directions to the second, those on its near and those on its far side.
+/// The lines of a circle spanned by two directions, on the near side and on the far side.
 pub(super) fn circle(at: Vec3, [first, second]: [Vec3; 2], length: f32, lens: &Lens) -> [Vec<Vec<Pos2>>; 2] {
     let around = |k: usize| {
         let (y, x) = (k as f32 / SIDES as f32 * TAU).sin_cos();
@@ -414,12 +415,12 @@ pub(super) fn circle(at: Vec3, [first, second]: [Vec3; 2], length: f32, lens: &L
     [lines, far]
 }
 
-/// A ring about an axis of the room.
+/// A ring about a world axis.
 fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     let sides = [Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]];
     let length = lens.metres(at, radius);
     let [lines, far] = circle(at, sides, length, lens);
-    // Its letter is where it is seen best: at the top, at the right, between them.
+    // The letters are spread for legibility: at the top, at the right, and between them.
     let wanted = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.7, 0.7)][axis];
     let middle = lens.project(at).unwrap_or_default();
     let inside = lens.rect().shrink(LETTER + LETTER_RADIUS);
@@ -439,7 +440,7 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     }
 }
 
-/// The handle of the size, on the way to the upper right.
+/// The size handle, to the upper right of the centre.
 fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<Extent>, lens: &Lens) -> Option<Placed> {
     let way = vec2(1.0, -1.0).normalized();
     let clear = clear.map_or(GAP, |clear| clear.towards(way));

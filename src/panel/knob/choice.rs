@@ -1,4 +1,4 @@
-//! Knobs for one of several choices.
+//! Knobs for choices.
 
 use bevy_egui::egui::{
     self, Button, Id, Popup, PopupCloseBehavior, RectAlign, Response, RichText, Ui, WidgetInfo, WidgetType,
@@ -13,8 +13,8 @@ use crate::panel::{
     theme::{self, Palette},
 };
 
-/// One of many: word at the left; the button at the right opens `list`, until that returns something. `list`
-/// gets an id of its own.
+/// A choice among many options: label at the left; a button at the right opens `list`, which receives its own id, until
+/// that returns a value.
 pub fn list_knob<R>(
     ui: &mut Ui,
     salt: &str,
@@ -43,10 +43,10 @@ pub fn list_knob<R>(
     out
 }
 
-/// The width of a list of models, points: the authors of most fit beside their names.
+/// Width of a list of models, in points: most authors fit beside the names.
 pub(in crate::panel) const WIDE: f32 = 460.0;
 
-/// The popup of a button, so wide if there is room: `list`, which gets an id of its own.
+/// The popup of a button, at most `width` points wide: `list`, which receives its own id.
 pub(in crate::panel) fn drop_down<R>(
     button: &Response,
     id: Id,
@@ -70,7 +70,7 @@ pub(in crate::panel) fn drop_down<R>(
     popup.and_then(|popup| popup.inner)
 }
 
-/// One of several: word at the left, list at the right. Returns the index of a new choice.
+/// A choice among several options: label at the left, list at the right. Returns the index of a new choice.
 pub fn choice_knob(
     ui: &mut Ui,
     salt: &str,
@@ -82,7 +82,7 @@ pub fn choice_knob(
     choice_with_help(ui, salt, caption, chosen, &plain)
 }
 
-/// The same with tooltips: each option is a name, its author and a summary; the latter two may be empty.
+/// A choice with tooltips: each option has a name, an author and a summary; the latter two may be empty.
 pub fn choice_with_help(
     ui: &mut Ui,
     salt: &str,

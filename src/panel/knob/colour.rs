@@ -13,7 +13,7 @@ use crate::{
     scene::limits::Limits,
 };
 
-/// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
+/// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
 pub fn colour_knob(
     ui: &mut Ui,
     salt: &str,
@@ -77,7 +77,7 @@ pub fn colour_knob(
     out.filter(|c| *c != value)
 }
 
-/// The colour itself; a click opens the picker, a double-click sets the default.
+/// The colour swatch: a click opens the picker, a double-click sets the default.
 fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::click());
@@ -113,11 +113,11 @@ pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
     response.on_hover_text(format!("The colour in sRGB: {r}, {g}, {b}"));
 }
 
-/// Reads `#rrggbb`, `rrggbb` or `#rgb`.
+/// Parses `#rrggbb`, `rrggbb` or `#rgb`.
 #[must_use]
 pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
     let digits = text.trim().trim_start_matches('#');
-    // Four and eight digits would have an opacity.
+    // Four or eight digits would include an opacity.
     if !digits.is_ascii() || ![3, 6].contains(&digits.len()) {
         return None;
     }

@@ -1,7 +1,7 @@
-//! Fields to type into.
+//! Text fields.
 //!
-//! Text that is not legal stays in the field, in the error style and with the rule below it, until it is
-//! corrected or given up with Escape.
+//! Invalid text stays in the field, in the error style and with the rule shown, until it is corrected or cancelled with
+//! Escape.
 
 use bevy_egui::egui::{
     self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, TextStyle, Ui,
@@ -14,35 +14,35 @@ use crate::{
     scene::limits::{Limits, number},
 };
 
-/// Text that is being typed into a field.
+/// Text being edited in a field.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Draft {
     text: String,
-    /// The value when typing began; Escape goes back to it.
+    /// The value before editing, which Escape restores.
     before: f64,
-    /// The value that the field last yielded, to notice a change from elsewhere.
+    /// The value last returned by the field, to detect changes from elsewhere.
     last: f64,
 }
 
-/// The response of a field, and the value or the error in it.
+/// The response of a field, and the new value or the error.
 #[derive(Debug)]
 pub struct Field<T = f64> {
     /// The response of the text field.
     pub response: Response,
-    /// A new legal value.
+    /// The new valid value.
     pub value: Option<T>,
-    /// The rule that the text in the field breaks.
+    /// The rule that the text violates.
     pub error: Option<String>,
 }
 
-/// Reads a number as people type it: with a point or a comma, with a real minus sign.
+/// Parses a number as people type it: with a point or a comma, also with a typographic minus sign.
 #[must_use]
 pub fn parse(text: &str) -> Option<f64> {
     let text = text.trim().replace('−', "-").replace(',', ".");
     text.parse::<f64>().ok().filter(|v| v.is_finite())
 }
 
-/// The legal number in a text, or its error.
+/// The valid number in a text, or the error.
 pub(super) fn read(text: &str, limits: &Limits) -> Result<f64, String> {
     match parse(text) {
         Some(v) if limits.allows(v) => Ok(v),
@@ -55,7 +55,7 @@ pub(super) fn read(text: &str, limits: &Limits) -> Result<f64, String> {
 pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
     let draft_id = id.with("draft");
     let mut draft: Option<Draft> = ui.data(|d| d.get_temp(draft_id));
-    // Somebody else changed the value: what was typed is about another one.
+    // The value changed elsewhere, which makes the edited text obsolete.
     if draft.as_ref().is_some_and(|d| d.last != value) {
         draft = None;
     }
@@ -70,7 +70,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     let problem = |text: &str| read(text, limits).err();
     let wrong = draft.as_ref().and_then(|d| problem(&d.text));
 
-    // The arrow keys turn the value; taken before the text field sees them.
+    // The arrow keys step the value; consumed before the text field sees them.
     let mut step = 0.0;
     if focused {
         ui.input_mut(|i| {
@@ -97,8 +97,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     if response.changed() {
         let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
         d.text.clone_from(&text);
-        // Numbers on the way to an illegal one (3, 30, 300) were never meant: the value from
-        // before counts again.
+        // The prefixes of an invalid number (3, 30, 300) were never intended: restore the value from before.
         out =
             read(&text, limits).ok().or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
     }
@@ -113,7 +112,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
             d.text = number(v);
         }
     }
-    // egui itself takes the focus away at Escape.
+    // egui itself drops the focus on Escape.
     let escape = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
     if escape && let Some(d) = draft.take() {
         out = Some(d.before).filter(|v| *v != value && limits.allows(*v));
@@ -133,10 +132,10 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     Field { response, value: out.filter(|v| *v as f32 != value as f32 || limits.whole && *v != value), error }
 }
 
-/// The points of a field that its text does not have.
+/// Horizontal padding of the text in a field, in points.
 const PADDING: f32 = 10.0;
 
-/// A number as long as there is room for: with fewer decimals where it is wider.
+/// A number shortened to the available width by rounding decimals.
 fn fitted(ui: &Ui, value: f64, room: f32) -> String {
     let font = TextStyle::Body.resolve(ui.style());
     let fits = |text: &String| {
@@ -147,7 +146,7 @@ fn fitted(ui: &Ui, value: f64, room: f32) -> String {
         return whole;
     }
     let rounded = (0..4).rev().map(|decimals| round_to(value, 0.1_f64.powi(decimals)));
-    // 0 would say something else than a small number.
+    // A small number must not appear as 0.
     rounded.filter(|v| *v != 0.0).map(number).find(fits).unwrap_or(whole)
 }
 
@@ -160,18 +159,18 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
     }
 }
 
-/// The room of an error, and its distance from the panel, points.
+/// Space for an error, and the distance of the error from the panel, in points.
 const COMPLAINT: f32 = 352.0;
 const BESIDE: f32 = 4.0;
 
-/// The error beside the panel of a field, at its height: so nothing moves while one types, and no other knob is
-/// covered. It goes when the focus and the pointer do; the field stays red.
+/// Shows the error beside the panel, level with the field, so that nothing moves during typing and no other knob is
+/// covered. It disappears with focus and pointer; the field stays red.
 pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     if !(field.has_focus() || field.hovered()) || !ui.is_rect_visible(field.rect) {
         return;
     }
     let palette = Palette::here(ui);
-    // Where there is no room beside it, as in a popup at the edge, it is below.
+    // Below the field if there is no room beside it, as for a popup at the edge.
     let left = ui.clip_rect().left() - BESIDE;
     let (pivot, at) = if left - ui.ctx().content_rect().left() > COMPLAINT {
         (Align2::RIGHT_CENTER, pos2(left, field.rect.center().y))
@@ -188,8 +187,7 @@ pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     });
 }
 
-/// The text itself, in a frame; all of it is selected when the focus comes. `name` and `shown` are for screen
-/// readers.
+/// The framed text field; gaining the focus selects all text. `name` and `shown` are for screen readers.
 #[allow(clippy::too_many_arguments)]
 fn text_edit(
     ui: &mut Ui,
@@ -211,7 +209,7 @@ fn text_edit(
     };
     let frame = egui::Frame::new()
         .fill(palette.field)
-        // A stroke of another width would move what stands below.
+        // A change of the stroke width would move the widgets below.
         .stroke(Stroke::new(1.0, line))
         .corner_radius(4.0)
         .inner_margin(egui::Margin::symmetric(4, 2));
@@ -237,8 +235,8 @@ fn text_edit(
     response
 }
 
-/// A field for a value that is not one number: `read` parses the text or explains its error. Illegal text is
-/// dropped when the field loses the focus. `name` is for screen readers.
+/// A field for a value other than a number: `read` parses the text or explains the error. Invalid text is dropped when
+/// the field loses the focus. `name` is for screen readers.
 pub(super) fn text_field<T>(
     ui: &mut Ui,
     id: Id,

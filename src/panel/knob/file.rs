@@ -9,7 +9,8 @@ use crate::{
     parameter::{NamedFile, Parameter},
 };
 
-/// A file: word at the left, at the right a button with its name. True if another one is wanted.
+/// A file: label at the left, and at the right a button with the file name. Returns true if the user wants another
+/// file.
 pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile) -> bool {
     let palette = Palette::here(ui);
     let caption = Caption { symbol: p.symbol, label: p.label, help: p.help, ..Caption::default() };

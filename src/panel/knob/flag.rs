@@ -1,11 +1,11 @@
-//! The knob for true or false.
+//! The knob for a flag.
 
 use bevy_egui::egui::{Ui, WidgetInfo, WidgetType};
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::panel::{lesson::point, linked};
 
-/// True or false: word at the left, checkbox at the right. Returns a new value.
+/// A flag: label at the left, checkbox at the right. Returns the new value.
 pub fn flag_knob(ui: &mut Ui, salt: &str, caption: &Caption, on: bool) -> Option<bool> {
     let enabled = caption.disabled.is_none();
     let mut next = on;

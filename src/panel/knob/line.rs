@@ -1,4 +1,4 @@
-//! The line of a knob: symbol and word at the left, the widgets at the right, and the tooltip.
+//! The line of a knob: symbol and label at the left, the widgets at the right, and the tooltip.
 
 use bevy_egui::egui::{self, Align, Response, RichText, Sense, TextStyle, Ui, pos2, vec2};
 
@@ -10,33 +10,33 @@ use crate::{
     scene::limits::{Limits, number},
 };
 
-/// The words and symbols of a knob.
+/// Symbol and texts of a knob.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Caption<'a> {
-    /// The symbol in the equation; empty for none.
+    /// Symbol in the equation; empty for none.
     pub symbol: &'a str,
-    /// The word.
+    /// Label.
     pub label: &'a str,
-    /// The unit; empty for none.
+    /// Unit; empty for none.
     pub unit: &'a str,
-    /// Its effect, for the tooltip.
+    /// Description of the effect, for the tooltip.
     pub help: &'a str,
-    /// The reason why it is disabled, if it is.
+    /// Why the knob is disabled, if it is.
     pub disabled: Option<&'a str>,
-    /// The room of the symbol where words stand in line with those of other knobs, points; 0 for as much as it needs.
+    /// Minimum width of the symbol column, which aligns labels with those of other knobs, in points; 0 for none.
     pub indent: f32,
 }
 
-/// The room of symbol and word in the line of a knob.
+/// Width of symbol and label in the line of a knob.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Words {
-    /// As much as they need; these points are left for the rest.
+    /// As wide as necessary, leaving the given number of points for the rest.
     Leave(f32),
-    /// A column as wide in every knob, so that sliders begin in line.
+    /// A column of the same width in every knob, so that sliders are aligned.
     Column,
 }
 
-/// The line of a knob: symbol and word at the left, the widgets of `right` at the right.
+/// The line of a knob: symbol and label at the left, the widgets of `right` at the right.
 pub(super) fn head<R>(
     ui: &mut Ui,
     caption: &Caption,
@@ -50,10 +50,10 @@ pub(super) fn head<R>(
         Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
         Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
     };
-    // A parameter without a symbol of its own has its name for one, and need not say it twice.
+    // A parameter without a symbol uses its name as the symbol, which is not repeated.
     let word = if caption.symbol == caption.label { "" } else { caption.label };
     let font = TextStyle::Body.resolve(ui.style());
-    // The last words tell some parameters apart.
+    // Wrapped rather than elided, since some labels differ only in their last words.
     let mut job = egui::text::LayoutJob::simple(word.to_owned(), font, colour, room - symbol_column);
     job.wrap.max_rows = ROWS;
     let galley = ui.painter().layout_job(job);
@@ -83,27 +83,27 @@ pub(super) fn head<R>(
     row.inner
 }
 
-/// The size of a symbol.
+/// Font size of a symbol.
 const SYMBOL: f32 = 16.0;
 
-/// The most rows that a word is broken into.
+/// Maximum number of rows of a label.
 const ROWS: usize = 3;
 
-/// The room that a symbol takes before a word, with the space between them.
+/// Width of a symbol in front of a label, including the gap between them.
 pub(in crate::panel) fn symbol_column(ui: &Ui, symbol: &str) -> f32 {
     if symbol.is_empty() { 0.0 } else { (maths::symbol_width(ui, symbol, SYMBOL) + 6.0).max(28.0) }
 }
 
-/// The part of the line that symbol and word take in knobs with a slider.
+/// Fraction of the line that symbol and label take in knobs with a slider.
 const COLUMN: f32 = 0.49;
 
-/// The points that a number and its unit take at the right of a knob.
+/// Width of a number and its unit at the right of a knob, in points.
 pub(super) const NUMBER: f32 = 96.0;
 
-/// The points that a choice takes at the right of a knob.
+/// Width of a choice at the right of a knob, in points.
 pub(super) const CHOICE: f32 = 150.0;
 
-/// The tooltip of a knob: its name, its effect, its range, the default.
+/// The tooltip of a knob: name, effect, range, default.
 pub(super) fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
     ui.set_max_width(300.0);
     ui.label(theme::strong(ui, capitalised(caption.label)));
@@ -121,7 +121,7 @@ pub(super) fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str)
     }
 }
 
-/// The range for the tooltip: the rule, and the ends of the slider if other values can be typed.
+/// The range for the tooltip: the rule, and the ends of the slider if values beyond them can be typed.
 pub(super) fn range(limits: &Limits) -> String {
     let rule = limits.rule();
     let (left, right) = (number(limits.slider_min), number(limits.slider_max));
@@ -133,7 +133,7 @@ pub(super) fn range(limits: &Limits) -> String {
     }
 }
 
-/// A tooltip for a widget that may be disabled.
+/// Adds a tooltip to a widget that may be disabled.
 pub(super) fn explain(response: Response, tip: impl Fn(&mut Ui)) {
     response.on_hover_ui(&tip).on_disabled_hover_ui(&tip);
 }
@@ -143,7 +143,7 @@ pub(super) fn capitalised(text: &str) -> String {
     chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// The unit, outside the field, in a column of its own.
+/// The unit, outside the field, in a separate column.
 pub(super) fn unit(ui: &mut Ui, text: &str) {
     let palette = Palette::here(ui);
     let font = TextStyle::Small.resolve(ui.style());

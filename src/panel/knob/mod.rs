@@ -1,6 +1,6 @@
-//! Knobs: widgets that show one value, let it be dragged or typed, and keep it within its limits.
+//! Knobs: widgets that show one value, let the user drag or type it, and enforce its limits.
 //!
-//! A knob never yields an illegal value.
+//! A knob never returns an invalid value.
 
 use bevy_egui::egui::Ui;
 
@@ -34,7 +34,7 @@ pub(super) use picker::picker;
 pub use readout::readout;
 pub use vector::{triple_knob, vector_knob};
 
-/// The limits that a declaration gives, for numbers.
+/// The limits of a declared number; `None` for other kinds.
 #[must_use]
 pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
     match parameter.kind {
@@ -61,7 +61,7 @@ pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
     }
 }
 
-/// The knob of a declared parameter. Returns a new legal value.
+/// The knob of a declared parameter. Returns a new valid value.
 pub fn parameter_knob(
     ui: &mut Ui,
     salt: &str,
@@ -80,7 +80,7 @@ pub fn parameter_knob(
     match (&parameter.kind, value) {
         (ParameterKind::Number { default, .. }, Value::Number(v)) => {
             let limits = limits_of(parameter)?;
-            // The limits are f32: a value at an end must not fall outside for being an f64.
+            // The limits are f32: rounding to f64 must not push a value at an end out of range.
             number_knob(ui, salt, &caption, f64::from(*v), Some(f64::from(*default)), &limits)
                 .map(|v| Value::Number(v as f32))
                 .filter(|v| parameter.allows(v))
@@ -101,7 +101,7 @@ pub fn parameter_knob(
                 .filter(|v| parameter.allows(v))
         }
         (ParameterKind::Choice { .. }, value) if parameter.is_flag() => {
-            // A name in files is a word, not a symbol of an equation.
+            // The name in files is a word, not a symbol of the equation.
             let symbol = if parameter.symbol == parameter.name { "" } else { parameter.symbol };
             flag_knob(ui, salt, &Caption { symbol, ..caption }, value.truth()?).map(Value::flag)
         }

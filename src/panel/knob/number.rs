@@ -12,8 +12,8 @@ use crate::{
     scene::limits::{Limits, number},
 };
 
-/// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
-/// line. Returns the index of a new choice.
+/// The unit as a choice: each option has a sign and a name. As wide as a plain unit, which keeps fields aligned.
+/// Returns the index of a new choice.
 pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
     let palette = Palette::here(ui);
     let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
@@ -48,7 +48,7 @@ pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<
     out
 }
 
-/// A knob for a number: returns a new legal value.
+/// A knob for a number. Returns a new valid value.
 pub fn number_knob(
     ui: &mut Ui,
     salt: &str,
@@ -60,7 +60,7 @@ pub fn number_knob(
     number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
 }
 
-/// The same with other widgets in the place of the unit.
+/// A knob for a number with other widgets in place of the unit.
 pub fn number_knob_beside(
     ui: &mut Ui,
     salt: &str,
@@ -92,7 +92,7 @@ pub fn number_knob_beside(
         }
         match &field.error {
             Some(error) => complaint(ui, &field.response, &capitalised(error), &number(value)),
-            // While one types it would hide what is below.
+            // During typing, a tooltip would hide what is below.
             None if field.response.has_focus() => {}
             None => explain(field.response, tip),
         }

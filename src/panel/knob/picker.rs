@@ -9,10 +9,10 @@ use crate::panel::theme::Palette;
 
 const SQUARE: Vec2 = vec2(220.0, 150.0);
 const BAR: Vec2 = vec2(220.0, 18.0);
-/// A key moves so far; ten times as far with Shift.
+/// Step of an arrow key; ten times as much with Shift.
 const STEP: f32 = 0.01;
 
-/// Picks a colour, sRGB-encoded. `name` says whose it is. Returns the new colour if it changed.
+/// Picks a colour, sRGB-encoded. `name` is the name of the parameter. Returns the new colour if it changed.
 pub(in crate::panel) fn picker(ui: &mut Ui, id: Id, name: &str, rgb: [u8; 3]) -> Option<[u8; 3]> {
     let encoded = |colour: HsvaGamma| {
         let [r, g, b, _] = Color32::from(colour).to_array();
@@ -21,7 +21,7 @@ pub(in crate::panel) fn picker(ui: &mut Ui, id: Id, name: &str, rgb: [u8; 3]) ->
     Frame::new()
         .inner_margin(6.0)
         .show(ui, |ui| {
-            // Grey has no hue of its own: it keeps the one that was chosen.
+            // Grey has no hue: keep the hue chosen before.
             let known: Option<HsvaGamma> = ui.data(|d| d.get_temp(id)).filter(|known| encoded(*known) == rgb);
             let [r, g, b] = rgb;
             let pass = ui.ctx().cumulative_pass_nr();
@@ -37,7 +37,7 @@ pub(in crate::panel) fn picker(ui: &mut Ui, id: Id, name: &str, rgb: [u8; 3]) ->
             let says = format!("{name}: saturation and brightness");
             square.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, &says));
             if ui.data(|d| d.get_temp::<u64>(id)).is_none_or(|last| last + 1 < pass) {
-                // It was just opened.
+                // The picker was just opened.
                 square.request_focus();
             }
             square.on_hover_text(
@@ -61,7 +61,7 @@ pub(in crate::panel) fn picker(ui: &mut Ui, id: Id, name: &str, rgb: [u8; 3]) ->
         .inner
 }
 
-/// A rectangle of colours with a handle, `place` in it from 0 to 1 in both directions.
+/// A rectangle of colours with a handle; both coordinates of `place` range from 0 to 1.
 fn area(
     ui: &mut Ui,
     size: Vec2,

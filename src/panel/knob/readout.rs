@@ -11,7 +11,7 @@ use crate::{
     reflection::{Readout, ReadoutValue},
 };
 
-/// A derived value: symbol, word `indent` points from the left, and the value with a sample of its colour.
+/// A derived value: symbol, label at least `indent` points from the left, and the value with a colour sample.
 pub fn readout(ui: &mut Ui, readout: &Readout, indent: f32) {
     let palette = Palette::here(ui);
     let caption = Caption { symbol: readout.symbol, label: readout.label, indent, ..Caption::default() };
@@ -39,7 +39,7 @@ pub fn readout(ui: &mut Ui, readout: &Readout, indent: f32) {
     };
     let (label, value) = match readout.value {
         ReadoutValue::Number(_) => head(ui, &caption, Words::Leave(NUMBER), value),
-        // Three numbers and the sample have a line of their own.
+        // Three numbers and the sample need a separate line.
         ReadoutValue::Reflectance(_) => {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
             let (label, ()) = head(ui, &caption, Words::Leave(0.0), |_| ());

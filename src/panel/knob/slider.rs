@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, 
 
 use crate::{panel::theme::Palette, scene::limits::Limits};
 
-/// The step of an arrow key: about a hundredth of the range, a round number.
+/// Step of an arrow key: about a hundredth of the range, rounded.
 pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
     if limits.whole {
         return 1.0;
@@ -16,11 +16,11 @@ pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
 
 pub(super) fn round_to(value: f64, step: f64) -> f64 {
     let rounded = (value / step).round() * step;
-    // Powers of ten below one are not exact in binary: cut what the multiplication added.
+    // Powers of ten below one are not exact in binary: remove the rounding error of the multiplication.
     (rounded * 1e9).round() / 1e9
 }
 
-/// True if the slider spends more of its length on small values.
+/// True if the slider devotes more of its length to small values.
 fn curved(limits: &Limits) -> bool {
     limits.slider_min >= 0.0 && limits.slider_max - limits.slider_min > 60.0 && limits.slider_max > 64.0
 }
@@ -43,7 +43,7 @@ fn from_slider(limits: &Limits, t: f64) -> f64 {
     if limits.is_above_zero() && value < step { step.min(limits.max) } else { value }
 }
 
-/// A slider. Double-click sets the default; the arrow keys step; Home and End go to the ends.
+/// A slider. A double-click sets the default; arrow keys step; Home and End go to the ends.
 pub(super) fn slider(
     ui: &mut Ui,
     name: &str,

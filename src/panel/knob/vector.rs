@@ -19,7 +19,7 @@ use crate::{
     scene::limits::{Limits, number},
 };
 
-/// The letter before a field; dragging it sideways turns the value.
+/// The letter in front of a field; dragging it sideways changes the value.
 pub(super) fn axis_letter(
     ui: &mut Ui,
     letter: &str,
@@ -56,13 +56,13 @@ pub(super) fn axis_letter(
         .on_hover_text("Drag sideways to change the value");
 }
 
-/// The points of three letters, the unit, and the gaps between these and three fields.
+/// Width of three letters, the unit, and the gaps between these and three fields, in points.
 const BETWEEN: f32 = 3.0 * 14.0 + 18.0 + 6.0 * 4.0;
-/// The least width of a field beside the word, points: that of a number with a sign and three decimals.
+/// Minimum width of a field beside the label, in points: a number with a sign and three decimals.
 const LEAST: f32 = 56.0;
 
-/// Three letters with a field each, and the unit at the end of the line. Returns the new value, and the first
-/// error with the value that is kept and its field.
+/// Three letters with one field each, and the unit at the end of the line. Returns the new value, and the first error
+/// with the value that is kept and the field.
 fn three_fields(
     ui: &mut Ui,
     id: Id,
@@ -93,7 +93,7 @@ fn three_fields(
     (out.filter(|v| *v != value), wrong)
 }
 
-/// A field for three numbers, each with its own limits.
+/// A knob for three numbers, each with its own limits.
 pub fn vector_knob(
     ui: &mut Ui,
     salt: &str,
@@ -121,7 +121,7 @@ pub fn vector_knob(
                 }
             });
         };
-        // Where numbers would be cut beside it, the word has a line of its own.
+        // If numbers would be cut off, the label gets a separate line.
         let beside = ui.available_width() - column - 4.0 - BETWEEN >= 3.0 * LEAST;
         let word = if beside {
             Some(word)
@@ -144,7 +144,7 @@ pub fn vector_knob(
     out
 }
 
-/// A knob for a number in red, green and blue: a field for all three at once, and one for each.
+/// A knob for a number in red, green and blue: one field for all three, and one for each.
 pub fn triple_knob(
     ui: &mut Ui,
     salt: &str,

@@ -1,4 +1,4 @@
-//! Looks whether the condition of the step's task holds, when something that it may depend on has changed.
+//! Checks whether the task of the current step is done, whenever something relevant has changed.
 
 use bevy_egui::egui::{Context, Id};
 
@@ -12,7 +12,7 @@ use crate::{
     registry::Registry,
 };
 
-/// Everything that a condition may depend on.
+/// Inputs of a condition.
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     entry: u64,
@@ -20,21 +20,21 @@ struct Question {
     selection: Selection,
     view: View,
     plots: Plots,
-    /// The number of explanations calculated so far.
+    /// Number of explanations calculated so far.
     explained: u64,
 }
 
-/// The answer.
+/// The result of a check.
 #[derive(Clone, Debug)]
 struct Checked {
     question: Question,
-    /// The question on entering the step, before the learner has done anything.
+    /// The inputs on entering the step, before the learner has done anything.
     entered: Question,
     unmet: Option<String>,
 }
 
 impl Question {
-    /// True if the learner did something between the other question and this one. Explanations come of themselves.
+    /// True if the learner did something since `entered`. Explanations, which follow by themselves, do not count.
     fn follows_a_deed(&self, entered: &Self) -> bool {
         *self != Self { explained: self.explained, ..entered.clone() }
     }
@@ -44,18 +44,18 @@ fn memory() -> Id {
     Id::new("condition of the lesson")
 }
 
-/// The number of times that a condition was looked at so far.
+/// Number of checks so far.
 #[must_use]
 pub fn evaluations(ctx: &Context) -> u64 {
     ctx.data(|d| d.get_temp(memory().with("count"))).unwrap_or(0)
 }
 
-/// The reason why the task is not done, once the learner has done something; at once if the condition cannot be told.
+/// Why the task is not done, once the learner has done something; immediately if the condition cannot be evaluated.
 pub(super) fn unmet(ctx: &Context) -> Option<String> {
     ctx.data(|d| d.get_temp::<Checked>(memory()))?.unmet
 }
 
-/// Looks; the step's task is done as soon as its condition holds.
+/// Checks the condition. Returns the action that completes the task if it holds.
 pub(in crate::panel) fn look(ctx: &Context, session: &Session, registry: &Registry) -> Option<Action> {
     let open = session.lesson.as_ref()?;
     let Some(goal) = session.open_task().and_then(Task::goal) else {
@@ -89,7 +89,7 @@ pub(in crate::panel) fn look(ctx: &Context, session: &Session, registry: &Regist
     holds.then_some(Action::Lesson(LessonCommand::Solved(open.step)))
 }
 
-/// The window as conditions see it.
+/// The window as seen by conditions.
 fn situation<'a>(
     session: &'a Session,
     registry: &'a Registry,

@@ -1,4 +1,4 @@
-//! The buttons at the lower end of a lesson, which stay where long text scrolls: previous and next.
+//! The buttons at the lower end of a lesson, which stay in place while long text scrolls: previous and next.
 
 use bevy_egui::egui::{Button, Id, Label, RichText, Stroke, Ui, UiBuilder, WidgetInfo, WidgetType, vec2};
 
@@ -8,10 +8,10 @@ use crate::panel::{
     theme::{self, Palette},
 };
 
-/// Height of a button, points.
+/// Height of a button, in points.
 const HEIGHT: f32 = 30.0;
 
-/// Shows them.
+/// Shows the buttons.
 pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
@@ -26,7 +26,7 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
         (false, true) => ("Finish", "Leave the lesson: your own scene comes back (Alt+→)"),
         (false, false) => ("Next", "The next step (Alt+→)"),
     };
-    // The same widgets in all steps, so that Enter goes on and on.
+    // The same widgets in all steps, so that Enter repeats.
     let buttons = |ui: &mut Ui| {
         let gap = ui.spacing().item_spacing.x;
         let width = 0.5 * (ui.available_width() - gap);

@@ -1,4 +1,4 @@
-//! The list of the lessons, in a menu: title, summary, minutes, and how far the learner is.
+//! The menu of lessons: title, summary, duration and progress.
 
 use bevy_egui::egui::{
     self, FontId, Rect, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
@@ -14,12 +14,12 @@ use crate::{
     },
 };
 
-/// Width of the menu, points.
+/// Width of the menu, in points.
 const WIDTH: f32 = 440.0;
-/// The room of the sign before a title, points.
+/// Width of the icon in front of a title, in points.
 const SIGN: f32 = 26.0;
 
-/// The entries of the menu.
+/// Adds the entries of the menu.
 pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let screen = ui.ctx().content_rect();
     ui.set_width(WIDTH.min(screen.width() - 64.0));
@@ -45,14 +45,14 @@ pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Ve
     });
 }
 
-/// The time that a lesson takes, and how far it is.
+/// The duration of a lesson, and the learner's progress.
 pub(in crate::panel) fn facts(minutes: Option<u32>, past: Option<&Past>) -> String {
     let minutes = minutes.map(|minutes| format!("{minutes} min"));
     let past = past.map(Past::words);
     minutes.into_iter().chain(past).collect::<Vec<_>>().join(" · ")
 }
 
-/// A lesson; true if it is chosen.
+/// The entry of a lesson. Returns true if it is clicked.
 fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
     let palette = Palette::here(ui);
     let past = session.progress.of(&lesson.id).filter(|past| past.finished || past.is_begun());

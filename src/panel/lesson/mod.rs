@@ -1,4 +1,4 @@
-//! The lesson that is open, at the left: its step, the text, the task, and the way on.
+//! The open lesson, at the left: step, text, task, and navigation.
 
 use std::path::Path;
 
@@ -21,12 +21,12 @@ pub(super) mod point;
 mod task;
 mod text;
 
-/// Height of the letters in a presentation, as a fraction of the height of the screen.
+/// Font size in a presentation, as a fraction of the screen height.
 const PRESENTED: f32 = 0.0235;
-/// The part of the screen that the lesson takes in a presentation.
+/// Fraction of the screen that the lesson takes in a presentation.
 pub(super) const SHARE: f32 = 0.31;
 
-/// See the module.
+/// The *Lesson* panel.
 #[derive(Clone, Copy, Debug)]
 pub struct LessonPanel;
 
@@ -68,9 +68,9 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     let whole = ui.available_rect_before_wrap();
     let turned = pages(ui.ctx(), whole);
     Frame::new().inner_margin(Margin { left: side, right: 4, top: 6, bottom: 0 }).show(ui, |ui| {
-        // The scroll bar floats over a margin, so that nothing moves when it comes.
+        // The scroll bar floats over a margin, so that nothing moves when it appears.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-        // A step begins at its top.
+        // A step starts scrolled to the top.
         let area = ScrollArea::vertical().id_salt(("text of the lesson", open.entries)).auto_shrink(false);
         area.show(ui, |ui| {
             ui.set_max_width(ui.available_width() - f32::from(side) + 4.0);
@@ -85,7 +85,7 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     });
 }
 
-/// Makes everything as large as a body of so many points wants.
+/// Scales all text styles to a body size in points.
 fn enlarge(ui: &mut Ui, body: f32) {
     let style = ui.style_mut();
     let now = style.text_styles.get(&TextStyle::Body).map_or(body, |font| font.size);
@@ -96,7 +96,7 @@ fn enlarge(ui: &mut Ui, body: f32) {
     style.spacing.interact_size *= factor;
 }
 
-/// Page Up and Page Down scroll the text while the lesson has the focus: +1 for a page up, −1 for one down.
+/// Page Up and Page Down scroll the text while the lesson has the focus: +1 for a page up, −1 for a page down.
 fn pages(ctx: &Context, whole: Rect) -> f32 {
     let here = focus::focused(ctx).is_some_and(|widget| whole.x_range().contains(widget.rect.center().x));
     if !here {
@@ -109,7 +109,7 @@ fn pages(ctx: &Context, whole: Rect) -> f32 {
     })
 }
 
-/// The title, the number of the step, and how far it is.
+/// The title, the number of the step, and the progress.
 fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let count = open.lesson.steps.len();
@@ -162,7 +162,7 @@ fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     });
 }
 
-/// A mark for each step: those before and this one are filled.
+/// A mark for each step: the current one and those before are filled.
 fn bar(ui: &mut Ui, open: &OpenLesson, says: &str) {
     let palette = Palette::here(ui);
     let count = open.lesson.steps.len().max(1) as f32;
@@ -179,7 +179,7 @@ fn bar(ui: &mut Ui, open: &OpenLesson, says: &str) {
     }
 }
 
-/// What is wrong with the file, since it was edited: the last good version is shown.
+/// Problems of the edited file, while the last good version is shown.
 fn problems(ui: &mut Ui, open: &OpenLesson) {
     if open.problems.is_empty() {
         return;
@@ -206,7 +206,7 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
     });
 }
 
-/// The step.
+/// The text and the task of the step.
 fn body(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     let Some(step) = open.now() else { return };
     let heading = egui::RichText::new(&step.title).heading();

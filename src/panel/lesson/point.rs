@@ -1,7 +1,7 @@
-//! Pointing at the controls that a step names: each gets a ring, and is scrolled into view once.
+//! Points at the controls that a step names: each gets a ring, and is scrolled into view once.
 //!
-//! Whoever shows a control says so by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson that costs a
-//! look at the memory of egui.
+//! The code that shows a control reports it by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson
+//! that costs a look-up in egui's memory.
 
 use bevy_egui::egui::{Align, Context, Id, LayerId, Rect, Stroke, StrokeKind, Ui};
 
@@ -11,21 +11,21 @@ use crate::{
     panel::{state::Session, theme::Palette},
 };
 
-/// Time for which a new ring swells, seconds, and how often.
+/// Duration of the pulse of a new ring, in seconds, and the number of pulses.
 const MOMENT: f64 = 1.2;
 const SWELLS: f64 = 2.0;
-/// Between a control and its ring, points.
+/// Gap between a control and its ring, in points.
 const GAP: f32 = 3.0;
 
-/// The controls that the step names, and where they were shown in this frame.
+/// Controls that the step names, and their rectangles in this frame.
 #[derive(Clone, Debug, Default)]
 struct Pointed {
     controls: Vec<Control>,
-    /// The entry into the step, counted.
+    /// Number of the entry into the step.
     entry: u64,
-    /// When it was.
+    /// Time of the entry, in seconds.
     since: f64,
-    /// Those that were scrolled into view, or are in view.
+    /// Controls that were scrolled into view, or already are in view.
     revealed: Vec<Control>,
     found: Vec<(Rect, Rect, LayerId)>,
 }
@@ -34,7 +34,7 @@ fn memory() -> Id {
     Id::new("controls of the lesson")
 }
 
-/// Begins a frame.
+/// Starts a frame.
 pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
     let named = session.lesson.as_ref().and_then(|open| Some((open.entries, open.now()?)));
     let Some((entry, step)) = named.filter(|(_, step)| !step.points.is_empty()) else {
@@ -51,7 +51,7 @@ pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
     });
 }
 
-/// A control is shown here.
+/// Reports that a control is shown here.
 fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
     let found = ui.data(|d| {
         let pointed: Pointed = d.get_temp(memory())?;
@@ -72,7 +72,7 @@ fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
     });
 }
 
-/// A name without what tells spellings apart.
+/// Normalises a name, so that spellings compare equal.
 fn plain(name: &str) -> String {
     let name = name.trim_start_matches("shape ").replace([' ', '-'], "_").to_lowercase();
     match name.as_str() {
@@ -82,33 +82,33 @@ fn plain(name: &str) -> String {
     }
 }
 
-/// The knob of a parameter is shown here.
+/// Reports the knob of a parameter.
 pub(in crate::panel) fn knob(ui: &Ui, name: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name)));
 }
 
-/// True if the step points at the knob of a parameter, so that it must be in sight.
+/// True if the step points at the knob of a parameter, which must then be visible.
 pub(in crate::panel) fn at_knob(ui: &Ui, name: &str) -> bool {
     let is = |control: &Control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name));
     ui.data(|d| d.get_temp::<Pointed>(memory())).is_some_and(|pointed| pointed.controls.iter().any(is))
 }
 
-/// The menu of this name is opened here.
+/// Reports the button that opens the menu of this name.
 pub(in crate::panel) fn menu(ui: &Ui, name: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Menu(wanted) if plain(wanted) == plain(name)));
 }
 
-/// The choice of this name is made here: `shading`, `reflection`, `terms`.
+/// Reports the button of a choice: `shading`, `reflection`, `terms`.
 pub(in crate::panel) fn button(ui: &Ui, name: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Button(wanted) if plain(wanted) == plain(name)));
 }
 
-/// The tab of the panel with this id is here.
+/// Reports the tab of the panel with this id.
 pub(in crate::panel) fn tab(ui: &Ui, id: &str, rect: Rect) {
     shown(ui, rect, |control| matches!(control, Control::Tab(wanted) if plain(wanted) == plain(id)));
 }
 
-/// A part of the scene has its row here.
+/// Reports the row of a part of the scene.
 pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: Rect) {
     shown(
         ui,
@@ -117,13 +117,13 @@ pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: 
     );
 }
 
-/// True if the step points at a part of the scene, so that the scene list must be in sight.
+/// True if the step points at a part of the scene, so that the scene list must be visible.
 pub(in crate::panel) fn at_part(session: &Session) -> bool {
     let step = session.lesson.as_ref().and_then(|open| open.now());
     step.is_some_and(|step| step.points.iter().any(|control| matches!(control, Control::Part(_))))
 }
 
-/// Paints the rings, when everything else is shown.
+/// Paints the rings, once everything else is shown.
 pub(in crate::panel) fn show(ctx: &Context, palette: &Palette) {
     let Some(pointed) = ctx.data(|d| d.get_temp::<Pointed>(memory())) else { return };
     let age = ctx.input(|input| input.time) - pointed.since;

@@ -1,4 +1,4 @@
-//! The task of a step: a question with answers, or something to be done or found.
+//! The task of a step: a multiple-choice question, or something to do or find.
 
 use bevy_egui::egui::{
     self, Align, Label, Layout, Rect, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, WidgetType, pos2,
@@ -16,9 +16,9 @@ use crate::{
     },
 };
 
-/// Width of the bar at the left of a task, points.
+/// Width of the bar at the left of a task, in points.
 const BAR: f32 = 3.0;
-/// The room of the circle before an answer, points.
+/// Width of the circle in front of an answer, in points.
 const CIRCLE: f32 = 24.0;
 
 /// Shows the task. `unmet` says why it is not done.
@@ -57,7 +57,7 @@ pub(super) fn task(
     ui.add_space(2.0);
 }
 
-/// The kind of task, a check mark once it is done, and the number of tries.
+/// The kind of task, a check mark once it is done, and the number of attempts.
 fn heading(ui: &mut Ui, name: &str, open: &OpenLesson) {
     let palette = Palette::here(ui);
     let tries = open.tries.get(&open.step).copied().unwrap_or(0);
@@ -100,7 +100,7 @@ fn predict(
     let chosen = open.answer();
     let tried = open.answers.get(&open.step).map_or(&[][..], Vec::as_slice);
     for (i, choice) in answers.iter().enumerate() {
-        // Once the right one is known, it stays marked.
+        // The correct answer, once known, stays marked.
         let known = tried.contains(&i) || (open.is_done() && choice.right);
         if answer(ui, choice, chosen == Some(i), known) {
             actions.push(Action::Lesson(LessonCommand::Answer(i)));
@@ -121,7 +121,7 @@ fn predict(
     }
 }
 
-/// Right or wrong, in a word and a colour.
+/// Correct or wrong, in a word and a colour.
 fn verdict(ui: &mut Ui, right: bool, done: bool) {
     let palette = Palette::here(ui);
     let (words, colour) = match (right, done) {
@@ -132,7 +132,7 @@ fn verdict(ui: &mut Ui, right: bool, done: bool) {
     ui.label(theme::strong(ui, words).color(colour));
 }
 
-/// An answer; true if it was chosen now. `known` shows whether it is right.
+/// An answer. Returns true if it was clicked. `known` shows if it is correct.
 fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);

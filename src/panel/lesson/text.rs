@@ -15,17 +15,17 @@ use crate::{
     reflection::Term,
 };
 
-/// The height of a line of prose, in sizes of its letters.
+/// Line height of prose, relative to the font size.
 const LEADING: f32 = 1.45;
-/// The indent of a list, in sizes of its letters.
+/// Indentation of a list, relative to the font size.
 const INDENT: f32 = 1.45;
 
-/// Sentences with symbols, emphasis, names of keys and code.
+/// Sentences with symbols, emphasis, key names and code.
 pub(super) fn job(ui: &Ui, runs: &[Run], style: TextStyle) -> LayoutJob {
     let font = style.resolve(ui.style());
     let mut job = LayoutJob::default();
     for run in runs {
-        // Prose takes what is between backticks for code.
+        // Prose treats text between backticks as code.
         let part = match run.style {
             RunStyle::Code => maths::prose(ui, &format!("`{}`", run.text), style.clone()),
             _ => maths::prose(ui, &run.text, style.clone()),
@@ -38,7 +38,7 @@ pub(super) fn job(ui: &Ui, runs: &[Run], style: TextStyle) -> LayoutJob {
                 }
                 _ => {}
             }
-            // An index stays at its letter.
+            // An index stays with its letter.
             if format.valign != Align::BOTTOM || format.font_id.size >= font.size {
                 format.line_height = Some(LEADING * font.size);
             }
@@ -48,7 +48,7 @@ pub(super) fn job(ui: &Ui, runs: &[Run], style: TextStyle) -> LayoutJob {
     job
 }
 
-/// What a screen reader says of runs.
+/// Text of runs for screen readers.
 pub(super) fn spoken(runs: &[Run]) -> String {
     runs.iter().map(|run| run.text.as_str()).collect()
 }
@@ -59,7 +59,7 @@ pub(super) fn paragraph(ui: &mut Ui, runs: &[Run]) {
     ui.add(Label::new(job).wrap());
 }
 
-/// An equation, a line for each of its own.
+/// An equation, with one typeset line per line of the source.
 fn equation(ui: &mut Ui, text: &str) {
     let parts: Vec<_> =
         text.lines().map(str::trim).filter(|line| !line.is_empty()).map(|line| (Term::Total, line)).collect();
@@ -70,7 +70,7 @@ fn equation(ui: &mut Ui, text: &str) {
     ui.add_space(2.0);
 }
 
-/// An item of a list.
+/// A list item.
 fn item(ui: &mut Ui, number: Option<u64>, depth: usize, runs: &[Run]) {
     let size = TextStyle::Body.resolve(ui.style()).size;
     let left = INDENT * size * (depth + 1) as f32;
@@ -90,7 +90,7 @@ fn item(ui: &mut Ui, number: Option<u64>, depth: usize, runs: &[Run]) {
     ui.allocate_exact_size(vec2(whole.width(), used.height()), Sense::hover());
 }
 
-/// A block of a step; `task` shows the task in its place.
+/// A block of a step; `task` shows the task in place of a task block.
 pub(super) fn block(ui: &mut Ui, block: &Block, task: impl FnOnce(&mut Ui)) {
     match block {
         Block::Paragraph(runs) => paragraph(ui, runs),

@@ -1,25 +1,25 @@
-//! Atoms as they are set: base, index and power.
+//! Typeset atoms: base, index and power.
 
 use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
 
 use crate::panel::theme;
 use crate::text::mathematics::{Atom, is_variable, parse};
 
-/// A run of characters, and where it stands.
+/// A run of characters with its offset.
 #[derive(Clone)]
 pub(in crate::panel) struct Piece {
     pub(in crate::panel) galley: std::sync::Arc<egui::Galley>,
     pub(in crate::panel) offset: Vec2,
 }
 
-/// An atom as it is set.
+/// A typeset atom.
 #[derive(Clone)]
 pub(in crate::panel) struct Laid {
     pub(in crate::panel) pieces: Vec<Piece>,
     pub(in crate::panel) width: f32,
 }
 
-/// Lays an atom out with its baseline at y = 0.
+/// Lays out an atom with its baseline at y = 0.
 pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
     let (base, sub, sup, family) = match atom {
         Atom::Symbol { base, sub, sup } => (base, sub, sup, variable(base)),
@@ -47,7 +47,7 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
     let mut width = x;
     for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
         let mut x = x + 0.04 * size;
-        // A power may have a power.
+        // An exponent may have an exponent.
         let nested = if script.contains(['^', '_']) { parse(script) } else { Vec::new() };
         for atom in &nested {
             let inner = lay_out(ui, atom, script_size, colour);
@@ -59,7 +59,7 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
             width = width.max(x);
         }
         for run in runs(if nested.is_empty() { script } else { "" }) {
-            // One letter is a variable, as in a line; several are a word.
+            // A single letter is a variable, as on the baseline; several are a word.
             let family = if is_variable(run) { variable(run) } else { theme::maths() };
             let galley = text(run, family, script_size);
             let y = shift - baseline(&galley);
@@ -72,18 +72,18 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
     Laid { pieces, width: width + padding }
 }
 
-/// The font of a variable: slanted, but capital Greek letters are upright by custom.
+/// The font of a variable: slanted, except for capital Greek letters, which are upright by convention.
 fn variable(letter: &str) -> egui::FontFamily {
     let capital = letter.starts_with(|c| ('Α'..='Ω').contains(&c));
     if capital { theme::maths() } else { theme::maths_italic() }
 }
 
-/// The runs of an index or a power: its words and what stands between them.
+/// The runs of an index or an exponent: words, and what is between them.
 fn runs(script: &str) -> impl Iterator<Item = &str> {
     let mut rest = script;
     std::iter::from_fn(move || {
         let first = rest.chars().next()?;
-        // Greek letters are variables, however many stand side by side.
+        // Adjacent Greek letters are separate variables.
         let end = if first.is_alphabetic() && !first.is_ascii() {
             first.len_utf8()
         } else {
@@ -114,7 +114,7 @@ mod tests {
                 assert!(heights[0] > heights[2] && heights[2] > heights[3], "{heights:?}");
                 let end = laid.pieces[3].offset.x + laid.pieces[3].galley.size().x;
                 assert!((laid.width - end).abs() < 2.0, "{} {end}", laid.width);
-                // Without braces too.
+                // Also without braces.
                 let laid = lay_out(ui, &parse("x^y^z")[0], 40.0, Color32::WHITE);
                 let texts: Vec<_> = laid.pieces.iter().map(|p| p.galley.text().to_owned()).collect();
                 assert_eq!(texts, ["x", "y", "z"]);

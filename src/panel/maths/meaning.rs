@@ -3,7 +3,7 @@
 use crate::reflection::{EquationPart, Term};
 use crate::text::mathematics::{self, Atom, parse, same_symbol};
 
-/// The meaning of a symbol that all equations share.
+/// The meaning of a symbol shared by all equations.
 #[must_use]
 pub fn meaning(symbol: &str) -> Option<&'static str> {
     const MEANINGS: &[(&str, &str)] = &[
@@ -95,7 +95,7 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
 }
 
-/// The parts of an equation, one for each definition: a part may have several, with commas between.
+/// The definitions in an equation; a part may have several, separated by commas.
 #[must_use]
 pub fn definitions(parts: &[EquationPart]) -> Vec<(Term, &'static str)> {
     parts
@@ -104,15 +104,15 @@ pub fn definitions(parts: &[EquationPart]) -> Vec<(Term, &'static str)> {
         .collect()
 }
 
-/// True if an equation has a symbol that fits.
+/// True if an equation contains a matching symbol.
 #[must_use]
 pub fn has_symbol(parts: &[EquationPart], fits: impl Fn(&str) -> bool) -> bool {
     let of = |text: &str| parse(text).iter().filter_map(Atom::symbol).any(|symbol| fits(&symbol));
     parts.iter().any(|part| of(part.text))
 }
 
-/// The definition of a symbol in an equation: it begins with the symbol, or the symbol of something in brackets, and an
-/// equals sign.
+/// The definition of a symbol in an equation: it starts with the symbol, alone or applied to an argument in brackets,
+/// and an equals sign.
 #[must_use]
 pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
     let of = |text: &str| {

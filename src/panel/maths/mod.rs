@@ -1,7 +1,7 @@
-//! Equations in readable mathematics: variables slanted, words upright, subscripts and superscripts
-//! in their places. [`typeset`](super::typeset) sets fractions and breaks lines.
+//! Equations in mathematical notation: slanted variables, upright words, subscripts and superscripts.
+//! [`typeset`](super::typeset) sets fractions and breaks lines.
 //!
-//! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
+//! The source format is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
 use bevy_egui::egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
@@ -21,7 +21,7 @@ pub(super) use laid::{Laid, lay_out};
 pub use meaning::{definition, definitions, has_symbol, meaning};
 pub use prose::prose;
 
-/// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
+/// Paints one symbol in the colour of text; returns its width. `left_baseline` is the left end of the baseline.
 pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colour: Color32) -> f32 {
     let laid = lay_out(ui, &parse_symbol(symbol), size, colour);
     for piece in laid.pieces {
@@ -30,7 +30,7 @@ pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colou
     laid.width
 }
 
-/// One symbol among other widgets.
+/// One symbol as a widget.
 pub fn symbol(ui: &mut Ui, symbol: &str, size: f32) -> Response {
     let width = symbol_width(ui, symbol, size);
     let (rect, response) = ui.allocate_exact_size(vec2(width, 1.3 * size), Sense::hover());
@@ -39,28 +39,28 @@ pub fn symbol(ui: &mut Ui, symbol: &str, size: f32) -> Response {
     response
 }
 
-/// The width of a symbol.
+/// Width of a symbol.
 #[must_use]
 pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
     lay_out(ui, &parse_symbol(symbol), size, Color32::WHITE).width
 }
 
-/// The sizes of an equation that is set.
+/// Sizes of a typeset equation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sizes {
-    /// True if it is a column of an equation: nothing is set smaller for being too long.
+    /// True in a column of an equation: long parts do not become smaller.
     pub column: bool,
     /// True if terms are as small as definitions.
     pub even: bool,
 }
 
-/// An equation, a line for each definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. Under the
-/// pointer a symbol lights, with all that stands for it.
+/// An equation, one line per definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. The
+/// symbol under the pointer is highlighted, with everything that represents it.
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
     equation_of(ui, &definitions(parts), Sizes::default(), name)
 }
 
-/// The same for parts that are split already, in other sizes.
+/// An equation that is already split into parts, in other sizes.
 pub fn equation_of(
     ui: &mut Ui,
     parts: &[(Term, &str)],
@@ -96,8 +96,8 @@ pub fn equation_of(
     response
 }
 
-/// A calculation: numbers that stand for symbols, each with its symbol, whose meaning `name` gives. A number lights what its symbol
-/// stands for; returns the symbol of one that was clicked.
+/// A calculation: numbers in place of symbols, each with its symbol; `name` gives the meaning of a symbol. A number
+/// highlights everything that represents its symbol. Returns the symbol of a clicked number.
 pub(super) fn calculation(
     ui: &mut Ui,
     text: &str,
@@ -145,7 +145,8 @@ pub(super) fn calculation(
     clicked
 }
 
-/// One line of an equation in the colour of text, at a place; returns its width. `baseline` is where it stands.
+/// Paints one line of an equation in the colour of text; returns its width. `left_baseline` is the left end of the
+/// baseline.
 pub(super) fn paint_line(ui: &Ui, left_baseline: Pos2, text: &str, size: f32, colour: Color32) -> f32 {
     let setter = Setter { ui, size, colour, stacked: false, shrinks: false };
     let line = setter.row(&formula::tree(text));
@@ -153,10 +154,10 @@ pub(super) fn paint_line(ui: &Ui, left_baseline: Pos2, text: &str, size: f32, co
     line.width
 }
 
-/// Lines that are set, each with its baseline and its colour, and how high they are.
+/// Typeset lines, each with its baseline and colour, and their total height.
 type Lines = (Vec<(Set, f32, Color32)>, f32);
 
-/// Sets parts of an equation in lines of at most this width.
+/// Typesets parts of an equation in lines of at most this width.
 fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
@@ -179,14 +180,14 @@ fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
     (lines, height)
 }
 
-/// The room that parts of an equation take, and their worst break.
+/// Size of the typeset parts of an equation, and their worst line break.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
-    /// The longest line.
+    /// Width of the longest line.
     pub width: f32,
-    /// All lines.
+    /// Height of all lines.
     pub height: f32,
-    /// The worst break.
+    /// The worst line break.
     pub broken: Break,
 }
 
@@ -199,12 +200,12 @@ pub fn measured(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, most: f32) -> Mea
     Measured { width, height, broken: if width > most { Break::Anywhere } else { broken } }
 }
 
-/// The size of letters in the terms of an equation.
+/// Font size of the terms of an equation.
 pub(super) const SIZE: f32 = 17.0;
-/// The size of letters in the definitions beside them.
+/// Font size of the definitions beside them.
 const HELPER: f32 = 14.5;
 
-/// The size of letters in a part of an equation: smaller where it defines what another part uses.
+/// Font size of a part of an equation: smaller if it defines what another part uses.
 pub(super) fn size_of(term: Term, text: &str) -> f32 {
     let first = parse(text).first().and_then(Atom::symbol);
     let helper = term != Term::Total && first.is_none_or(|s| s != "I" && !s.starts_with("I_"));
@@ -244,7 +245,7 @@ mod tests {
         ctx.fonts_mut(|fonts| {
             for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
                 let font = egui::FontId::new(17.0, family);
-                // The place of a character on the texture, which is the same for all that are missing.
+                // Position of the character in the font texture, which is the same for all missing characters.
                 let mut place = |c: char| {
                     let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);
                     galley.rows[0].row.glyphs[0].uv_rect

@@ -1,4 +1,4 @@
-//! Sentences with symbols and names of commands in them.
+//! Sentences with symbols and code.
 
 use bevy_egui::egui::{
     Align, FontId, TextStyle, Ui,
@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 
 use crate::panel::theme::Palette;
 
-/// A sentence in which `k_d` has its index below the line, and what stands between backticks the letters of code.
+/// A sentence that sets `k_d` with a subscript, and text between backticks as code.
 #[must_use]
 pub fn prose(ui: &Ui, text: &str, style: TextStyle) -> LayoutJob {
     let font = style.resolve(ui.style());

@@ -1,4 +1,4 @@
-//! The space that an object takes: a box that is turned with it, within a sphere.
+//! The space that an object takes: a box that rotates with it, inside a sphere.
 
 use glam::Vec3;
 
@@ -8,14 +8,14 @@ use crate::{
     shape::Bounds,
 };
 
-/// See the module.
+/// The intersection of a rotated box and its bounding sphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub(super) centre: Vec3,
-    /// The directions of its edges, and half its extents along them.
+    /// Directions of the edges, and half the extents along them.
     axes: [Vec3; 3],
     half: [f32; 3],
-    /// The radius of the sphere.
+    /// Radius of the sphere.
     pub(super) radius: f32,
 }
 
@@ -32,18 +32,18 @@ impl Block {
         }
     }
 
-    /// The same elsewhere.
+    /// The block moved to another centre.
     pub(super) fn at(self, centre: Vec3) -> Self {
         Self { centre, ..self }
     }
 
-    /// How far it reaches from its centre along a unit direction.
+    /// Extent from the centre along a unit direction.
     pub(super) fn reach(&self, way: Vec3) -> f32 {
         let edges = self.axes.iter().zip(self.half);
         edges.map(|(axis, half)| half * axis.dot(way).abs()).sum::<f32>().min(self.radius)
     }
 
-    /// True unless a plane parts them: one along faces or edges of the two, or between the centres.
+    /// True unless a plane separates the blocks: one along faces or edges of the two, or between the centres.
     pub(super) fn touches(&self, other: &Self) -> bool {
         let between = other.centre - self.centre;
         if between.length() >= self.radius + other.radius {
@@ -72,7 +72,7 @@ mod tests {
             Block::of(&cube, &registry)
         };
         let floor = cube(Vec3::ZERO, 60.0, 0.0);
-        // Within the sphere around the floor, and above the floor.
+        // Inside the sphere around the floor, but above the floor.
         assert!(!floor.touches(&cube(Vec3::new(0.0, 30.6, 0.0), 1.0, 30.0)));
         assert!(floor.touches(&cube(Vec3::new(0.0, 30.4, 0.0), 1.0, 30.0)));
         let one = cube(Vec3::ZERO, 1.0, 0.0);

@@ -1,5 +1,5 @@
-//! The footer of a presentation of several views: for each of those compared its equation and its caption, and below them
-//! the numbers of their difference.
+//! The footer of a presentation of several views: the equation and the caption of each compared view, and below them
+//! the statistics of their difference.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -18,10 +18,10 @@ use crate::{
     scene::{comparison::Layout, variant::LETTERS},
 };
 
-/// The most of the height that all equations take; larger ones are left out.
+/// Maximum height of all equations, as a fraction of the screen; larger equations are left out.
 const MOST: f32 = 0.34;
 
-/// What is said of a view.
+/// The texts about a view.
 #[derive(Clone, Debug)]
 struct Side {
     model: Option<String>,
@@ -29,7 +29,7 @@ struct Side {
     parts: Vec<Part>,
 }
 
-/// An equation with its place in the footer.
+/// A typeset equation with its position in the footer.
 #[derive(Clone, Debug)]
 struct Set {
     side: usize,
@@ -42,11 +42,11 @@ struct Set {
 pub struct Footer {
     sides: Vec<Side>,
     equations: Vec<Set>,
-    /// The upper left corners of the captions, and their width.
+    /// Upper left corners of the captions, and their width.
     captions: (Vec<Pos2>, f32),
-    /// The distance of the line with the numbers from the top, if there is one.
+    /// Distance from the top to the line with the statistics, if there is one.
     numbers: Option<f32>,
-    /// Its height, points.
+    /// Height of the footer, in points.
     pub height: f32,
 }
 
@@ -57,7 +57,7 @@ impl Side {
         let mut parts = parts_of(scene, session.terms_of(view), registry);
         let letter = LETTERS.get(view).copied().unwrap_or_default();
         parts.insert(0, Part::new(0, format!("{letter}:")));
-        // Among several models, an equation would say of all what is true of one.
+        // With several models, an equation would seem to apply to all of them.
         let models = scene.shown().map(|o| scene.model_of(o)).collect();
         let model = single(&models).and_then(|id| registry.model(id));
         let equation = model.map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation));
@@ -105,7 +105,7 @@ impl Footer {
         Self { sides, equations, captions: (captions, half), numbers, height: at }
     }
 
-    /// Paints it at the lower end of the screen.
+    /// Paints the footer at the lower end of the screen.
     pub(in crate::panel) fn paint(&self, ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) {
         let palette = Palette::here(ui);
         let (height, padding) = (whole.height(), padding(whole));
@@ -134,8 +134,8 @@ impl Footer {
     }
 }
 
-/// The equations, and the height of them all: beside each other, or one above the other if that is lower. One that both views
-/// have is there once; where there is no room for all, the highest is left out.
+/// The equations and their total height: side by side, or stacked if that is lower. An equation that both views share
+/// appears once; if there is no room for all, the highest is left out.
 fn equations(
     ui: &Ui,
     sides: &[Side],
@@ -181,7 +181,7 @@ fn equations(
     (sets, height)
 }
 
-/// The numbers of the difference in one line, as many as there is room for, or the reason why there are none.
+/// The statistics of the difference in one line, as many as fit, or why there are none.
 fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");

@@ -1,5 +1,5 @@
-//! The presentation (F5): the picture fills the screen, with the equation and the caption over it, large enough for the
-//! last row. Where they would hide objects, the picture makes room for them.
+//! The presentation (F5): the picture fills the screen, with equation and caption over it, large enough for the back
+//! row. If they would hide objects, the picture makes room for them.
 
 use std::{
     hash::{DefaultHasher, Hash, Hasher},
@@ -31,49 +31,49 @@ pub use footer::Footer;
 
 mod footer;
 
-/// The size of the caption, as a fraction of the height of the screen. The capitals of its font are 0.727 of it high.
+/// Font size of the caption, as a fraction of the screen height. The cap height of its font is 0.727.
 pub(super) const CAPTION: f32 = 0.036;
-/// The body size under which the smallest symbols of an equation have capitals of the same height: they are set 1.1
-/// times as large, in a font whose capitals are 0.66 of its size.
+/// Body size at which the smallest symbols of an equation have the cap height of the caption: they are 1.1 times as
+/// large, in a font with cap height 0.66.
 const BODY: f32 = 0.035;
-/// The part of the height that the equation covers at most, if it can.
+/// Preferred maximum height of the equation, as a fraction of the screen.
 const MOST: f32 = 0.4;
-/// The same if it would be broken within brackets otherwise, with the space around it.
+/// Maximum height, including padding, if the equation would otherwise break inside brackets.
 const TALLEST: f32 = 0.54;
-/// The widths of an equation that stands beside the objects, as parts of the screen's, and true where its terms are as
-/// small as its definitions; the first that serves.
+/// Widths of an equation beside the objects, as fractions of the screen, each with true if terms are as small as
+/// definitions. The first that works is used.
 const BESIDE: [(f32, bool); 6] =
     [(0.34, false), (0.42, false), (0.34, true), (0.5, false), (0.42, true), (0.5, true)];
-/// The part of the objects that may be hidden.
+/// Fraction of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
 
-/// Escape leaves, unless it is another's.
+/// Leaves the presentation on Escape, unless something else handles the key.
 pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let left = session.view.presenting && keys::escapes(ctx, session, area);
     left.then_some(Action::View(ViewChange::Presenting(false)))
 }
 
-/// A definition: its term and its text.
+/// A definition: term and text.
 type Definition = (Term, &'static str);
 
-/// The equation in columns.
+/// The equation, arranged in columns.
 #[derive(Clone, Debug, Default)]
 struct Block {
-    /// The definitions of each column, where it begins and how wide it is.
+    /// Definitions, left edge and width of each column.
     columns: Vec<(Range<usize>, f32, f32)>,
     /// True if terms are as small as definitions.
     even: bool,
-    /// The worst break of its lines.
+    /// The worst line break.
     broken: Break,
     size: Vec2,
 }
 
-/// The texts of a presentation, and their places.
+/// The texts of a presentation, and their rectangles.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The screen.
     whole: Rect,
-    /// The place of the picture.
+    /// Rectangle of the picture.
     pub picture: Rect,
     equation: Vec<Definition>,
     block: Block,
@@ -83,12 +83,12 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The text in this rectangle.
+    /// Lays out the texts for a screen.
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
         let equation = equation_shown(session, registry);
         let parts = caption::parts(session, registry);
-        // The camera that turns moves nothing: its place at the beginning counts.
+        // A turning camera must not move the layout: its position at the start counts.
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
@@ -120,7 +120,7 @@ impl Stage {
         if wide.iter().all(|b| b.broken > Break::Sign || b.size.y > limit) {
             wide.extend([block(2, most, true), block(3, most, true), block(4, most, true)]);
         }
-        // A block with better breaks is easier to read, even if it is higher.
+        // A block with better line breaks is easier to read, even if it is higher.
         let mut all: Vec<&Block> = wide.iter().chain([&narrow]).collect();
         let limits =
             [Break::Sign, Break::Product].into_iter().flat_map(|broken| [(broken, limit), (broken, tall)]);
@@ -143,7 +143,7 @@ impl Stage {
             let block = (*block).clone();
             return Self { whole, picture: whole, equation, block, plate, caption, parts };
         }
-        // At the side, or above; where the picture is larger.
+        // Beside or above the picture, whichever leaves the larger picture.
         let beside = |b: &Block| {
             let plate = Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
             (b.clone(), plate, room.with_min_x(plate.right()))
@@ -162,8 +162,8 @@ impl Stage {
         Self { whole, picture, equation, block, plate, caption, parts }
     }
 
-    /// Paints equation and caption, each on a ground of its own, so that they can be read on any picture. Returns the
-    /// part of the picture that is free; what is shown there is as large.
+    /// Paints equation and caption on backgrounds that make them readable over any picture. Returns the free part of
+    /// the picture, and sets the text size for it.
     pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Rect {
         let palette = Palette::here(ui);
         let height = self.whole.height();
@@ -189,7 +189,7 @@ impl Stage {
     }
 }
 
-/// The equation of the model that the active view shows. Among several models, it would say of all what is true of one.
+/// The equation of the active view's model; empty with several models, since it would seem to apply to all of them.
 fn equation_shown(session: &Session, registry: &Registry) -> Vec<Definition> {
     model_of(session, registry).map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation))
 }
@@ -199,7 +199,7 @@ fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEn
     models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
 }
 
-/// What was made in an earlier frame, if it was made from the same.
+/// Returns the value cached under a name if it has the same key, otherwise makes it.
 fn kept<T: Clone + Send + Sync + 'static>(
     ui: &mut Ui,
     name: &str,
@@ -215,7 +215,7 @@ fn kept<T: Clone + Send + Sync + 'static>(
     made
 }
 
-/// Sets the equation of a model in its columns from a corner on.
+/// Shows the equation of a model in columns from a corner on.
 fn columns(
     ui: &mut Ui,
     block: &Block,
@@ -238,8 +238,8 @@ fn padding(whole: Rect) -> Vec2 {
 }
 
 impl Block {
-    /// Sets an equation in so many columns at most, each as wide as its lines need. If there is no room for that, the
-    /// long ones share what the short ones leave, and are as narrow as they can be without being higher.
+    /// Arranges an equation in at most `columns` columns, each as wide as its lines. If that is too wide, long columns
+    /// share the space that short ones leave, and are as narrow as possible without becoming higher.
     fn of(ui: &Ui, all: &[Definition], columns: usize, most: f32, even: bool) -> Self {
         let sizes = Sizes { column: true, even };
         let gap = 0.04 * most;
@@ -266,7 +266,7 @@ impl Block {
                 while natural > cut && width - narrow > 4.0 {
                     let middle = 0.5 * (narrow + width);
                     let here = measure(&range, middle);
-                    // Lower would be without stacked fractions, broken anywhere.
+                    // Less height would mean unstacked fractions and arbitrary breaks.
                     let same = (here.height - wide.height).abs() < 0.5 && here.broken <= wide.broken;
                     *(if same { &mut width } else { &mut narrow }) = middle;
                 }
@@ -286,7 +286,7 @@ impl Block {
     }
 }
 
-/// The ways to fill columns from the top, each with the least height for its number of columns or more.
+/// Ways to fill columns from the top, up to various heights.
 fn partitions(heights: &[f32]) -> impl Iterator<Item = Vec<Range<usize>>> {
     let whole: f32 = heights.iter().sum();
     let fill = move |most: f32| {
@@ -304,12 +304,12 @@ fn partitions(heights: &[f32]) -> impl Iterator<Item = Vec<Range<usize>>> {
     (1..=64).map(move |k| fill(whole * k as f32 / 64.0 + 0.5)).filter(|r| r.iter().all(|r| !r.is_empty()))
 }
 
-/// The objects as the camera sees them: discs, without what is far outside the picture.
+/// The objects as seen by the camera: discs, without those far outside the picture.
 fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
     let lens = Lens::of(session, rect);
     let right = session.facts.camera * glam::Vec3::X;
     let disc = |o: &crate::scene::Object| {
-        // Half the size, and what corners reach beyond it.
+        // Half the size, with an allowance for corners.
         let radius = 0.6 * o.size;
         let at = lens.project(o.position)?;
         Some((at, lens.project(o.position + radius * right)?.distance(at)))
@@ -322,7 +322,7 @@ fn covers(rect: Rect, (at, radius): (Pos2, f32)) -> bool {
     rect.is_positive() && at.distance(rect.clamp(at)) < radius
 }
 
-/// When the presentation began, seconds.
+/// Start time of the presentation, in seconds.
 fn since(ui: &Ui) -> (f64, f64) {
     let id = Id::new("presentation since");
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());

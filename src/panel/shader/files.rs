@@ -1,4 +1,4 @@
-//! The list of the shader files that the picture is made of.
+//! The list of the shader files behind the picture.
 
 use std::{path::Path, sync::Arc};
 
@@ -22,7 +22,7 @@ use crate::{
     },
 };
 
-/// The name and the purpose of a file of a composition, for people.
+/// The display name and the purpose of a file of a composition.
 #[must_use]
 pub fn words(part: Part, path: &str) -> (String, &'static str) {
     let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
@@ -101,7 +101,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
             });
         });
     });
-    // Paths begin in line, after the longest name.
+    // Paths are aligned, after the longest name.
     let font = TextStyle::Body.resolve(ui.style());
     let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), egui::Color32::WHITE).size().x;
     let names = files.iter().map(|file| width(words(file.part, &file.path).0)).fold(0.0, f32::max);
@@ -117,7 +117,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
     });
 }
 
-/// The button that makes a folder of shaders.
+/// The button that exports the shaders to a folder.
 fn export(ui: &mut Ui, actions: &mut Vec<Action>) {
     let button = ui.button("Export shaders for editing…").on_hover_text(
         "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
@@ -127,7 +127,7 @@ fn export(ui: &mut Ui, actions: &mut Vec<Action>) {
     }
 }
 
-/// The folder that is watched; from right to left.
+/// The watched folder, laid out from right to left.
 fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let text = folder.shown().to_string();
@@ -146,7 +146,7 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
     ui.label(theme::small(ui, "watched:"));
 }
 
-/// A path, without its folders where there is little room.
+/// A path, without its folders if there is little room.
 fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<Galley> {
     let file = path.rsplit('/').next().unwrap_or(path);
     [path, &format!("…/{file}")]
@@ -156,10 +156,10 @@ fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<
         .unwrap_or_else(|| theme::elided_within(ui, file, font, colour, room).0)
 }
 
-/// The height of a row of the list, points.
+/// Height of a row of the list, in points.
 const ROW: f32 = 22.0;
 
-/// The row of a file; `names` points for its name.
+/// The row of a file; `names` is the width of the name column, in points.
 pub(super) fn file(
     ui: &mut Ui,
     (session, registry): (&Session, &Registry),
@@ -214,7 +214,7 @@ pub(super) fn file(
         ui.label(theme::strong(ui, &name));
         ui.label(help);
         let place = on_disk.map_or_else(
-            // The folder that it is of may be on the machine of its author alone.
+            // The folder it belongs to may only exist on its author's machine.
             || if foreign { format!("{path}, of {}", program::name()) } else { format!("{path}, built in") },
             |f| f.shown().to_string(),
         );

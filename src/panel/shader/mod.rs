@@ -1,4 +1,4 @@
-//! The panel of the shaders: the files that the picture is made of, and their errors.
+//! The shader panel: the files behind the picture, and their errors.
 
 use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
@@ -20,7 +20,7 @@ mod trouble;
 pub use files::words;
 pub use trouble::{Excerpt, consequence, excerpt, report};
 
-/// See the module.
+/// The *Shaders* panel.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader;
 
@@ -47,12 +47,12 @@ impl Panel for Shader {
         let palette = Palette::here(ui);
         let whole = ui.available_rect_before_wrap();
         let gap = 12.0;
-        // Problems come first where there is little room.
+        // Problems get more width.
         let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
         let left = (share * whole.width()).clamp(240.0, 620.0);
         let columns = whole.split_left_right_at_x(whole.left() + left + gap);
         ui.painter().vline(columns.1.left(), whole.y_range(), egui::Stroke::new(1.0, palette.line));
-        // A column keeps its width, whatever is in it.
+        // A column keeps its width, whatever it contains.
         let column = |ui: &mut Ui, rect: Rect, add: &mut dyn FnMut(&mut Ui)| {
             let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
             ui.scope_builder(builder, |ui| add(ui));
@@ -71,7 +71,7 @@ impl Panel for Shader {
     }
 }
 
-/// The message about a model that a scene names and that is missing.
+/// The message about a missing model that a scene refers to.
 #[must_use]
 pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String {
     let path = source_path(id);
@@ -89,7 +89,7 @@ pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String
     }
 }
 
-/// The panel without errors: the file that was loaded last, and first steps.
+/// The panel without errors: the latest reload, and first steps.
 fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let heading = if laws::are_broken(session) { "No errors, but broken laws" } else { "No errors" };
     let how = match &session.shaders.folders.shaders {

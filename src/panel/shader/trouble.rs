@@ -1,4 +1,4 @@
-//! Errors in shader files, each with its line of source.
+//! Errors in shader files, each with its source line.
 
 use bevy_egui::egui::{
     self, Align, FontId, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
@@ -24,20 +24,20 @@ pub fn consequence(trouble: &Trouble) -> String {
     format!("The picture shows {} until this is corrected.", shown_instead(&trouble.stale))
 }
 
-/// The width of a tab, in characters.
+/// Width of a tab, in characters.
 const TAB: usize = 4;
 
-/// A line of source, short enough to be shown, and the character that it is about.
+/// A source line, short enough for display, and the position of an error in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excerpt {
-    /// Without tabs, cut to the room; `…` stands where something was cut off.
+    /// The text without tabs, cut to the available width; `…` marks a cut.
     pub text: String,
-    /// The character that it is about, from 0; may be one past the end.
+    /// Index of the character in question, from 0; may be one past the end.
     pub caret: usize,
 }
 
-/// The part of a line of source around a column (in characters, from 1; it may be past the end) that fits into so
-/// many characters. Tabs become spaces up to the next multiple of four.
+/// The part of a source line around a column (in characters, from 1, possibly past the end) that fits into `room`
+/// characters. Tabs become spaces up to the next multiple of four.
 #[must_use]
 pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
     let mut chars: Vec<char> = Vec::new();
@@ -52,7 +52,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
         }
     }
     let mut caret = caret.unwrap_or(chars.len());
-    // The indentation says nothing.
+    // Indentation carries no information.
     let indent = chars.iter().take(caret).take_while(|c| **c == ' ').count();
     let room = room.max(8);
     if chars.len() > room && indent > 0 {
@@ -60,7 +60,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
         caret -= indent;
     }
     if chars.len() > room {
-        // The text before the place explains more than the text after it.
+        // The text before the position explains more than the text after it.
         let start = (caret + room / 3 + 1).saturating_sub(room).min(chars.len() - room);
         let end = (start + room).min(chars.len());
         let (cut_start, cut_end) = (start > 0, end < chars.len());
@@ -76,7 +76,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
     Excerpt { text: chars.into_iter().collect(), caret }
 }
 
-/// A problem as text: message, place, the line with a caret, the consequence.
+/// A problem as text: message, location, source line with caret, consequence.
 #[must_use]
 pub fn report(trouble: &Trouble) -> String {
     let path = trouble.path.as_ref().map(|path| path.shown().to_string());
@@ -128,7 +128,7 @@ pub(super) fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>)
     ui.add(egui::Label::new(consequence(trouble)).wrap());
 }
 
-/// The line as it stands in the file, with its number, and a caret below the place that is meant.
+/// The source line with its number, and a caret below the position.
 fn source_line(ui: &mut Ui, trouble: &Trouble) {
     let p = &trouble.problem;
     if p.source.trim().is_empty() {
@@ -145,7 +145,7 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
     let room = ((width - gutter - 2.0 * padding.x) / advance).floor().max(0.0) as usize;
     let shown = excerpt(&p.source, p.column, room);
     let source = plain(shown.text.clone(), palette.text);
-    // Larger than the text: it is looked for.
+    // Larger than the text, so that it is easy to find.
     let large = FontId::monospace(1.5 * font.size);
     let caret = ui.painter().layout_no_wrap("^".to_owned(), large, palette.error);
     let height = source.size().y + 0.55 * caret.size().y + 2.0 * padding.y;
@@ -160,7 +160,7 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
     let left = rect.left() + gutter;
     painter.vline(left - 0.5 * padding.x, rect.y_range().shrink(2.0), egui::Stroke::new(1.0, palette.line));
     let at = egui::pos2(left + padding.x, top.y);
-    // Asked of the text itself, since not every sign is as wide as the others.
+    // Taken from the laid-out text, since not all characters have the same width.
     let here = source.pos_from_cursor(egui::text::CCursor::new(shown.caret));
     let middle = here.min.x + 0.5 * advance;
     let under = at + vec2(middle - 0.5 * caret.size().x, source.size().y - 0.1 * caret.size().y);

@@ -15,7 +15,7 @@ use crate::{
     scene::{Display, limits},
 };
 
-/// An action of a user. Panels return these.
+/// An action of the user, as returned by panels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Start a new default scene.
@@ -24,11 +24,11 @@ pub enum Action {
     OpenDialog,
     /// Open a file.
     Open(PathBuf),
-    /// Open one of [`EXAMPLES`](crate::scene::examples::EXAMPLES) as a document that is in no file.
+    /// Open one of [`EXAMPLES`](crate::scene::examples::EXAMPLES) as an unsaved document.
     OpenExample(usize),
-    /// Read the file again.
+    /// Reload the file from disk.
     Reload,
-    /// Save to the file of the document, or choose one.
+    /// Save to the file of the document, or choose one if there is none.
     Save,
     /// Choose a file and save to it.
     SaveAsDialog,
@@ -46,123 +46,123 @@ pub enum Action {
     Select(Selection),
     /// Select the next object.
     SelectNext,
-    /// Select the object before.
+    /// Select the previous object.
     SelectPrevious,
     /// Add a light of this type.
     AddLight(String),
     /// Add an object of this type.
     AddObject(String),
-    /// Add another one like this.
+    /// Duplicate a light or an object.
     Duplicate(Selection),
     /// Remove a light or an object.
     Remove(Selection),
-    /// Hide an object or show it again; switch a light off or on.
+    /// Hide or show an object; switch a light on or off.
     Toggle(Selection),
-    /// Open what was dropped on the window, or add it to the scene.
+    /// Open files dropped on the window, or add them to the scene.
     Drop(Vec<PathBuf>),
     /// Show the manual in the browser.
     Manual,
-    /// Begin typing the name of a part in the tree.
+    /// Start to rename a part in the scene list.
     BeginRename(Selection),
-    /// Stop typing without a change.
+    /// Cancel renaming.
     CancelRename,
-    /// A drag in the picture begins: what it changes is a step of its own.
+    /// Start a drag in the picture, whose changes form one step of the history.
     BeginDrag,
-    /// Move, turn or resize what is selected by one step in this direction of the room, as the handles would.
+    /// Move, turn or resize the selection by one step in this world direction, as the handles would.
     Nudge(Vec3),
     /// Change the scene.
     Edit(Edit),
-    /// Take the last step back.
+    /// Undo the latest step.
     Undo,
-    /// Do the step again that was taken back last.
+    /// Redo the step undone last.
     Redo,
-    /// Take steps back, or do them again, until so many are done.
+    /// Undo or redo until this number of steps is applied.
     GoToStep(usize),
-    /// Choose the n-th of the recent models, from 0.
+    /// Select the n-th recent model, from 0.
     RecentModel(usize),
-    /// Change the exposure by so many EV.
+    /// Change the exposure by this many EV.
     Expose(f32),
-    /// Show the next term of the equation alone.
+    /// Isolate the next term of the equation.
     NextTerms,
-    /// Change what is shown.
+    /// Change the view state.
     View(ViewChange),
-    /// Pin the pixel under the pointer, or else the middle of the picture, so that it stays explained; let go of the one
-    /// that is pinned.
+    /// Pin the pixel under the pointer, or else the centre of the picture, so that it stays explained; unpin if one is
+    /// pinned.
     Pin,
-    /// Put the camera where the observer is.
+    /// Move the camera to the observer.
     HomeView,
-    /// Let the camera look at what is selected.
+    /// Turn the camera to the selection.
     FocusSelection,
-    /// Turn the camera around the pinned point until the plane of its vectors is seen face on.
+    /// Move the camera around the pinned point until it faces the plane of the point's vectors.
     LookFromSide,
-    /// Moves the observer to the camera.
+    /// Move the observer to the camera.
     ObserverFromView,
     /// Move the camera a little.
     Steer(Steer),
-    /// Put text on the clipboard.
+    /// Copy text to the clipboard.
     Copy(String),
-    /// Something about custom models and shaders.
+    /// A command for custom models and shaders.
     Model(ModelCommand),
-    /// Something about exports.
+    /// A command for exports.
     Export(ExportCommand),
-    /// Something about pictures.
+    /// A command for pictures.
     Picture(PictureCommand),
-    /// Something about the views of a comparison.
+    /// A command for the views of a comparison.
     Compare(CompareCommand),
-    /// Something about matching views.
+    /// A command for matching views.
     Match(MatchCommand),
-    /// Something about the plots.
+    /// A command for the plots.
     Plot(PlotCommand),
-    /// Something about lessons.
+    /// A command for lessons.
     Lesson(LessonCommand),
-    /// Say something.
+    /// Show a message.
     Say(Severity, String),
-    /// Remove a message.
+    /// Dismiss a message.
     Dismiss(usize),
-    /// Remove all messages.
+    /// Dismiss all messages.
     DismissAll,
 }
 
 /// The answer to a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// Save first, then do what was asked for.
+    /// Save first, then perform the pending action.
     Save,
-    /// Lose the changes and do what was asked for.
+    /// Discard the changes and perform the pending action.
     Discard,
     /// Do nothing.
     Cancel,
     /// Use the defaults.
     UseDefaults,
-    /// Replace what is on disk.
+    /// Overwrite the version on disk.
     Overwrite,
-    /// Take what is on disk.
+    /// Load the version on disk.
     Reload,
-    /// Keep what is on screen; saving replaces what is on disk now.
+    /// Keep the version on screen; saving will overwrite the one on disk.
     Keep,
-    /// Go on with what an earlier window left.
+    /// Continue with the unsaved work of an earlier window.
     Recover,
 }
 
-/// A command about exports.
+/// A command for exports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExportCommand {
-    /// Choose a place for an export in a form, by its id.
+    /// Choose a destination for an export in a format, by its id.
     Dialog(&'static str),
-    /// Export to a place.
+    /// Export to a destination.
     To {
-        /// The id of the form.
+        /// Id of the format.
         form: &'static str,
         /// The file or folder.
         path: PathBuf,
     },
-    /// Stop the export that runs.
+    /// Stop the running export.
     Cancel,
     /// Show a folder in the file manager.
     Reveal(PathBuf),
 }
 
-/// A command about pictures. The view is the one that is wanted alone; `None` means all as they are shown.
+/// A command for pictures. A view means that view alone; `None` means all views as shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PictureCommand {
     /// Choose a file for the picture.
@@ -174,24 +174,24 @@ pub enum PictureCommand {
         /// The file.
         path: PathBuf,
     },
-    /// Put the picture on the clipboard.
+    /// Copy the picture to the clipboard.
     Copy(Option<usize>),
 }
 
-/// A command about custom models and shaders.
+/// A command for custom models and shaders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelCommand {
-    /// Begin a new model: ask what it shall be called.
+    /// Start a new model: ask for its name.
     New,
-    /// Begin a copy of the shown model: ask what it shall be called.
+    /// Start a copy of the current model: ask for its name.
     Duplicate,
     /// The name of the model, as typed.
     Type(String),
-    /// Write the file of the model.
+    /// Create the file of the model.
     Create,
-    /// Do not write it.
+    /// Cancel the new model.
     Cancel,
-    /// Open the file of the shown model in an editor.
+    /// Open the file of the current model in an editor.
     EditShown,
     /// Open a file in an editor.
     Edit {
@@ -200,18 +200,18 @@ pub enum ModelCommand {
         /// The line to go to, from 1.
         line: usize,
     },
-    /// Try to find the laws of the shown model broken.
+    /// Search for violations of the laws of the current model.
     CheckLaws,
-    /// Choose a folder and write the shaders into it.
+    /// Choose a folder to export the shaders to.
     ExportDialog,
-    /// Write the shaders into a folder.
+    /// Export the shaders to a folder.
     Export(PathBuf),
-    /// Copy a file into the folder of custom models, and choose its model.
+    /// Copy a file into the folder of custom models, and select its model.
     Adopt(PathBuf),
 }
 
 impl Session {
-    /// Carries out an action. Returns what needs files, entities or the operating system.
+    /// Applies an action. Returns the effects, which need files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         let revision = self.document.revision();
         let words = self.default_words();
@@ -221,7 +221,7 @@ impl Session {
             self.forget_default_words(words);
         }
         effects.extend(self.resume_lesson());
-        // It would undo something else.
+        // The button would undo a different step.
         self.messages.check_undo(&self.last_step());
         effects
     }
@@ -343,7 +343,7 @@ impl Session {
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
-            // With a point the panels have made a movement of it.
+            // With a pinned point, the panels have replaced the action by a camera movement.
             Action::LookFromSide => self.say(
                 Severity::Info,
                 "There is no pinned point to look at from the side: E explains the point at the pointer, and pins it.",

@@ -1,4 +1,4 @@
-//! The user's own document while a lesson shows scenes of its own: all of it waits, and comes back as it was.
+//! The user's own document while a lesson shows other scenes: it is set aside and restored unchanged.
 
 use std::{
     mem::swap,
@@ -14,7 +14,7 @@ use crate::{
     scene::variant::MAX_VARIANTS,
 };
 
-/// The choices of the view that belong to what is shown, not to the user.
+/// View settings that belong to the shown document rather than to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shown {
     terms: TermSelection,
@@ -50,7 +50,7 @@ impl Shown {
     }
 }
 
-/// A document that waits, with all that belongs to it.
+/// A document that is set aside, with everything that belongs to it.
 #[derive(Clone, Debug)]
 pub struct Aside {
     document: Document,
@@ -66,7 +66,7 @@ pub struct Aside {
 }
 
 impl Aside {
-    /// A document that nobody changed, in no file, for the place of the user's own.
+    /// An unchanged document without a file, to be exchanged with the user's own.
     pub(super) fn around(document: Document, session: &Session) -> Self {
         let mut view = View::default();
         (view.bottom_open, view.bottom_tab) = (false, session.view.bottom_tab.clone());
@@ -89,14 +89,14 @@ impl Aside {
     }
 }
 
-/// The title of a document: the name of the scene, else the name of the file.
+/// The title of a document: name of the scene, otherwise of the file.
 fn title_of(document: &Document, path: Option<&Path>) -> String {
     let file = || Some(printable(&path?.file_stem()?.to_string_lossy()).into_owned());
     document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
 }
 
 impl Session {
-    /// Exchanges what is shown and what waits.
+    /// Exchanges the current document with the one set aside.
     pub(super) fn exchange(&mut self, aside: &mut Aside) {
         self.document.end_gesture();
         swap(&mut self.document, &mut aside.document);
@@ -114,19 +114,19 @@ impl Session {
         self.messages.another_document();
     }
 
-    /// The user's own document, also while a lesson is shown.
+    /// The user's own document, even while a lesson is open.
     #[must_use]
     pub fn own_document(&self) -> &Document {
         self.lesson.as_ref().map_or(&self.document, |lesson| &lesson.aside.document)
     }
 
-    /// Its file.
+    /// File of the user's own document.
     #[must_use]
     pub fn own_path(&self) -> Option<&Path> {
         self.lesson.as_ref().map_or(self.path.as_deref(), |lesson| lesson.aside.path.as_deref())
     }
 
-    /// Its title: the name of the scene, else the name of the file.
+    /// Title of the user's own document: name of the scene, otherwise of the file.
     #[must_use]
     pub fn own_title(&self) -> String {
         title_of(self.own_document(), self.own_path())
@@ -141,7 +141,7 @@ impl Session {
         }
     }
 
-    /// True if what is shown is the user's own, and differs from its file. Scenes of a lesson are nobody's loss.
+    /// True if the user's own document is shown and differs from its file. Changes to a scene of a lesson are no loss.
     #[must_use]
     pub fn shows_unsaved(&self) -> bool {
         self.lesson.is_none() && self.is_dirty()

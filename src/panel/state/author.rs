@@ -8,39 +8,39 @@ use crate::{
     registry::Registry,
 };
 
-/// A model that is about to be written.
+/// A model that is about to be created.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelDraft {
-    /// Id of the model that is copied; none for a new one.
+    /// Id of the model to copy; `None` for a new model.
     pub of: Option<String>,
-    /// Its name, as typed; its identifier follows.
+    /// Name as typed; the identifier is derived from it.
     pub name: String,
 }
 
 /// A check of the laws of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawCheck {
-    /// The id of the model.
+    /// Id of the model.
     pub model: String,
-    /// The change that the picture showed when the check began: a later one makes it out of date.
+    /// The latest shader reload when the check started: a later one makes the check out of date.
     pub since: Option<Reloaded>,
-    /// The findings, or why there are none; nothing while the check runs.
+    /// The findings or an error; `None` while the check runs.
     pub outcome: Option<Result<LawReport, String>>,
 }
 
-/// The reason why a name can't be used.
+/// A problem with a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameProblem {
-    /// A sentence.
+    /// The problem as a sentence.
     pub why: String,
-    /// An identifier that is near to it and free.
+    /// A similar identifier that is valid and free.
     pub instead: Option<String>,
 }
 
-/// The identifier for a new model that is to be called by a name.
+/// The identifier for a new model with the given name.
 ///
 /// # Errors
-/// The rule that the name breaks, and a name that would do.
+/// Returns an error with the rule that the name violates, and a valid alternative if there is one.
 pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem> {
     let problem = |why: String, instead: Option<String>| Err(NameProblem { why, instead });
     if name.trim().is_empty() {
@@ -55,7 +55,7 @@ pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem
             return problem(format!("{rule}{hint}."), instead);
         }
     };
-    // A file that gives no model is a file too.
+    // A file without a valid model also counts.
     let taken = if registry.model(&id).is_some() {
         format!("There is already a model “{id}”")
     } else if registry.broken_model(&id).is_some() {
@@ -67,7 +67,7 @@ pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem
     problem(format!("{taken}; “{free}” is free."), Some(free))
 }
 
-/// An id that no model has: the one given, or that with a number.
+/// A free id: the given one, or that with a number.
 fn free_id(id: &str, registry: &Registry) -> String {
     let taken = |id: &str| registry.model(id).is_some() || registry.broken_model(id).is_some();
     let numbered = (2..).map(|n| format!("{id}_{n}"));
@@ -75,7 +75,7 @@ fn free_id(id: &str, registry: &Registry) -> String {
 }
 
 impl Session {
-    /// Carries out what is asked about custom models and shaders.
+    /// Applies a command for custom models and shaders.
     pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) -> Vec<Effect> {
         match ask {
             ModelCommand::New => {
@@ -131,7 +131,7 @@ impl Session {
         vec![Effect::CheckLaws(model)]
     }
 
-    /// Takes what a check of the laws of a model found.
+    /// Receives the result of a law check.
     pub fn laws_checked(&mut self, model: &str, outcome: Result<LawReport, String>) {
         if let Some(check) = self.laws.as_mut().filter(|check| check.model == model) {
             check.outcome = Some(outcome);
@@ -151,14 +151,14 @@ impl Session {
         }
     }
 
-    /// The line of the first problem in a file; 1 when there is none.
+    /// The line of the first problem in a file; 1 if there is none.
     #[must_use]
     pub fn line_of_trouble(&self, path: &str) -> usize {
         self.shaders.troubles.iter().find(|t| t.problem.file == path).map_or(1, |t| t.problem.line)
     }
 }
 
-/// The reason why a file can't be opened.
+/// Why a file can't be opened.
 pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Export the shaders first: \
      Edit, “Export shaders for editing…”. Or copy the model as a file.";
 

@@ -1,4 +1,4 @@
-//! The views of a comparison: the one that the panels show and change, and what comes and goes.
+//! The views of a comparison: the active view, and adding and removing views.
 
 use std::sync::Arc;
 
@@ -16,43 +16,43 @@ use crate::{
     },
 };
 
-/// A command about the views of a comparison.
+/// A command for the views of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CompareCommand {
-    /// Show and change this view: 0 is the scene, 1 view B.
+    /// Activate a view, which the panels then show and change: 0 is the scene, 1 view B.
     Activate(usize),
-    /// Add a view that shows what the active one shows.
+    /// Add a copy of the active view.
     Add,
     /// Remove a view.
     Remove(usize),
-    /// Take all overrides of a view back.
+    /// Remove all overrides of a view.
     LikeA(usize),
-    /// Exchange what view A and another show.
+    /// Swap view A with another view.
     Swap(usize),
-    /// Choose a layout; with only one view, the second is added.
+    /// Choose a layout; a single view gets a second one.
     Layout(Layout),
     /// Choose the next layout.
     NextLayout,
-    /// Change the comparison otherwise.
+    /// Change other options of the comparison.
     Set(Comparison),
-    /// Show the other view while the key is held, where the layout is [`Layout::Blink`].
+    /// Show the other view while the key is held, in the layout [`Layout::Blink`].
     Blink(bool),
-    /// Take one override of a view back: the field is `None`.
+    /// Remove one override of a view: the field is `None`.
     Reset(usize, VariantField),
 }
 
-/// The scene as the active view shows it, while that is not the scene itself.
+/// The scene as seen in the active view, unless that is the scene itself.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen(Option<(Revision, usize, Arc<Scene>)>);
 
 impl Session {
-    /// The view that the panels show and change: 0 is the scene itself, 1 view B.
+    /// The active view, which the panels show and change: 0 is the scene itself, 1 view B.
     #[must_use]
     pub fn active(&self) -> usize {
         self.view.active.min(self.document.variants.len())
     }
 
-    /// The scene as the active view shows it.
+    /// The scene as seen in the active view.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         match &self.seen.0 {
@@ -65,7 +65,7 @@ impl Session {
         }
     }
 
-    /// The view that is compared with view A: the active one, where views stand side by side.
+    /// The view compared with view A: side by side, the active one.
     #[must_use]
     pub fn compared_with(&self) -> usize {
         match (self.document.comparison.layout, self.active()) {
@@ -74,7 +74,7 @@ impl Session {
         }
     }
 
-    /// The reason why there are no numbers and no map of the difference between the views that are compared, if there is one.
+    /// Why the compared views have no statistics and no difference map; `None` if they have.
     #[must_use]
     pub fn incomparable(&self) -> Option<String> {
         let with = self.compared_with();
@@ -91,8 +91,8 @@ impl Session {
         }
     }
 
-    /// That the views that are compared have not converged, in words, as long as they have not: numbers and map of their
-    /// difference are those from before.
+    /// A note that the compared views have not converged, so that statistics and difference map are out of date; `None`
+    /// once they have.
     #[must_use]
     pub fn unconverged(&self) -> Option<String> {
         let views = [0, self.compared_with()].map(|view| self.facts.converged[view.min(MAX_VARIANTS)]);
@@ -100,14 +100,13 @@ impl Session {
         (least.missing() > 0).then(|| format!("Not converged yet: {}", least.samples()))
     }
 
-    /// The reason why numbers and map of the difference are not those of the pictures, if there is one.
+    /// Why statistics and difference map do not match the pictures; `None` if they do.
     #[must_use]
     pub fn no_difference(&self) -> Option<String> {
         self.incomparable().or_else(|| self.unconverged())
     }
 
-    /// Takes over into the scene which view is compared with view A, before the scene is written. This is no step of the
-    /// history.
+    /// Stores in the scene which view is compared with view A, before the scene is written. Not a step of the history.
     pub fn settle_comparison(&mut self) {
         let with = self.compared_with();
         if with != self.document.comparison.with {
@@ -115,33 +114,33 @@ impl Session {
         }
     }
 
-    /// True if [`look`](Self::look) is to be called: the active view shows something else.
+    /// True if the cached scene of the active view is out of date, so that [`look`](Self::look) must be called.
     #[must_use]
     pub fn is_stale(&self) -> bool {
         let now = (self.active() > 0).then(|| (self.document.revision(), self.active()));
         self.seen.0.as_ref().map(|(revision, view, _)| (*revision, *view)) != now
     }
 
-    /// Makes [`scene`](Self::scene) what the active view shows.
+    /// Updates [`scene`](Self::scene) to the active view.
     pub fn look(&mut self, registry: &Registry) {
         self.view.active = self.active();
         let seen = self.document.seen(self.view.active, registry).filter(|_| self.view.active > 0);
         self.seen.0 = seen.map(|(scene, _)| (self.document.revision(), self.view.active, Arc::new(scene)));
     }
 
-    /// What the active view overrides; `None` for view A.
+    /// Overrides of the active view; `None` for view A.
     #[must_use]
     pub fn variant(&self) -> Option<&Variant> {
         self.document.variants.get(self.active().checked_sub(1)?)
     }
 
-    /// The terms that the active view shows.
+    /// The visible terms of the active view.
     #[must_use]
     pub fn terms(&self) -> TermSelection {
         self.terms_of(self.active())
     }
 
-    /// The terms that a view shows.
+    /// The visible terms of a view.
     #[must_use]
     pub fn terms_of(&self, view: usize) -> TermSelection {
         let own = self.document.overrides(view).and_then(|variant| variant.terms);
@@ -154,7 +153,7 @@ impl Session {
         self.view.channels.get(view).copied().flatten()
     }
 
-    /// The light that debug channels are about, if one is selected.
+    /// The selected light, which debug channels refer to.
     #[must_use]
     pub fn channel_light(&self) -> Option<usize> {
         match self.selection {
@@ -163,8 +162,8 @@ impl Session {
         }
     }
 
-    /// The edits that make in the active view what an edit of the scene would. Of what a variant cannot override, the
-    /// scene itself is changed.
+    /// The edits that have the effect of `edit` in the active view. What a variant cannot override is changed in the
+    /// scene itself.
     pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Vec<Edit> {
         let Some(i) = self.active().checked_sub(1) else { return vec![edit] };
         let put = |field: VariantField| vec![Edit::Variant(i, field)];
@@ -289,7 +288,7 @@ impl Session {
         let Some(i) = view.checked_sub(1).filter(|i| *i < self.document.variants.len()) else { return };
         let mut all = self.document.variants.clone();
         let gone = all.remove(i);
-        // Those that were based on it are based on what it was based on.
+        // Views based on the removed one inherit its overrides.
         for variant in &mut all {
             if variant.based_on.is_some() && variant.based_on == gone.name {
                 let merged = variant.clone().over(&gone);
@@ -318,11 +317,12 @@ impl Session {
     }
 }
 
-/// The scene with view A and another exchanged. Further views show what they showed.
+/// The scene with view A and another view swapped. Further views keep their appearance.
 ///
 /// # Errors
-/// The objects differ in what the other view overrides for all of them: a variant cannot hold that. Or it shows terms of
-/// its own: the scene itself cannot hold that.
+/// Returns an error if the view does not exist or inherits from another one, if the objects differ in a property that
+/// the view overrides for all of them, which a variant cannot hold, or if the view has its own selection of terms,
+/// which the scene itself cannot hold.
 fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<Scene, String> {
     let Some(variant) = scene.overrides(view) else { return Err("there is no such view".to_owned()) };
     if scene.variants[view - 1].based_on.is_some() {
@@ -331,7 +331,7 @@ fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<Scene, Str
     if variant.terms.is_some() {
         return Err("the view shows terms of its own, which the scene itself has not".to_owned());
     }
-    /// The one value of all objects.
+    /// The common value of all objects.
     fn one<T: PartialEq>(mut all: impl Iterator<Item = T>, what: &str) -> Result<Option<T>, String> {
         let Some(first) = all.next() else { return Ok(None) };
         if all.any(|other| other != first) {
@@ -409,7 +409,7 @@ mod tests {
         assert_eq!(variant.reflection_model.as_deref(), Some("phong"));
         assert_eq!(variant.exposure, Some(0.5));
         assert_eq!(session.scene().objects[0].material.0["alpha"], Value::Integer(30));
-        // What a variant cannot override changes the scene.
+        // Properties that a variant cannot override change the scene.
         session.apply(Action::Edit(Edit::Object(0, ObjectField::Size(1.0))), &registry);
         assert_eq!(session.document.objects[0].size, 1.0);
         // Back to A, one by one, and all at once.

@@ -1,4 +1,4 @@
-//! The document's file on disk, beyond the document itself.
+//! State of the document's file on disk.
 
 use std::path::Path;
 
@@ -6,43 +6,43 @@ use super::{Badge, MissingPart, Note, Session, Severity};
 use crate::files::Shown as _;
 use crate::{files::printable, scene::load::Stamp};
 
-/// A state of a file on disk: its content, or that there is no file.
+/// Version of a file on disk: its content, or `None` if there is no file.
 type Version = Option<Stamp>;
 
-/// Facts about the document's file on disk beyond the document itself.
+/// State of the document's file on disk.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnDisk {
-    /// The remark of the picture on it.
+    /// Badge in the picture about the file.
     pub badge: Option<Badge>,
-    /// The document may take the defaults of any part that its file lacks.
+    /// True if the user accepts defaults for any parts missing from the file.
     pub use_defaults: bool,
-    /// True if the document came from a recovery copy: no file is known to have it.
+    /// True if the document was recovered, so that its file is unknown.
     pub(in crate::panel) recovered: bool,
-    /// The names of the parts that the file lacks and that the document got as defaults.
+    /// Names of the parts that are missing from the file and were set to defaults.
     pub(in crate::panel) defaulted: Vec<String>,
-    /// True if the file was deleted or holds no scene any more, so that only the window has the document.
+    /// True if the file was deleted or is no longer a valid scene, so that only the window has the document.
     pub(in crate::panel) lost: bool,
-    /// News came while a question was open.
+    /// True if the file changed while a question was open.
     pub(in crate::panel) deferred: bool,
-    /// A version that cannot be used, but that may be in the middle of being written.
+    /// An unusable version that may still be in the process of being written.
     pub(in crate::panel) suspect: Option<Version>,
-    /// The version that cannot be used of which the user was told.
+    /// The unusable version that was reported to the user.
     pub(in crate::panel) told: Option<Version>,
-    /// The version about which the user was asked.
+    /// The version that the user was asked about.
     pub(in crate::panel) asked: Option<Version>,
-    /// The messages about the file, which give way to newer ones.
+    /// Messages about the file, which newer ones replace.
     notes: Vec<Note>,
 }
 
 impl OnDisk {
-    /// True if no file has what the document began with.
+    /// True if no file contains the document that the changes are based on.
     pub(super) fn lacks_document(&self) -> bool {
         self.recovered || !self.defaulted.is_empty() || self.lost
     }
 }
 
 impl Session {
-    /// The document's file is as it should be, or is the user's concern: what was said of it is over.
+    /// Removes badge and messages about the file, once the file is as expected or the user has decided.
     pub(in crate::panel) fn disk_settled(&mut self) {
         let notes = std::mem::take(&mut self.disk.notes);
         self.messages.retain(|m| !notes.contains(m));
@@ -59,25 +59,25 @@ impl Session {
         };
     }
 
-    /// The remark on the document's file, if there is one.
+    /// The badge about the document's file, if there is one.
     #[must_use]
     pub fn disk_badge(&self) -> Option<Badge> {
         let mut badge = self.disk.badge.clone()?;
-        // The file cannot be read, so what is shown is the scene before it, or what became of that here.
+        // The file is unreadable: the picture shows the previous scene, with any later changes.
         if badge.severity == Severity::Error && self.lesson.is_none() && self.document.differs() {
             badge.text += " with your unsaved changes";
         }
         Some(badge)
     }
 
-    /// The document is as its file has it, or is another one.
+    /// Resets the state after the document was saved or replaced.
     pub(super) fn disk_saved(&mut self) {
         self.disk_settled();
         self.disk.recovered = false;
         self.disk.defaulted.clear();
     }
 
-    /// The user leaves it open whether the file on disk or the document counts.
+    /// Shows a badge while the user has not decided between the version on disk and the document.
     pub(super) fn disk_undecided(&mut self, path: &Path) {
         self.set_disk_badge(
             Severity::Warning,
@@ -91,8 +91,7 @@ impl Session {
         );
     }
 
-    /// Puts a badge on the picture that begins with the name of the file, without what names of files may hold that is
-    /// not to be shown.
+    /// Sets the badge about the file, which begins with the file name. Unprintable characters are removed.
     pub(in crate::panel) fn set_disk_badge(
         &mut self,
         severity: Severity,
@@ -105,14 +104,14 @@ impl Session {
         self.disk.badge = Some(Badge { severity, text, help: printable(help).into_owned() });
     }
 
-    /// Says something about the file that gives way when there is something newer to say.
+    /// Shows a message about the file, which newer ones replace.
     pub(in crate::panel) fn say_of_disk(&mut self, severity: Severity, text: String) {
         let note = Note::new(severity, text);
         self.disk.notes.push(note.clone());
         self.note(note);
     }
 
-    /// True if the user agreed to the defaults of all these parts.
+    /// True if the user has accepted the defaults of all these parts.
     pub(in crate::panel) fn may_default(&self, parts: &[MissingPart]) -> bool {
         self.disk.use_defaults || parts.iter().all(|p| self.disk.defaulted.contains(&p.name))
     }

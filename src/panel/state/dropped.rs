@@ -1,4 +1,4 @@
-//! Files that are dropped on the window.
+//! Files dropped on the window.
 
 use std::path::{Path, PathBuf};
 
@@ -12,12 +12,12 @@ use crate::{
     scene::formats,
 };
 
-/// True if a file has an extension, in small letters or in capitals.
+/// True if a file has one of these extensions, ignoring case.
 fn ends_in(path: &Path, extensions: &[&str]) -> bool {
     path.extension().is_some_and(|own| extensions.iter().any(|known| own.eq_ignore_ascii_case(known)))
 }
 
-/// The first of these parameters that takes such a file.
+/// The first of the parameters that accepts the file.
 fn taker(parameters: &'static [Parameter], path: &Path) -> Option<&'static Parameter> {
     parameters
         .iter()
@@ -25,8 +25,8 @@ fn taker(parameters: &'static [Parameter], path: &Path) -> Option<&'static Param
 }
 
 impl Session {
-    /// Opens what was dropped: the first scene, picture with a scene or lesson; else every object and lamp becomes part
-    /// of the scene, and a model is chosen.
+    /// Opens dropped files: the first scene, picture with a scene, or lesson; otherwise adds every object and lamp to
+    /// the scene, and selects a model.
     pub(super) fn dropped(&mut self, paths: Vec<PathBuf>, registry: &Registry) -> Vec<Effect> {
         let Some(first) = paths.first().cloned() else { return Vec::new() };
         if let Some(scene) = paths.iter().find(|path| formats::is_scene_file(path, registry)) {
@@ -40,12 +40,12 @@ impl Session {
         for path in &paths {
             taken |= self.take_part(path, registry) || self.take_model(path, registry);
         }
-        // What is nothing of that is opened as a scene: the message says why it is none.
+        // Any other file is opened as a scene: the message explains why it is not one.
         if taken { Vec::new() } else { self.carry_out(Action::Open(first), registry) }
     }
 
-    /// Adds an object or a lamp that is made from this file; a lamp that is selected gets it instead. True if there are
-    /// such.
+    /// Adds an object or a lamp made from the file; a selected lamp of that type receives the file instead. Returns
+    /// true if the file type is accepted.
     fn take_part(&mut self, path: &Path, registry: &Registry) -> bool {
         if let Some((shape, parameter)) =
             registry.shapes().iter().find_map(|shape| Some((shape, taker(shape.parameters, path)?)))
@@ -78,7 +78,7 @@ impl Session {
         true
     }
 
-    /// The file as a value, unless it is broken, which is said.
+    /// The file as a value; `None` with a message if the file is damaged.
     fn usable(&mut self, parameter: &'static Parameter, path: &Path) -> Option<Value> {
         let file = self.chosen(parameter, path)?;
         if let Value::File(named) = &file
@@ -90,8 +90,8 @@ impl Session {
         Some(file)
     }
 
-    /// Chooses a model whose file is in the folder of custom models; of one elsewhere, offers a copy there. True if it is
-    /// a model.
+    /// Selects a model whose file is in the folder of custom models; otherwise offers to copy the file there. Returns
+    /// true if the file is a model.
     fn take_model(&mut self, path: &Path, registry: &Registry) -> bool {
         if !ends_in(path, &[custom::EXTENSION]) {
             return false;

@@ -1,4 +1,4 @@
-//! Changes of the scene, and the way back.
+//! Edits of the scene, undo and redo.
 
 use super::{Session, Severity, messages::Step};
 use crate::{
@@ -8,18 +8,18 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// A choice of the scene that objects may override.
+/// A scene default that objects may override.
 const MODEL: &str = "reflection model";
 
 impl Session {
-    /// Makes a change in the active view.
+    /// Applies an edit in the active view.
     pub(super) fn edit(&mut self, edit: Edit, registry: &Registry) {
         for edit in self.redirected(edit, registry) {
             self.edit_here(edit, registry);
         }
     }
 
-    /// Makes a change.
+    /// Applies an edit to the scene.
     pub(super) fn edit_here(&mut self, edit: Edit, registry: &Registry) {
         let model = match &edit {
             Edit::Model(id)
@@ -52,7 +52,7 @@ impl Session {
             self.model_slots.take(&id);
         }
         if other_model && self.document.revision() != before {
-            // Models may allow other values of a parameter that they share.
+            // Models may allow different values of a parameter that they share.
             follow_model(self, registry);
         }
         if let Some(what) = scene_choice {
@@ -72,18 +72,18 @@ impl Session {
         }
     }
 
-    /// Adopts a change of these parts made outside the panels: by a system that changed a component.
+    /// Adopts a change of these parts made outside the panels, by a system that changed a component.
     ///
     /// # Errors
-    /// The reason for a refusal; the document stays as it is.
+    /// Returns an error with the reason if the change is refused; the document then stays as it is.
     pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
         self.by_system(|document, selection| document.submit(scene, parts, selection, registry))
     }
 
-    /// Adopts a scene in which systems removed, added or retyped parts: see [`Document::submit_lists`].
+    /// Adopts a scene in which systems added, removed or retyped parts: see [`Document::submit_lists`].
     ///
     /// # Errors
-    /// The reason for a refusal; the document stays as it is.
+    /// Returns an error with the reason if the change is refused; the document then stays as it is.
     pub fn submit_lists(
         &mut self,
         scene: &Scene,
@@ -93,7 +93,7 @@ impl Session {
         self.by_system(|document, selection| document.submit_lists(scene, removed, selection, registry))
     }
 
-    /// Makes a change by a system; what is selected stays so.
+    /// Applies a change made by a system, keeping the selection.
     fn by_system(
         &mut self,
         change: impl FnOnce(&mut Document, Selection) -> Result<(), String>,
@@ -116,14 +116,14 @@ impl Session {
         Ok(())
     }
 
-    /// The number of steps that are done, and the name of the last one.
+    /// The number of applied steps, and the name of the latest one.
     pub(super) fn last_step(&self) -> Step {
         let done = self.document.done();
         let last = done.checked_sub(1).and_then(|last| self.document.steps().nth(last));
         (done, last.map(str::to_owned))
     }
 
-    /// A light that gets a position with its new type is placed in view.
+    /// Changes the type of a light, and places it in view if it gains a position.
     fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) -> Result<(), String> {
         let position = self.document.lights.get(i).and_then(|light| light.position);
         let stand = self.stand(registry);
@@ -132,7 +132,7 @@ impl Session {
         self.document.change_light_type(i, id, place, self.selection, registry)
     }
 
-    /// Takes a step back, or does it again, until so many are done.
+    /// Undoes or redoes until this number of steps is applied.
     pub(super) fn go_to_step(&mut self, done: usize, registry: &Registry) {
         let model = self.document.reflection_model.clone();
         while self.document.done() != done.min(self.document.steps().len()) {
@@ -147,7 +147,7 @@ impl Session {
         if self.document.reflection_model != model {
             self.model_slots.take(&self.document.reflection_model);
         }
-        // The models may be others than when the step was made.
+        // The models may have changed since the step was made.
         follow_registry(self, registry);
     }
 }

@@ -7,73 +7,72 @@ use glam::Vec3;
 
 use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
 
-/// Work that needs files, entities or the operating system; the app carries it out.
+/// Work that needs files, entities or the operating system, carried out by the app.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Show the dialog that chooses a file to open.
+    /// Show the dialog that selects a file to open.
     PickOpen,
-    /// Show the dialog that chooses a file to save to.
+    /// Show the dialog that selects a file to save to.
     PickSave,
-    /// Show the dialog that chooses a file for a parameter of a light or an object.
+    /// Show the dialog that selects a file for a parameter of a light or an object.
     PickFile(Selection, &'static Parameter),
     /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
-    /// Write the document, or a copy of the scene of the lesson that is open; see
-    /// [`effects::run`](crate::panel::effects::run).
+    /// Write the document, or a copy of the scene of the open lesson; see [`effects::run`](crate::panel::effects::run).
     SaveFile {
         /// The file.
         path: PathBuf,
-        /// True to replace a file that changed on disk since it was read, or that was never read.
+        /// True to overwrite a file that changed on disk since it was read, or that was never read.
         overwrite: bool,
     },
-    /// The document is another one: forget what belonged to the one before.
+    /// Forget everything that belonged to the previous document.
     DocumentChanged,
-    /// Look whether the document's file changed on disk; see [`reload::look`](crate::panel::reload::look).
+    /// Check whether the document's file changed on disk; see [`reload::look`](crate::panel::reload::look).
     LookAtFile {
-        /// True to lose unsaved changes for it: the user was asked.
+        /// True to discard unsaved changes if so, after asking the user.
         discard: bool,
     },
-    /// The same after a moment, since a file may be in the middle of being written.
+    /// Check the file again after a moment, since it may be in the process of being written.
     LookAgain(PathBuf),
-    /// The user knows of this state of a file: saving may replace it.
+    /// Allow saving to overwrite this version of a file, which the user has seen.
     ExpectFile {
         /// The file.
         path: PathBuf,
-        /// Its state.
+        /// Version of the file.
         version: Stamp,
     },
-    /// The fate of the recovery copy that the question was about.
+    /// Apply the user's decision about the recovery copy that was offered.
     Recovery(RecoveryChoice),
-    /// Write to standard error, for those who watch it.
+    /// Write to standard error.
     Complain(String),
-    /// End the program.
+    /// Quit the program.
     Quit,
-    /// Put the camera where the observer is.
+    /// Move the camera to the observer.
     HomeView,
-    /// Let the camera look at what is selected.
+    /// Turn the camera to the selection.
     FocusSelection,
-    /// Write the place of the camera into the observer.
+    /// Move the observer to the camera.
     ObserverFromView,
     /// Move the camera a little.
     Steer(Steer),
-    /// Put text on the clipboard.
+    /// Copy text to the clipboard.
     CopyText(String),
-    /// Write the settings.
+    /// Save the settings.
     SaveSettings,
-    /// Write the file of a new custom model.
+    /// Create the file of a new custom model.
     NewModel {
-        /// Its id, which is also the name of the file.
+        /// Id of the model, also the file name.
         id: String,
-        /// Its name for people.
+        /// Display name.
         name: String,
     },
-    /// Write a model as the file of a custom model.
+    /// Create the file of a custom model as a copy of another model.
     DuplicateModel {
-        /// Id of the model that is copied.
+        /// Id of the model to copy.
         model: String,
-        /// Id of the copy, which is also the name of the file.
+        /// Id of the copy, also the file name.
         id: String,
-        /// Its name for people.
+        /// Display name of the copy.
         name: String,
     },
     /// Copy a file into the folder of custom models.
@@ -87,105 +86,105 @@ pub enum Effect {
         /// The line to go to, from 1.
         line: usize,
     },
-    /// Try to find the laws of a model broken.
+    /// Search for violations of the laws of a model.
     CheckLaws(String),
-    /// Show the dialog that chooses a place for an export in a form, by its id.
+    /// Show the dialog that selects the destination of an export in a format, by its id.
     PickExport(&'static str),
     /// Export the scene.
     Export {
-        /// The id of the form.
+        /// Id of the format.
         form: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// True to replace what is there: the user was asked.
+        /// True to overwrite existing files, after asking the user.
         overwrite: bool,
     },
-    /// Show the dialog that chooses a file for the picture of a view alone, or of all as they are shown.
+    /// Show the dialog that selects a file for the picture of a single view, or of all as shown.
     PickPicture(Option<usize>),
-    /// Save or copy the picture of a view alone, or of all as they are shown.
+    /// Save or copy the picture of a single view, or of all as shown.
     Picture {
-        /// The view that is wanted alone.
+        /// The single view, if any.
         view: Option<usize>,
-        /// The file; `None` is the clipboard.
+        /// The file; `None` for the clipboard.
         file: Option<PathBuf>,
-        /// True to replace what is there: the user was asked.
+        /// True to overwrite an existing file, after asking the user.
         overwrite: bool,
     },
     /// Match a view to view A: see [`match_view`](crate::matching::match_view).
     Match {
         /// The view: 1 is view B.
         view: usize,
-        /// What is compared.
+        /// The quantity to compare.
         what: What,
-        /// The names of the parameters that are free.
+        /// Names of the free parameters.
         parameters: Vec<&'static str>,
     },
-    /// Show the dialog that chooses a file for the plot.
+    /// Show the dialog that selects a file for the plot.
     PickPlot,
-    /// Write the plot to a file.
+    /// Save the plot to a file.
     WritePlot(PathBuf),
-    /// Stop the match that runs.
+    /// Stop the running match.
     CancelMatch,
-    /// Stop the export that runs.
+    /// Stop the running export.
     CancelExport,
     /// Show a folder in the file manager.
     Reveal(PathBuf),
-    /// Show the dialog that chooses a lesson.
+    /// Show the dialog that selects a lesson.
     PickLesson,
     /// Read a lesson; see [`effects::run`](crate::panel::effects::run).
     OpenLesson(PathBuf),
-    /// The file of the lesson that is open may have changed: read it again.
+    /// Reload the open lesson, whose file may have changed.
     LookAtLesson,
-    /// Keep what was done of the lesson of this name.
+    /// Save the progress in the lesson of this name.
     SaveProgress(String),
-    /// The picture shows another document, and another view of it.
+    /// Change the camera along with the document.
     Camera(CameraChange),
-    /// Show the dialog that chooses a folder for the shaders.
+    /// Show the dialog that selects a folder for the shaders.
     PickShaderFolder,
-    /// Write the shaders into a folder, to be edited there.
+    /// Export the shaders to a folder for editing.
     ExportShaders(PathBuf),
 }
 
-/// The camera when the user's own document is put aside, and when it comes back.
+/// Change of the camera when the user's own document is set aside or restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraChange {
-    /// Keep its place, then put it where the observer is.
+    /// Keep the camera, then move it to the observer.
     PutAside,
-    /// Exchange its place and the one that was kept.
+    /// Exchange the camera with the one kept.
     Exchange,
 }
 
-/// A small movement of the camera.
+/// A small camera movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steer {
-    /// Around what is looked at: to the right and up, degrees.
+    /// Orbit the target, to the right and up, in degrees.
     Turn(f32, f32),
-    /// To the right and up, in steps of a twentieth of the distance.
+    /// Move to the right and up, in steps of a twentieth of the distance.
     Move(f32, f32),
-    /// The distance to what is looked at times this.
+    /// Multiply the distance from the target.
     Zoom(f32),
-    /// Around a point of the room, at the same distance from it, until it is seen along a direction or against it.
+    /// Orbit a point at constant distance until the view is along the given direction or opposite to it.
     Along {
-        /// The point, which is what is looked at from then on.
+        /// The point, which becomes the target.
         point: Vec3,
-        /// The direction.
+        /// The direction of view.
         way: Vec3,
     },
 }
 
-/// The fate of a recovery copy.
+/// The user's decision about a recovery copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecoveryChoice {
-    /// It is the document now.
+    /// It has become the document.
     Recovered,
-    /// Nobody wants it.
+    /// The user has discarded it.
     Discarded,
-    /// It stays for another time; there may be others.
+    /// It is kept for later; other copies may follow.
     Next,
-    /// All stay for another time.
+    /// All copies are kept for later.
     Later,
 }
 
-/// An [`Effect`] on its way to the systems that carry it out.
+/// An [`Effect`] as a message to the systems that carry it out.
 #[derive(Clone, Debug, PartialEq, Message)]
 pub struct LabEffect(pub Effect);

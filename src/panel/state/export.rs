@@ -1,4 +1,4 @@
-//! Exports: what is asked for, and how they end.
+//! Exports: commands and results.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ impl Session {
         }
     }
 
-    /// There is something where the export should go.
+    /// Asks whether to overwrite an existing destination of an export.
     pub fn export_exists(&mut self, form: &'static str, path: PathBuf) {
         self.questions.ask(Question::ReplaceExport { form, path });
     }
@@ -32,13 +32,13 @@ impl Session {
         }
     }
 
-    /// Says that something was written, and offers its folder.
+    /// Reports a written file, and offers to show its folder.
     pub(super) fn note_file(&mut self, text: String, folder: &Path) {
         let reveal = Action::Export(ExportCommand::Reveal(folder.to_owned()));
         self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
     }
 
-    /// An export has ended: its notes, or why there is none, a sentence each.
+    /// Reports the end of an export: its notes, or why it failed, one sentence each.
     pub fn exported(&mut self, id: &str, path: PathBuf, outcome: Result<Vec<String>, Vec<String>>) {
         let name = form(id).map_or("", |form: &Form| form.name);
         match outcome {
@@ -47,7 +47,7 @@ impl Session {
                 let text = format!("Exported as {name} to {}.", path.shown());
                 self.note_file(text, if path.is_dir() { &path } else { crate::files::folder_of(&path) });
             }
-            // The latest message stands on top.
+            // The latest message is on top.
             Err(reasons) => {
                 reasons.into_iter().rev().for_each(|reason| self.say(Severity::Error, reason));
                 self.say(Severity::Error, format!("The scene was not exported as {name}."));

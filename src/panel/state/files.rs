@@ -13,11 +13,11 @@ use crate::{
     scene::{Scene, examples::EXAMPLES, formats},
 };
 
-/// The most files that the list of recent files holds.
+/// Maximum length of the list of recent files.
 pub const RECENT_FILES: usize = 10;
 
-/// The file meant by a name typed for a scene: it ends in the extension of a format that can be written, once, and in
-/// that of JSON if it has none.
+/// The file for a name typed for a scene: keeps the extension of a writable format, once, and otherwise appends that of
+/// JSON.
 fn scene_file(typed: &Path, registry: &Registry) -> PathBuf {
     let known = |path: &Path| formats::can_write(path, registry);
     match (known(typed), typed.file_stem().map(Path::new)) {
@@ -26,13 +26,13 @@ fn scene_file(typed: &Path, registry: &Registry) -> PathBuf {
             name.push(".json");
             name.into()
         }
-        // Some dialogs add an extension to whatever is typed.
+        // Some dialogs append an extension to whatever is typed.
         (true, Some(stem)) if known(stem) => typed.with_file_name(stem),
         _ => typed.to_owned(),
     }
 }
 
-/// Names the files among some values as a scene in this folder must. True if one has another name now.
+/// Rewrites the file names among some values for a scene in this folder. Returns true if any name has changed.
 fn see_from(values: &mut Values, folder: &Path) -> bool {
     let mut changed = false;
     for value in values.0.values_mut() {
@@ -46,7 +46,7 @@ fn see_from(values: &mut Values, folder: &Path) -> bool {
 }
 
 impl Session {
-    /// The scene of a file has been read: it becomes the document.
+    /// Makes a scene read from a file the document.
     pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
         self.view.examples_open = false;
         self.healed(&path);
@@ -55,23 +55,23 @@ impl Session {
         vec![Effect::DocumentChanged, Effect::SaveSettings]
     }
 
-    /// The document goes into a file with the name that was typed.
+    /// Saves the document to a file with the typed name.
     pub(super) fn save_as(&mut self, typed: &Path, registry: &Registry) -> Vec<Effect> {
-        // The default scene and examples are called as their file from now on.
+        // The default scene and examples take the name of their file from now on.
         let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
         if self.lesson.is_none() && self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
             self.document
                 .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
         }
-        // The dialog asked about the file that was typed, and about no other.
+        // The dialog asked only about the exact name that was typed.
         let path = scene_file(typed, registry);
         let overwrite = path == typed;
         self.keep_files(&path);
         vec![Effect::SaveFile { path, overwrite }]
     }
 
-    /// True if the scene has the name, and the description, of the default one and is what they say. A lesson has its own
-    /// words.
+    /// True for the name, and for the description, if they are those of the default scene and still apply. False in a
+    /// lesson, which has its own.
     pub(super) fn default_words(&self) -> [bool; 2] {
         let scene = self.document.scene();
         let ([light], [object], None) = (&scene.lights[..], &scene.objects[..], &self.lesson) else {
@@ -86,8 +86,8 @@ impl Session {
         [parts && scene.name == default.name, look && scene.description == default.description]
     }
 
-    /// A scene that was built from the default one is no longer called and described like it, as part of the step that
-    /// made the words untrue. They were true before it if they are given.
+    /// Removes the default name and description, as part of the step that made them wrong. `before` says which of them
+    /// applied before the step.
     pub(super) fn forget_default_words(&mut self, before: [bool; 2]) {
         let now = self.default_words();
         let default = Scene::default();
@@ -106,8 +106,8 @@ impl Session {
         }
     }
 
-    /// The files that lights and objects name relative to the folder of the scene are named from the root on, if the scene goes
-    /// where they would not be found.
+    /// Makes file names of lights and objects relative to the scene's folder absolute, if they would not be found from
+    /// the scene's new folder.
     fn keep_files(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = "Place of a file";
@@ -126,8 +126,8 @@ impl Session {
         }
     }
 
-    /// The edit that gives a parameter of a light or an object the file that was chosen. Its name is relative to the
-    /// folder of the scene if it is in there.
+    /// The edit that sets a file parameter of a light or an object. The name is relative to the folder of the scene if
+    /// the file is inside it.
     pub(in crate::panel) fn file_chosen(
         &self,
         part: Selection,
@@ -142,7 +142,7 @@ impl Session {
         }
     }
 
-    /// A file that was chosen, as the value of a parameter.
+    /// A selected file, as the value of a parameter.
     pub(super) fn chosen(&self, parameter: &Parameter, path: &Path) -> Option<Value> {
         let ParameterKind::File { format, .. } = parameter.kind else { return None };
         let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
@@ -151,7 +151,7 @@ impl Session {
         Some(Value::File(NamedFile::chosen(&written.to_string_lossy(), folder, format)))
     }
 
-    /// The document has been written. Returns what waited for it.
+    /// Records that the document has been saved. Returns the effects of the action pending on it.
     pub fn saved(&mut self, path: PathBuf, registry: &Registry) -> Vec<Effect> {
         self.remember_file(&path);
         self.note_saved(&path);
@@ -165,7 +165,7 @@ impl Session {
         effects
     }
 
-    /// A copy of the scene of the lesson that is open has been written.
+    /// Records that a copy of the open lesson's scene has been saved.
     pub(in crate::panel) fn copy_saved(&mut self, path: &Path) -> Vec<Effect> {
         self.remember_file(path);
         self.note_file(
@@ -218,7 +218,7 @@ impl Session {
     pub(super) fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.drop_lesson();
         self.document = Document::new(scene);
-        // What is pinned was a point of the other one.
+        // Renews the pin, which held a point of the previous document.
         self.view.pin(self.view.pinned);
         self.path = path;
         self.stashed.clear();
@@ -233,7 +233,7 @@ impl Session {
         self.model_slots.take(&self.document.reflection_model);
     }
 
-    /// The scene of a recovery copy becomes the document; it is unsaved.
+    /// Makes the scene of a recovery copy the document, with unsaved changes.
     pub(in crate::panel) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.replace_document(path, scene);
         self.disk.recovered = true;

@@ -1,4 +1,4 @@
-//! The steps of the lesson that is open: its scenes and choices of the view, answers, and the way out.
+//! The steps of the open lesson: scenes, view settings, answers, and leaving the lesson.
 
 use std::{
     collections::BTreeMap,
@@ -23,13 +23,13 @@ use crate::{
     text::plural,
 };
 
-/// True if a goal is about the pixel that is pinned.
+/// True if a goal refers to the pinned pixel.
 fn is_about_pixels(goal: &Goal) -> bool {
     goal.until.text().contains("probe.")
 }
 
-/// The places that steps pin are fractions of a picture with these sides: a window of another shape shows more or less
-/// of the scene above and below.
+/// Size of the picture that the pinned positions of steps refer to: a window of another shape shows more or less of the
+/// scene above and below.
 const PICTURE: [u32; 2] = [1600, 900];
 
 impl Session {
@@ -81,12 +81,12 @@ impl Session {
         }
     }
 
-    /// The scene that a step begins with when nothing was changed before.
+    /// The initial scene of a step if the learner has changed nothing before.
     fn scene_of(lesson: &Lesson, step: usize, registry: &Registry) -> Result<Scene, String> {
         lesson.state(step, registry)
     }
 
-    /// Opens a lesson at the step that the learner was at; a finished one begins anew.
+    /// Opens a lesson at the learner's last step; a finished lesson starts again.
     pub(in crate::panel) fn begin_lesson(
         &mut self,
         lesson: Arc<Lesson>,
@@ -131,13 +131,13 @@ impl Session {
         effects
     }
 
-    /// Shows a step with the choices of the view that all steps up to it make.
+    /// Shows a step with the view settings of all steps up to it.
     fn show_from_start(&mut self, step: usize) {
         let Some(lesson) = self.lesson.as_ref().map(|open| open.lesson.clone()) else { return };
         lesson.steps.iter().take(step + 1).for_each(|step| self.change_window(&step.window));
     }
 
-    /// Makes the choices of the view that a step wants.
+    /// Applies the view settings of a step.
     fn change_window(&mut self, change: &WindowChange) {
         if let Some(active) = change.active {
             self.view.active = active.min(self.document.variants.len());
@@ -177,7 +177,7 @@ impl Session {
         }
     }
 
-    /// A step was entered: it is what *again* and *previous* come back to.
+    /// Records the state at the start of a step, which *again* and *previous* restore.
     fn arrived(&mut self) -> Vec<Effect> {
         let entered = Entered {
             scene: Arc::new(self.document.scene().clone()),
@@ -190,7 +190,7 @@ impl Session {
         self.note_progress()
     }
 
-    /// Keeps the step and what was done.
+    /// Records the step and the progress.
     fn note_progress(&mut self) -> Vec<Effect> {
         let Some(open) = &mut self.lesson else { return Vec::new() };
         (open.hint, open.asking) = (false, false);
@@ -209,7 +209,7 @@ impl Session {
         vec![Effect::SaveProgress(name)]
     }
 
-    /// Makes a scene the one that is shown, with a history of its own, unless it is.
+    /// Shows a scene with a new history, unless it is shown already.
     fn show_scene(&mut self, scene: Scene, registry: &Registry) -> Vec<Effect> {
         if self.document == scene {
             return Vec::new();
@@ -217,7 +217,7 @@ impl Session {
         let home = self.document.observer != scene.observer;
         let types = |scene: &Scene| scene.objects.iter().map(|o| o.object_type.clone()).collect::<Vec<_>>();
         if types(&self.document) != types(&scene) {
-            // What is pinned was a point of other objects; else the point stays, as its object does.
+            // With other objects, the pin becomes a new one; otherwise the point stays with its object.
             self.view.pin(self.view.pinned);
         }
         self.document = Document::new(scene);
@@ -245,7 +245,7 @@ impl Session {
         let Some(now) = lesson.steps.get(step) else { return Vec::new() };
         let mut effects = Vec::new();
         if let Some(change) = &now.scene {
-            // The learner may have removed what the step changes: then it begins as if nothing had been touched.
+            // If the learner has removed what the step changes, the step starts from its initial scene.
             let scene =
                 change.apply(&self.document, registry).or_else(|_| Self::scene_of(&lesson, step, registry));
             match scene {
@@ -258,7 +258,7 @@ impl Session {
         effects
     }
 
-    /// Goes to a step as it began when it was entered last.
+    /// Returns to a step as it was when last entered.
     fn return_to(&mut self, step: usize, registry: &Registry) -> Vec<Effect> {
         let Some(open) = self.lesson.as_mut().filter(|open| step < open.lesson.steps.len()) else {
             return Vec::new();
@@ -317,7 +317,7 @@ impl Session {
         self.note_answer()
     }
 
-    /// Keeps what was done in the step, which goes on as it is.
+    /// Records the progress within the current step.
     fn note_answer(&mut self) -> Vec<Effect> {
         let Some(open) = &mut self.lesson else { return Vec::new() };
         open.asking = false;
@@ -327,13 +327,13 @@ impl Session {
         effects
     }
 
-    /// The task of the step that is shown, unless it is done.
+    /// The task of the current step, unless it is done.
     #[must_use]
     pub fn open_task(&self) -> Option<&Task> {
         self.lesson.as_ref().filter(|open| !open.is_done())?.now()?.task.as_ref()
     }
 
-    /// True in a step whose task is about the pixel that is pinned: it is explained also out of sight.
+    /// True in a step whose task refers to the pinned pixel, which is then explained even with the panel closed.
     #[must_use]
     pub fn needs_probe(&self) -> bool {
         let step = self.lesson.as_ref().and_then(OpenLesson::now);
@@ -341,13 +341,13 @@ impl Session {
         self.view.pinned.is_some() && goal.is_some_and(is_about_pixels)
     }
 
-    /// True while a pixel is to be found: a click into the picture pins it.
+    /// True while the task is to find a pixel: a click into the picture pins it.
     #[must_use]
     pub fn seeks_pixel(&self) -> bool {
         matches!(self.open_task(), Some(Task::Find(goal)) if is_about_pixels(goal))
     }
 
-    /// The end of the last step.
+    /// Finishes the lesson after the last step.
     fn finish_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
         let Some(open) = &self.lesson else { return Vec::new() };
         let (title, source) = (open.lesson.title.clone(), open.source.clone());
@@ -377,16 +377,16 @@ impl Session {
         effects
     }
 
-    /// Leaves the lesson: the user's own document comes back as it was.
+    /// Leaves the lesson and restores the user's own document.
     pub(super) fn leave_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
         let Some(mut open) = self.lesson.take() else { return Vec::new() };
         self.exchange(&mut open.aside);
-        // The models may be others than when it was put aside.
+        // The models may have changed since the document was set aside.
         follow_registry(self, registry);
         vec![Effect::Camera(CameraChange::Exchange)]
     }
 
-    /// Leaves the lesson because another document takes the place of the user's own.
+    /// Leaves the lesson because another document replaces the user's own.
     pub(super) fn drop_lesson(&mut self) {
         self.parked = None;
         if let Some(mut open) = self.lesson.take() {
@@ -402,12 +402,12 @@ impl Session {
         vec![Effect::Camera(CameraChange::Exchange)]
     }
 
-    /// True if a lesson waits for a question, and nothing is asked any more.
+    /// True if a lesson was interrupted by a question, and no question is pending any more.
     pub(in crate::panel) fn is_lesson_due(&self) -> bool {
         self.parked.is_some() && !self.questions.are_pending()
     }
 
-    /// Goes back to the lesson once the question that interrupted it is settled.
+    /// Returns to the lesson once the question that interrupted it is settled.
     pub(in crate::panel) fn resume_lesson(&mut self) -> Vec<Effect> {
         if !self.is_lesson_due() {
             return Vec::new();
@@ -418,8 +418,8 @@ impl Session {
         vec![Effect::Camera(CameraChange::Exchange)]
     }
 
-    /// A file with a lesson was read: opens it, or says all that is wrong with it. If it is the one that is open, it
-    /// goes on with the same step.
+    /// Opens a lesson that was read from a file, or reports all its problems. If it is already open, it continues at
+    /// the current step.
     pub fn lesson_read(
         &mut self,
         path: PathBuf,
@@ -433,7 +433,7 @@ impl Session {
             }
             Err(problems) => {
                 self.healed(&path);
-                // The latest message stands on top: the first problem, and above it the consequence.
+                // The latest message is on top: first the problem, then above it the consequence.
                 for problem in problems.iter().rev() {
                     self.say_about(&path, Severity::Error, problem_of(&path, problem));
                 }
@@ -444,8 +444,8 @@ impl Session {
         }
     }
 
-    /// The file of the lesson that is open was edited and read again. The step stays; if its scene is another one now,
-    /// it begins again.
+    /// Updates the open lesson after its file was edited. Keeps the step; restarts it if its scene or view settings
+    /// have changed.
     pub fn lesson_edited(&mut self, read: Result<Lesson, Vec<Problem>>, registry: &Registry) -> Vec<Effect> {
         let Some(open) = &mut self.lesson else { return Vec::new() };
         let lesson = match read {
@@ -469,7 +469,7 @@ impl Session {
         open.entered.retain(|at, _| same && *at == step);
         open.answers.clear();
         if same {
-            // What the author looks at stays where it is.
+            // The author's scroll position and rings stay.
             let entries = open.entries;
             let effects = self.note_progress();
             self.lesson.iter_mut().for_each(|open| open.entries = entries);
@@ -478,7 +478,7 @@ impl Session {
         self.return_to(step, registry)
     }
 
-    /// The folder of the file of the lesson that is open.
+    /// Folder of the open lesson's file.
     #[must_use]
     pub fn lesson_folder(&self) -> Option<&Path> {
         match &self.lesson.as_ref()?.source {

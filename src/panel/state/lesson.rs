@@ -1,21 +1,21 @@
-//! Lessons, and the commands about them.
+//! Lessons and their commands.
 
 use std::path::PathBuf;
 
 use super::{Past, Pin, Progress};
 use crate::lesson::shipped::LESSONS;
 
-/// Where a lesson comes from.
+/// The origin of a lesson.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum LessonSource {
-    /// One of [`LESSONS`].
+    /// One of the shipped [`LESSONS`].
     Shipped(usize),
-    /// A file, or a folder with one.
+    /// A file, or a folder that contains one.
     File(PathBuf),
 }
 
 impl LessonSource {
-    /// The name under which progress is kept.
+    /// The name under which progress is stored.
     #[must_use]
     pub fn name(&self) -> String {
         match self {
@@ -26,7 +26,7 @@ impl LessonSource {
         }
     }
 
-    /// The lesson whose progress is kept under a name.
+    /// The lesson with the given name.
     #[must_use]
     pub fn named(name: &str) -> Self {
         let shipped = LESSONS.iter().position(|lesson| lesson.id == name);
@@ -34,40 +34,39 @@ impl LessonSource {
     }
 }
 
-/// A command about lessons.
+/// A command for lessons.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LessonCommand {
-    /// Open a lesson where the learner left it.
+    /// Open a lesson at the learner's last step.
     Open(LessonSource),
-    /// Choose a file with a lesson.
+    /// Select a lesson file.
     OpenDialog,
-    /// Go on with the lesson that was open last, or begin the next one.
+    /// Continue the most recent lesson, or start the next one.
     Continue,
-    /// Go to the next step; with a task that is not done, ask first. After the last step, finish.
+    /// Go to the next step; if the task is not done, ask first. After the last step, finish.
     Next,
-    /// Go to the step before, as it began.
+    /// Go to the previous step, as it was at its start.
     Previous,
-    /// Begin the step again.
+    /// Restart the step.
     Again,
     /// Go to a step, from 0.
     GoTo(usize),
-    /// Leave the lesson: the user's own document comes back.
+    /// Leave the lesson and return to the user's own document.
     Leave,
-    /// Choose an answer.
+    /// Give an answer.
     Answer(usize),
-    /// Show the hint, or hide it.
+    /// Show or hide the hint.
     Hint,
-    /// Pin a pixel for the task, without the panel that explains it.
+    /// Pin a pixel for the task, without opening the panel that explains it.
     Point(Pin),
-    /// The condition of the step's task holds.
+    /// Complete the task of the step, whose condition holds.
     Solved(usize),
-    /// Show the scene list below the lesson, or fold it.
+    /// Show or fold the scene list below the lesson.
     Tree(bool),
 }
 
 impl Progress {
-    /// The lesson to go on with: the one that was open last, if it was begun and not finished; else the first that is not
-    /// finished.
+    /// The lesson to continue: the most recent one if it is unfinished, otherwise the first unfinished one.
     #[must_use]
     pub fn next(&self) -> Option<LessonSource> {
         let begun = |name: &str| self.of(name).is_some_and(Past::is_begun);

@@ -1,22 +1,22 @@
-//! The choices of the lobe in the picture. They belong to the session, not to the scene.
+//! Display options of the lobe in the picture. They belong to the session rather than to the scene.
 
-/// The lengths of the lobe.
+/// Scale of the lobe's lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LobeScale {
-    /// There is no lobe: it would hide the surface that is explained.
+    /// Hide the lobe, which would cover the explained surface.
     #[default]
     Off,
-    /// In proportion to the BRDF.
+    /// Proportional to the BRDF.
     Linear,
-    /// In proportion to its logarithm.
+    /// Proportional to the logarithm of the BRDF.
     Logarithmic,
 }
 
 impl LobeScale {
-    /// Every choice, in the order of the key.
+    /// All options, in the order of the key.
     pub const ALL: [Self; 3] = [Self::Off, Self::Linear, Self::Logarithmic];
 
-    /// The name for people.
+    /// Display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -26,7 +26,7 @@ impl LobeScale {
         }
     }
 
-    /// What it is for.
+    /// Description of the option.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -39,17 +39,17 @@ impl LobeScale {
     }
 }
 
-/// The lobe of the model at the point that is explained.
+/// Display options of the lobe at the explained point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LobeChoice {
-    /// Its lengths.
+    /// Scale of the lengths.
     pub scale: LobeScale,
-    /// True for a lobe for each light that reaches the point, false for that of the light that is unfolded.
+    /// True to show a lobe for each light that reaches the point, false for the unfolded light only.
     pub all: bool,
 }
 
 impl LobeChoice {
-    /// The choice with the scale after this one; after the last comes the first.
+    /// The option with the next scale, in a cycle.
     #[must_use]
     pub fn next(self) -> Self {
         let scale = match self.scale {

@@ -1,4 +1,4 @@
-//! Matches: what is asked for, and how they end.
+//! Matches: commands and results.
 
 use super::{Effect, Session, Severity};
 use crate::{
@@ -10,34 +10,34 @@ use crate::{
     text::listed,
 };
 
-/// A command about matches.
+/// A command for matches.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MatchCommand {
-    /// Ask how this view shall be matched to view A: 1 is view B.
+    /// Open the dialog that matches this view to view A: 1 is view B.
     Ask(usize),
-    /// Change what is asked for.
+    /// Change the options in the dialog.
     Change(MatchDraft),
-    /// Begin the match.
+    /// Start the match.
     Start,
-    /// Do not match.
+    /// Close the dialog without a match.
     Close,
-    /// Stop the match that runs.
+    /// Stop the running match.
     Cancel,
 }
 
-/// A match that is about to begin.
+/// Options of a match that is about to start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchDraft {
     /// The view that is matched to view A.
     pub view: usize,
-    /// What is compared.
+    /// The quantity to compare.
     pub what: What,
-    /// The parameters of the view, each with true if it is free.
+    /// Parameters of the view, each with true if it is free.
     pub parameters: Vec<(&'static Parameter, bool)>,
 }
 
 impl MatchDraft {
-    /// The parameters that are free.
+    /// The free parameters.
     pub fn free(&self) -> impl Iterator<Item = &'static Parameter> {
         self.parameters.iter().filter(|(_, free)| *free).map(|(parameter, _)| *parameter)
     }
@@ -74,8 +74,8 @@ impl Session {
         Vec::new()
     }
 
-    /// A match on a scene has ended: its values become one step of the history, unless that scene is no longer there.
-    /// Without an outcome the search broke off.
+    /// Handles the end of a match: its values become one step of the history, unless the scene has changed since.
+    /// `outcome` is `None` if the search crashed.
     pub fn matched(
         &mut self,
         scene: &Scene,
@@ -98,7 +98,7 @@ impl Session {
                 return self.say(Severity::Error, text);
             }
         };
-        // How the views are arranged changes nothing.
+        // The arrangement of the views does not matter.
         if (Scene { comparison: self.document.comparison, ..scene.clone() }) != *self.document {
             let text = format!(
                 "The scene was changed while view {letter} was matched, so nothing was applied. Match it again."

@@ -1,4 +1,4 @@
-//! Messages to the user, and badges of the picture.
+//! Messages to the user, and badges in the picture.
 
 use std::{
     ops::Deref,
@@ -8,64 +8,64 @@ use std::{
 use super::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity};
 use crate::{files::printable, program::in_own_words};
 
-/// The most messages that are kept; the oldest give way.
+/// Maximum number of messages; the oldest are dropped.
 pub const MAX_MESSAGES: usize = 500;
 
 /// A message to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    /// Its severity.
+    /// Severity of the message.
     pub severity: Severity,
-    /// The event, its place, and the remedy.
+    /// What happened, where, and how to fix it.
     pub text: String,
-    /// A button beside it, and its action.
+    /// A button beside the message, and its action.
     pub offer: Option<(&'static str, Box<Action>)>,
 }
 
 impl Note {
-    /// A message without what names of files may hold that is not to be shown.
+    /// A message with unprintable characters, as file names may contain, removed.
     #[must_use]
     pub fn new(severity: Severity, text: impl Into<String>) -> Self {
         Self { severity, text: in_own_words(&printable(&text.into())).into_owned(), offer: None }
     }
 
-    /// The same with a button beside it.
+    /// Adds a button to the message.
     #[must_use]
     pub fn offering(self, label: &'static str, action: Action) -> Self {
         Self { offer: Some((label, Box::new(action))), ..self }
     }
 }
 
-/// A remark of the picture on itself in its corner, such as "Clipped: 5 % of the picture".
+/// A note in the corner of the picture, such as "Clipped: 5 % of the picture".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Badge {
-    /// Its severity.
+    /// Severity of the badge.
     pub severity: Severity,
     /// A few words.
     pub text: String,
-    /// The whole story, for the tooltip.
+    /// The full explanation, for the tooltip.
     pub help: String,
 }
 
-/// The messages, oldest first; each stays until it is dismissed, or until [`MAX_MESSAGES`] newer ones are there.
+/// The messages, oldest first; each stays until it is dismissed, or pushed out by [`MAX_MESSAGES`] newer ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Messages {
     notes: Vec<Note>,
-    /// The step that a message offers to undo: the number of steps done with it, and its name.
+    /// The step that a message offers to undo.
     undo: Option<Step>,
-    /// The last step when the last message about this document was added.
+    /// The latest step at the time of the last message about this document.
     said_at: Option<Step>,
-    /// The number of messages that were ever added.
+    /// Total number of messages added.
     added: usize,
-    /// The messages about a file, which go once it is as it should be.
+    /// Messages about files, which are removed once the file is fine.
     about: Vec<(PathBuf, Note)>,
-    /// The strip as it was before an error unfolded it, and the errors that there were then.
+    /// State of the bottom strip before an error unfolded it, and the number of errors at that time.
     unfolded: Option<Unfolded>,
-    /// The strip as it was before an error in a shader unfolded it: open or not, and its panel.
+    /// State of the bottom strip before a shader error unfolded it: open or not, and the panel.
     shaders: Option<(bool, String)>,
 }
 
-/// The strip before it unfolded itself.
+/// State of the bottom strip before it unfolded automatically.
 #[derive(Clone, Debug, PartialEq)]
 struct Unfolded {
     open: bool,
@@ -73,7 +73,7 @@ struct Unfolded {
     errors: usize,
 }
 
-/// The number of steps that are done, and the name of the last one.
+/// The number of applied steps, and the name of the latest one.
 pub(super) type Step = (usize, Option<String>);
 
 impl Deref for Messages {
@@ -85,7 +85,7 @@ impl Deref for Messages {
 }
 
 impl Messages {
-    /// Adds a message, unless the last one says the same.
+    /// Adds a message, unless it equals the latest one.
     pub fn add(&mut self, note: Note) {
         self.added += 1;
         if self.last() == Some(&note) {
@@ -97,7 +97,7 @@ impl Messages {
         self.notes.push(note);
     }
 
-    /// Adds a message that offers to undo the last step.
+    /// Adds a message that offers to undo the latest step.
     pub(super) fn offer_undo(&mut self, text: String, step: Step) {
         self.withdraw_undo();
         self.said_at = Some(step.clone());
@@ -105,7 +105,7 @@ impl Messages {
         self.add(Note::new(Severity::Info, text).offering("Undo", Action::Undo));
     }
 
-    /// Offers no undo that would undo something else than the step which was done `last`.
+    /// Withdraws an offer to undo that would undo another step: `last` is the latest one.
     pub(super) fn check_undo(&mut self, last: &Step) {
         if self.undo.as_ref().is_some_and(|step| step != last) {
             self.withdraw_undo();
@@ -118,12 +118,12 @@ impl Messages {
         self.undo = None;
     }
 
-    /// No message is about the document that is opened now.
+    /// Detaches the messages from the document, which has been replaced.
     pub(super) fn another_document(&mut self) {
         self.said_at = None;
     }
 
-    /// The number of messages that were ever added: it tells the same one, said again, from none.
+    /// Total number of messages added, which also counts a repeated message.
     #[must_use]
     pub fn added(&self) -> usize {
         self.added
@@ -136,7 +136,7 @@ impl Messages {
         }
     }
 
-    /// Removes all messages but those that `keep` is true for.
+    /// Keeps only the messages for which `keep` returns true.
     pub fn retain(&mut self, keep: impl FnMut(&Note) -> bool) {
         self.notes.retain(keep);
     }
@@ -158,7 +158,7 @@ impl Messages {
 }
 
 impl Session {
-    /// Adds a message; an error unfolds the strip that shows it.
+    /// Adds a message; an error unfolds the strip that shows messages.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
         self.note(Note::new(severity, text));
     }
@@ -176,7 +176,7 @@ impl Session {
         self.messages.add(note);
     }
 
-    /// Says something about a file, which goes once the file is [`healed`](Self::healed).
+    /// Adds a message about a file, which is removed once the file is [`healed`](Self::healed).
     pub fn say_about(&mut self, path: &Path, severity: Severity, text: impl Into<String>) {
         let note = Note::new(severity, text);
         self.messages.about.push((path.to_owned(), note.clone()));
@@ -184,7 +184,7 @@ impl Session {
         self.note(note);
     }
 
-    /// A file is as it should be: what was said of it is over.
+    /// Removes the messages about a file that is fine again.
     pub fn healed(&mut self, path: &Path) {
         let about = std::mem::take(&mut self.messages.about);
         let (gone, stay): (Vec<_>, Vec<_>) = about.into_iter().partition(|(known, _)| known == path);
@@ -195,7 +195,7 @@ impl Session {
         }
     }
 
-    /// The strip folds itself if an error unfolded it and no such error is left.
+    /// Folds the strip if an error unfolded it and no such error remains.
     pub(super) fn fold_healed(&mut self) {
         let Some(before) = &self.messages.unfolded else { return };
         let seen = self.view.bottom_open && self.view.bottom_tab == MESSAGES_TAB;
@@ -205,7 +205,7 @@ impl Session {
         }
     }
 
-    /// An error in a shader unfolds the strip that tells of it.
+    /// Unfolds the strip with the shader panel because of an error.
     pub(in crate::panel) fn unfold_shaders(&mut self) {
         let seen = self.view.bottom_open && self.view.bottom_tab == SHADER_TAB;
         if !seen && self.messages.shaders.is_none() {
@@ -214,31 +214,31 @@ impl Session {
         self.view.unfold(SHADER_TAB);
     }
 
-    /// No error is left in the shaders: the strip folds itself if one unfolded it.
+    /// Folds the strip once no shader errors remain, if one of them unfolded it.
     pub(in crate::panel) fn fold_shaders(&mut self) {
         let Some((open, tab)) = self.messages.shaders.take() else { return };
         if self.view.bottom_open && self.view.bottom_tab == SHADER_TAB {
             (self.view.bottom_open, self.view.bottom_tab) = (open, tab);
         } else if let Some(before) = self.messages.unfolded.as_mut().filter(|b| b.tab == SHADER_TAB) {
-            // The messages unfolded over it.
+            // Messages were unfolded over the shaders.
             (before.open, before.tab) = (open, tab);
         }
-        // Those that the shaders unfolded over may have healed meanwhile.
+        // The errors below the shaders may have been fixed meanwhile.
         self.fold_healed();
     }
 
-    /// The user did something with the strip: it stays as it is.
+    /// Keeps the strip as it is, since the user has operated it.
     pub(super) fn keep_strip(&mut self) {
         (self.messages.unfolded, self.messages.shaders) = (None, None);
     }
 
-    /// True if nothing was changed since the last message was added.
+    /// True if nothing has changed since the latest message.
     #[must_use]
     pub fn has_news(&self) -> bool {
         self.messages.said_at.as_ref() == Some(&self.last_step())
     }
 
-    /// The last message stays news after a change that followed by itself.
+    /// Keeps the latest message current after an automatic change.
     pub(in crate::panel) fn keep_news(&mut self) {
         self.messages.said_at = Some(self.last_step());
     }

@@ -1,9 +1,8 @@
-//! The state of the window: the document, what is selected, what is shown; and the actions that
-//! change it.
+//! The state of the window: document, selection, view settings; and the actions that change it.
 //!
-//! [`Session`] is a Bevy resource, and knows nothing of Bevy otherwise: panels read it and return
-//! [`Action`]s, [`Session::apply`] carries them out and returns the [`Effect`]s that need files, entities
-//! or the operating system. All of it can be driven without a window.
+//! [`Session`] is a Bevy resource, but otherwise independent of Bevy: panels read it and return [`Action`]s;
+//! [`Session::apply`] applies them and returns the [`Effect`]s, which need files, entities or the operating system. All
+//! of it can be driven without a window.
 
 use std::path::PathBuf;
 
@@ -85,27 +84,27 @@ mod view;
 /// The state of the window.
 #[derive(Clone, Debug, Resource)]
 pub struct Session {
-    /// The document: the scene and the way to it.
+    /// The document: the scene and its edit history.
     pub document: Document,
     /// The file that the document came from or was last saved to.
     pub path: Option<PathBuf>,
-    /// Facts about the document's file on disk.
+    /// State of the document's file on disk.
     pub disk: OnDisk,
-    /// Values that the document had and no model takes at present.
+    /// Values of the document that no model accepts at present.
     pub(super) stashed: StashedValues,
-    /// The part that the inspector shows.
+    /// The part shown in the properties panel.
     pub selection: Selection,
-    /// The part whose name is being typed in the tree.
+    /// The part being renamed in the scene list.
     pub renaming: Option<Selection>,
-    /// The choice of what is shown, and how.
+    /// View settings.
     pub view: View,
-    /// The choices of the plots.
+    /// Display options of the plots.
     pub plots: Plots,
-    /// The lesson that is open: its scene is shown, and the user's own document waits.
+    /// The open lesson; its scene is shown while the user's own document is set aside.
     pub lesson: Option<OpenLesson>,
-    /// A lesson that waits until a question about the user's own document is settled.
+    /// A lesson that is interrupted by a question about the user's own document.
     parked: Option<Box<OpenLesson>>,
-    /// What was done of the lessons.
+    /// Progress in the lessons.
     pub progress: Progress,
     /// Messages to the user.
     pub messages: Messages,
@@ -113,25 +112,25 @@ pub struct Session {
     pub questions: Questions,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
-    /// The models that keys 1–9 choose.
+    /// The models on the keys 1–9.
     pub model_slots: ModelSlots,
-    /// Facts that the app feeds without marking the session as changed.
+    /// Facts that the app provides without marking the session as changed.
     pub facts: Facts,
-    /// The folders of the shaders and the problems in them, fed by the app.
+    /// Folders and problems of the shaders, provided by the app.
     pub shaders: ShaderStatus,
-    /// The problems of the shaders in the frame before, by file and message.
+    /// Shader problems of the previous frame, by file and message.
     pub(super) seen_troubles: Vec<(String, String)>,
-    /// The custom model that is about to be written.
+    /// The custom model that is about to be created.
     pub draft: Option<ModelDraft>,
-    /// The match that is about to begin.
+    /// The match that is about to start.
     pub match_draft: Option<MatchDraft>,
-    /// The model that is chosen as soon as it is known: one whose file was just written.
+    /// A model to select once it is available, because its file was just written.
     pub wanted_model: Option<String>,
-    /// The last check of the laws of a model.
+    /// The latest law check of a model.
     pub laws: Option<LawCheck>,
-    /// The panels that there are, for the menus; written when they are shown.
+    /// The available panels, for the menus; updated when they are shown.
     pub panels: Vec<PanelInfo>,
-    /// A dialog that something other than the panels wants opened: what waited for the document to be
+    /// A dialog to open on behalf of code other than the panels: an action that was pending until the document was
     /// saved.
     pub wanted_dialog: Option<Effect>,
     known_terms: KnownTerms,
@@ -145,7 +144,7 @@ impl Default for Session {
 }
 
 impl Session {
-    /// A window on a scene that is in no file.
+    /// A session with a scene that has no file.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let mut session = Self {

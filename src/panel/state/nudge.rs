@@ -1,4 +1,4 @@
-//! Steps by which the keys move, turn and resize what is selected.
+//! Keyboard steps that move, turn and resize the selection.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -16,17 +16,18 @@ use crate::{
     },
 };
 
-/// A step of a position or a size, metres.
+/// Step of a position or a size, in metres.
 const METRES: f32 = 0.1;
-/// A step of an angle, degrees.
+/// Step of an angle, in degrees.
 const DEGREES: f32 = 5.0;
 
-/// A sum without the digits that are noise.
+/// Rounds off the noise digits of a sum.
 fn tidy(v: Vec3) -> Vec3 {
     (v * 10_000.0).round() / 10_000.0 + Vec3::ZERO
 }
 
-/// A light turned about its direction by one step about an axis, if it shines along that rather than across it.
+/// The roll of a light after one step about an axis, if the light's direction is closer to parallel than to
+/// perpendicular to that axis.
 fn rolled(light: &Light, entry: &LightEntry, axis: Vec3) -> Option<LightField> {
     let parameter = entry.roll_parameter()?;
     let along = light.direction?.normalize_or_zero().dot(axis);
@@ -35,8 +36,8 @@ fn rolled(light: &Light, entry: &LightEntry, axis: Vec3) -> Option<LightField> {
     Some(LightField::Parameter(parameter.name, roll))
 }
 
-/// A light with a cone or a size that is larger by one step, or smaller: the way to the side is for the first of its sizes, other ways
-/// are for the second.
+/// The cone or a size of a light, enlarged or reduced by one step. A sideways direction stands for the first size,
+/// other directions for the second.
 fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<LightField> {
     let sizes = entry.declaration.sizes;
     let size = sizes.get(if way.x == 0.0 { 1 } else { 0 }).or(sizes.last());
@@ -45,7 +46,7 @@ fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<Li
     let wanted = match size {
         None => before + DEGREES * sign,
         Some(_) => {
-            // Small ones in small steps; the smallest stay as they are.
+            // Small sizes change in small steps; the smallest stay unchanged.
             let step = if before + 0.001 * sign > 2.0 * METRES { METRES } else { 0.1 * METRES };
             (before + step * sign).max(before.min(step))
         }
@@ -55,7 +56,7 @@ fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<Li
 }
 
 impl Session {
-    /// Moves, turns or resizes what is selected by one step in a direction of the room, as a step of the history.
+    /// Moves, turns or resizes the selection by one step in a world direction, as a step of the history.
     pub(super) fn nudge(&mut self, way: Vec3, registry: &Registry) {
         self.document.end_gesture();
         match self.nudged(way, registry) {
@@ -65,12 +66,12 @@ impl Session {
         self.document.end_gesture();
     }
 
-    /// The change by one step; else the reason why there is none.
+    /// The edit for one step, or why it is impossible.
     fn nudged(&self, way: Vec3, registry: &Registry) -> Result<Edit, String> {
         let name = || self.name_of(self.selection, registry);
         let has_no = |what: &str| Err(format!("{} has no {what}.", name()));
         let turn = Quat::from_axis_angle(way, DEGREES.to_radians());
-        // Right, up and back make larger.
+        // Right, up and backwards enlarge.
         let sign = (way.x + way.y - way.z).signum();
         let room = self.document.scene_size;
         match self.selection {
@@ -86,7 +87,7 @@ impl Session {
                     HandleMode::Size => {
                         let most = limits::object_size(room).max as f32;
                         let size = tidy(Vec3::splat(object.size + METRES * sign)).x;
-                        // Small ones stay as they are.
+                        // Small objects stay as they are.
                         let least = object.size.min(METRES);
                         ObjectField::Size(size.max(least).min(most))
                     }
@@ -220,7 +221,7 @@ mod tests {
         assert_eq!(after("cylinder", size, &[Vec3::NEG_X], "length").0, 1.9);
         assert_eq!(after("cylinder", size, &[Vec3::Y], "radius").0, 0.06);
         assert_eq!(after("sphere", size, &[Vec3::X, Vec3::Y], "radius").0, 0.7);
-        // In small steps, and never to nothing.
+        // In small steps, and never to zero.
         assert_eq!(after("disc", size, &[Vec3::NEG_X; 60], "radius").0, 0.01);
         let turn = HandleMode::Turn;
         let start = light("rectangle").direction;

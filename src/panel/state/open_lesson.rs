@@ -1,5 +1,5 @@
-//! The lesson that is open: its step, what the learner answered and did. Its scenes are shown in place of the user's own
-//! document, which waits meanwhile; see [`Aside`].
+//! The open lesson: current step, answers and progress. The lesson's scenes replace the user's own document, which is
+//! set aside; see [`Aside`].
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,7 +15,7 @@ use crate::{
     scene::Scene,
 };
 
-/// What was there when a step began.
+/// The state at the start of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Entered {
     pub(super) scene: Arc<Scene>,
@@ -24,75 +24,75 @@ pub(super) struct Entered {
     pub(super) plots: Plots,
 }
 
-/// A lesson that is open.
+/// An open lesson.
 #[derive(Clone, Debug)]
 pub struct OpenLesson {
     /// The lesson.
     pub lesson: Arc<Lesson>,
-    /// Where it comes from.
+    /// Origin of the lesson.
     pub source: LessonSource,
-    /// The step that is shown, from 0.
+    /// The current step, from 0.
     pub step: usize,
-    /// The answers that were chosen, by step; the last one counts.
+    /// Answers given in each step; the last one counts.
     pub answers: BTreeMap<usize, Vec<usize>>,
-    /// The steps whose tasks are done.
+    /// Steps whose tasks are done.
     pub done: BTreeSet<usize>,
-    /// The answers that were given in each step until the right one, that one included.
+    /// Number of answers given in each step up to and including the correct one.
     pub tries: BTreeMap<usize, usize>,
     /// True if the hint is shown.
     pub hint: bool,
     /// True while the learner is asked whether to skip the task.
     pub asking: bool,
-    /// The problems in its file, which was edited since: the last good version is shown.
+    /// Problems in the edited file; the last good version is shown.
     pub problems: Vec<Problem>,
-    /// True if the scene list is unfolded below it.
+    /// True if the scene list below the lesson is unfolded.
     pub tree_open: bool,
-    /// Counts the steps that were entered.
+    /// Number of steps entered so far.
     pub(in crate::panel) entries: u64,
     pub(super) entered: BTreeMap<usize, Entered>,
     pub(super) aside: Box<Aside>,
 }
 
 impl OpenLesson {
-    /// The step that is shown.
+    /// The current step.
     #[must_use]
     pub fn now(&self) -> Option<&Step> {
         self.lesson.steps.get(self.step)
     }
 
-    /// True if the step's task is done, or it has none.
+    /// True if the task of the current step is done, or if the step has none.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.done.contains(&self.step) || self.now().is_none_or(|step| step.task.is_none())
     }
 
-    /// True if there is no step after this one.
+    /// True in the last step.
     #[must_use]
     pub fn is_last(&self) -> bool {
         self.step + 1 >= self.lesson.steps.len()
     }
 
-    /// The number of tasks.
+    /// Number of tasks.
     #[must_use]
     pub fn tasks(&self) -> usize {
         self.lesson.steps.iter().filter(|step| step.task.is_some()).count()
     }
 
-    /// The number of questions that were answered rightly, and of those at the first try.
+    /// Number of correctly answered questions, and how many of them at the first attempt.
     #[must_use]
     pub fn first_tries(&self) -> [usize; 2] {
         let right = || self.tries.iter().filter(|(step, _)| self.done.contains(step));
         [right().count(), right().filter(|(_, tries)| **tries == 1).count()]
     }
 
-    /// The answer that was chosen last in this step.
+    /// The latest answer in this step.
     #[must_use]
     pub fn answer(&self) -> Option<usize> {
         self.answers.get(&self.step)?.last().copied()
     }
 }
 
-/// A problem with the file that it is in.
+/// A problem, prefixed with its file.
 pub(in crate::panel) fn problem_of(file: &Path, problem: &Problem) -> String {
     let space = if problem.place.is_some() { "" } else { " " };
     format!("{}:{space}{problem}", file.shown())

@@ -14,7 +14,7 @@ impl Session {
         self.add_light_with(id, |_| (), registry);
     }
 
-    /// Adds a light of a type, with more that it begins with.
+    /// Adds a light of a type; `with` sets further properties.
     pub(super) fn add_light_with(&mut self, id: &str, with: impl FnOnce(&mut Light), registry: &Registry) {
         let Some(entry) = registry.light(id) else { return };
         if self.document.lights.len() >= MAX_LIGHTS {
@@ -48,7 +48,7 @@ impl Session {
         self.add_object_with(id, None, |_| (), registry);
     }
 
-    /// Adds an object of a type, called like this unless another is, with more that it begins with.
+    /// Adds an object of a type; `with` sets further properties. The name is made unique if it is taken.
     pub(super) fn add_object_with(
         &mut self,
         id: &str,
@@ -119,7 +119,7 @@ impl Session {
             Selection::Light(_) | Selection::Object(_) if self.exists(part) => {
                 let text = format!("Deleted “{}”.", self.name_of(part, registry));
                 self.document.remove(part, registry);
-                // The selection stays; if it was deleted, its neighbour takes its place.
+                // Keeps the selection; if the part was deleted, selects its neighbour.
                 let (lights, objects) = (self.document.lights.len(), self.document.objects.len());
                 self.select_new(match (self.selection, part) {
                     (Selection::Light(at), Selection::Light(gone)) => {
@@ -140,7 +140,7 @@ impl Session {
         }
     }
 
-    /// The scene before the camera, as a place for what is added.
+    /// The scene in front of the camera, for placing new parts.
     pub(super) fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
         Stand::new(&self.document, registry, self.facts.eye, self.facts.camera)
     }

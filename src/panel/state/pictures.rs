@@ -1,4 +1,4 @@
-//! Pictures that are saved or copied: what is asked for, and how it ends.
+//! Saved and copied pictures: commands and results.
 
 use std::path::PathBuf;
 
@@ -6,14 +6,14 @@ use super::{Answer, Effect, PictureCommand, Question, Session, Severity};
 use crate::files::Shown as _;
 use crate::{files, scene::variant::LETTERS};
 
-/// The end of a picture.
+/// Result of saving or copying a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PictureEnd {
-    /// It was written to a file.
+    /// Saved to a file.
     Saved(PathBuf),
-    /// It is on the clipboard, with so many pixels across and down.
+    /// Copied to the clipboard, with this width and height in pixels.
     Copied([u32; 2]),
-    /// It was neither saved nor copied; a sentence says why.
+    /// Neither saved nor copied, for the given reason.
     Failed(String),
 }
 
@@ -22,7 +22,7 @@ impl Session {
         let effect = |view, file, overwrite| Effect::Picture { view, file, overwrite };
         vec![match command {
             PictureCommand::Dialog(view) => Effect::PickPicture(view),
-            // The dialog has asked about the name that was typed, but not about the one with an ending.
+            // The dialog asked about the name as typed, but not about the name with an extension.
             PictureCommand::To { view, path } => {
                 let asked = path.extension().is_some();
                 effect(view, Some(path), asked)
@@ -31,14 +31,14 @@ impl Session {
         }]
     }
 
-    /// The name that a dialog offers for a picture, without its extension.
+    /// The suggested name for a picture, without extension.
     #[must_use]
     pub fn picture_stem(&self, view: Option<usize>) -> String {
         let letter = view.filter(|_| !self.document.variants.is_empty()).and_then(|view| LETTERS.get(view));
         letter.map_or_else(|| self.stem(), |letter| format!("{}_{}", self.stem(), letter.to_lowercase()))
     }
 
-    /// There is a picture where another one should go.
+    /// Asks whether to overwrite an existing picture.
     pub fn picture_exists(&mut self, view: Option<usize>, path: PathBuf) {
         self.questions.ask(Question::ReplacePicture { view, path });
     }
@@ -50,7 +50,7 @@ impl Session {
         }
     }
 
-    /// Says how a picture ended.
+    /// Reports the result of saving or copying a picture.
     pub fn pictured(&mut self, end: PictureEnd) {
         match end {
             PictureEnd::Saved(path) => {

@@ -1,21 +1,21 @@
-//! The places of panels, and their entries in menus.
+//! Places of panels, and their entries in menus.
 
-/// The place of a panel, in the order in which F6 goes through them.
+/// Place of a panel, in the order of F6.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Place {
-    /// Across the top.
+    /// Along the top.
     Top,
-    /// At the left, below the list of the scene, in a section that folds.
+    /// At the left, in a foldable section below the scene list.
     Left,
-    /// At the right, below the properties, in a section that folds.
+    /// At the right, in a foldable section below the properties.
     Right,
-    /// In the strip at the bottom; several are tabs.
+    /// In the strip at the bottom, where several panels become tabs.
     Bottom,
-    /// The last line.
+    /// The status line.
     Status,
 }
 
-/// The entry of a panel in menus.
+/// Entry of a panel in menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelInfo {
     /// See [`Panel::id`](crate::panel::Panel::id).
@@ -24,6 +24,6 @@ pub struct PanelInfo {
     pub title: &'static str,
     /// See [`Panel::place`](crate::panel::Panel::place).
     pub place: Place,
-    /// True if it is not one of the window's own.
+    /// True for a panel that is not one of the window's own.
     pub guest: bool,
 }

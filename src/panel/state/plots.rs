@@ -1,4 +1,4 @@
-//! The choices of the plots. They belong to the session, not to the scene: a file of a scene has none of them.
+//! Display options of the plots. They belong to the session and are not stored in scene files.
 
 use std::path::PathBuf;
 
@@ -13,65 +13,65 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// The largest angle of the light, degrees: at 90° it is in the surface.
+/// Maximum angle of the light, in degrees: at 90° it would graze the surface.
 pub const MOST_LIGHT: f64 = 89.0;
 
 /// A curve of the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
-    /// That of the selected object, as it is now.
+    /// The current curve of the selected object.
     Live,
-    /// One that was pinned or laid over, by its number.
+    /// A pinned or added curve, by its number.
     Pin(u64),
 }
 
-/// What a curve that was pinned is of.
+/// The subject of a pinned curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Of {
     /// A model with its parameters.
     Model {
-        /// Its id.
+        /// Id of the model.
         id: String,
-        /// Its parameters.
+        /// Values of the parameters.
         values: Values,
-        /// The meaning of colours.
+        /// Encoding of colours.
         encoding: Encoding,
     },
     /// Measured data, by name.
     Measured(String),
 }
 
-/// A curve that stays.
+/// A pinned or added curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinnedCurve {
-    /// No other has it.
+    /// Unique number of the curve.
     pub number: u64,
-    /// What it is of.
+    /// Subject of the curve.
     pub of: Of,
-    /// False if it is in the list only.
+    /// False if the curve only appears in the list.
     pub shown: bool,
-    /// Its colour and its dash.
+    /// Colour and dash pattern.
     pub style: Style,
 }
 
-/// The choices of the plots.
+/// Display options of the plots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plots {
-    /// The quantity.
+    /// The plotted quantity.
     pub kind: Kind,
-    /// The angle between light and normal, degrees.
+    /// Angle between light and normal, in degrees.
     pub theta_i: f64,
-    /// The azimuth of the plane from the tangent, degrees.
+    /// Azimuth of the plane from the tangent, in degrees.
     pub phi_i: f64,
-    /// The channel; for curves luminance and for slices colour if there is none.
+    /// The channel; `None` for luminance in curves and for colour in slices.
     pub channel: Option<Channel>,
     /// True for a logarithmic axis.
     pub log: bool,
     /// True if the curve of the selected object is shown.
     pub live: bool,
-    /// Its colour and its dash.
+    /// Colour and dash pattern of that curve.
     pub live_style: Style,
-    /// The curves that stay.
+    /// Pinned and added curves.
     pub pins: Vec<PinnedCurve>,
     next: u64,
 }
@@ -110,12 +110,12 @@ fn pair(style: Style) -> (usize, &'static [f64]) {
     (style.colour, Line::dash(style.line))
 }
 
-/// A command about the plots.
+/// A command for the plots.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlotCommand {
     /// See [`Plots::kind`].
     Kind(Kind),
-    /// See [`Plots::theta_i`]; brought into its range.
+    /// See [`Plots::theta_i`]; clamped to its range.
     Light(f64),
     /// See [`Plots::phi_i`].
     Azimuth(f64),
@@ -123,24 +123,24 @@ pub enum PlotCommand {
     Channel(Option<Channel>),
     /// See [`Plots::log`].
     Log(bool),
-    /// Shows a curve or hides it.
+    /// Show or hide a curve.
     Show(Slot, bool),
-    /// Gives a curve a colour and a dash.
+    /// Set the colour and dash pattern of a curve.
     Style(Slot, Style),
-    /// Keeps the curve of the selected object as it is now.
+    /// Pin the current curve of the selected object.
     Pin,
-    /// Lays a curve over.
+    /// Add a curve.
     Add(Of),
-    /// Removes a curve that stays.
+    /// Remove a pinned or added curve.
     Remove(u64),
-    /// Choose a file for the plot.
+    /// Select a file for the plot.
     Dialog,
-    /// Write the plot to a file.
+    /// Save the plot to a file.
     To(PathBuf),
 }
 
 impl Session {
-    /// The object whose model the plots show, in the active view: the selected one, or the first that is visible.
+    /// The object whose model is plotted, in the active view: the selected one, or the first visible one.
     #[must_use]
     pub fn plotted(&self) -> Option<(&Scene, &Object)> {
         let scene = self.scene();
@@ -151,7 +151,7 @@ impl Session {
         selected.or_else(|| scene.shown().next()).map(|object| (scene, object))
     }
 
-    /// The model of that object, with its parameters.
+    /// The model of the plotted object, with its parameters.
     #[must_use]
     pub fn plotted_model(&self) -> Option<Of> {
         let (scene, object) = self.plotted()?;
@@ -187,7 +187,7 @@ impl Session {
         Vec::new()
     }
 
-    /// Says how writing a plot ended: the notes on it, or why there is no file.
+    /// Reports the result of saving a plot: its notes, or why it failed.
     pub fn plot_written(&mut self, path: PathBuf, outcome: Result<Vec<String>, String>) {
         match outcome {
             Ok(notes) => {

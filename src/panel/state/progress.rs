@@ -1,46 +1,46 @@
-//! What the user has done of the lessons. It survives a restart.
+//! The user's progress in the lessons, kept between sessions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-/// What was done of all lessons.
+/// Progress in all lessons.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Progress {
-    /// The lesson that was open last: the id of one that comes with the program, or the path of a file.
+    /// The most recent lesson: id of a shipped one, or path of a file.
     pub last: Option<String>,
-    /// By the same names.
+    /// Progress by lesson, under the same names.
     pub lessons: BTreeMap<String, Past>,
 }
 
-/// What was done of a lesson.
+/// Progress in a lesson.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Past {
-    /// Its title.
+    /// Title of the lesson.
     pub title: String,
-    /// The step that was shown last, from 0.
+    /// The latest step, from 0.
     pub step: usize,
-    /// The number of steps.
+    /// Number of steps.
     pub steps: usize,
-    /// The steps whose tasks are done.
+    /// Steps whose tasks are done.
     pub done: BTreeSet<usize>,
-    /// The answers that were given in each step until the right one, that one included.
+    /// Number of answers given in each step up to and including the correct one.
     pub tries: BTreeMap<usize, usize>,
-    /// True if it was finished once.
+    /// True if the lesson was finished once.
     pub finished: bool,
 }
 
 impl Past {
-    /// True if there is something to go on with: to open a lesson and look at its first step is no beginning.
+    /// True if the lesson can be continued: merely opening it at the first step does not count.
     #[must_use]
     pub fn is_begun(&self) -> bool {
         let touched = !self.done.is_empty() || !self.tries.is_empty();
         self.step > 0 || (touched && !self.finished)
     }
 
-    /// In a few words: "step 3 of 9", "finished".
+    /// The progress in a few words: "step 3 of 9", "finished".
     #[must_use]
     pub fn words(&self) -> String {
         match (self.finished, self.step) {
@@ -49,7 +49,7 @@ impl Past {
         }
     }
 
-    /// The part that was seen, from 0 to 1.
+    /// The fraction of steps seen, from 0 to 1.
     #[must_use]
     pub fn fraction(&self) -> f32 {
         match (self.finished, self.step) {
@@ -60,7 +60,7 @@ impl Past {
 }
 
 impl Progress {
-    /// What was done of a lesson.
+    /// Progress in the given lesson.
     #[must_use]
     pub fn of(&self, name: &str) -> Option<&Past> {
         self.lessons.get(name)

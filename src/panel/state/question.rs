@@ -13,16 +13,16 @@ use crate::{
 /// A question that must be answered.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Question {
-    /// There are unsaved changes, and this would lose them.
+    /// An action would lose unsaved changes.
     Unsaved {
-        /// The action that was asked for.
+        /// The requested action.
         then: Box<Action>,
     },
-    /// A file lacks parts that have defaults.
+    /// A file is missing parts that have defaults.
     MissingParts {
         /// The file.
         path: PathBuf,
-        /// The scene with the defaults in place.
+        /// The scene with defaults for the missing parts.
         scene: Box<Scene>,
         /// The missing parts.
         parts: Vec<MissingPart>,
@@ -37,30 +37,30 @@ pub enum Question {
         /// The file.
         path: PathBuf,
     },
-    /// The file of the document changed on disk, and so did the document.
+    /// Both the document and its file on disk have changed.
     NewerOnDisk {
         /// The file.
         path: PathBuf,
-        /// The scene in it.
+        /// The scene in the file.
         scene: Box<Scene>,
-        /// The state of the file.
+        /// Version of the file.
         version: Stamp,
     },
-    /// There is something where an export should go.
+    /// The destination of an export exists.
     ReplaceExport {
-        /// The id of the form.
+        /// Id of the format.
         form: &'static str,
         /// The file or folder.
         path: PathBuf,
     },
-    /// There is a file where a copy of the scene of a lesson should go.
+    /// The destination for a copy of a lesson's scene exists.
     ReplaceScene {
         /// The file.
         path: PathBuf,
     },
-    /// There is a picture where another one should go.
+    /// The destination of a picture exists.
     ReplacePicture {
-        /// The view that is wanted alone.
+        /// The single view, if any.
         view: Option<usize>,
         /// The file.
         path: PathBuf,
@@ -69,23 +69,23 @@ pub enum Question {
     Recover(Box<Offer>),
 }
 
-/// A part that a scene file lacks, and its default.
+/// A missing part of a scene file, and its default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingPart {
-    /// Its name for people: "the scene size".
+    /// Display name: "the scene size".
     pub name: String,
     /// The default in words: "10 × 10 × 10 m".
     pub default: String,
 }
 
-/// The open question, and what depends on answers.
+/// The open question, and the state that depends on answers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Questions {
-    /// The question that waits for an answer. While there is one, nothing else can be done.
+    /// The question that waits for an answer. While there is one, it blocks everything else.
     pub open: Option<Question>,
-    /// The action that waits for the document to be saved first.
+    /// The action to perform after the document is saved.
     pub(super) after_save: Option<Action>,
-    /// True if the next file that is opened may replace unsaved changes: the user was asked.
+    /// True if the next opened file may replace unsaved changes, which the user has confirmed.
     pub(super) may_discard: bool,
 }
 
@@ -95,24 +95,24 @@ impl Questions {
         self.open = Some(question);
     }
 
-    /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
+    /// True if the user is asked about unsaved changes, or is saving them, because the window closes.
     #[must_use]
     pub fn is_quitting(&self) -> bool {
         let asked = matches!(&self.open, Some(Question::Unsaved { then }) if **then == Action::Quit);
         asked || self.after_save == Some(Action::Quit)
     }
 
-    /// The document could not be written, or no file was chosen: the action that waited for it is dropped.
+    /// Drops the pending action, because the document was not saved.
     pub fn not_saved(&mut self) {
         self.after_save = None;
     }
 
-    /// True while an answer, or a dialog that followed from one, decides about unsaved changes.
+    /// True while an answer, or the dialog that follows it, decides about unsaved changes.
     pub(super) fn are_pending(&self) -> bool {
         self.open.is_some() || self.after_save.is_some() || self.may_discard
     }
 
-    /// The dialog that chooses a file to open was closed without a choice.
+    /// Handles closing the open dialog without a choice.
     pub fn not_opened(&mut self) {
         self.may_discard = false;
     }
@@ -125,7 +125,7 @@ impl Session {
         go: impl FnOnce(&mut Self) -> Vec<Effect>,
     ) -> Vec<Effect> {
         if self.is_dirty() {
-            // The question is about the user's own document, so that is what is shown.
+            // The question is about the user's own document, so show that.
             let effects = self.park_lesson();
             self.questions.open = Some(Question::Unsaved { then: Box::new(action) });
             return effects;
@@ -133,8 +133,8 @@ impl Session {
         go(self)
     }
 
-    /// An action whose loss of unsaved changes the user has accepted. The changes are not gone before
-    /// it succeeds: a dialog can still be cancelled, a file can turn out to be broken.
+    /// Performs an action for which the user has accepted to lose unsaved changes. The changes are kept until it
+    /// succeeds: a dialog can be cancelled, a file can be invalid.
     pub(super) fn confirmed(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         match action {
             Action::New => self.start_new(),
@@ -160,7 +160,7 @@ impl Session {
             }
             (Question::MissingParts { path, scene, parts }, Answer::UseDefaults) => {
                 let effects = self.opened(path, *scene);
-                // Until it is saved, the file differs from what is on screen.
+                // Until it is saved, the file differs from the document.
                 self.disk.defaulted = parts.into_iter().map(|p| p.name).collect();
                 effects
             }
@@ -182,7 +182,7 @@ impl Session {
                 vec![Effect::OpenFile(path)]
             }
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
-                // The file on disk is known now: saving replaces it.
+                // The user has seen the version on disk: saving overwrites it.
                 self.document.set_saved(*scene);
                 self.disk.recovered = false;
                 self.disk_settled();

@@ -1,27 +1,27 @@
-//! The work that an earlier window left unsaved.
+//! Recovery of unsaved work from an earlier window.
 
 use std::path::PathBuf;
 
 use super::{Answer, Effect, RecoveryChoice, Session};
 use crate::scene::Scene;
 
-/// A recovery copy that the user may have back.
+/// A recovery copy that is offered to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
-    /// The name of the document.
+    /// Name of the document.
     pub title: String,
-    /// The file of the document, if it had one.
+    /// File of the document, if it had one.
     pub path: Option<PathBuf>,
-    /// The file of the copy.
+    /// File of the copy.
     pub file: PathBuf,
-    /// Its age: "5 minutes ago".
+    /// Age of the copy: "5 minutes ago".
     pub when: String,
-    /// The scene, or what is wrong with it.
+    /// The scene, or the problem with it.
     pub scene: Result<Scene, String>,
 }
 
 impl Session {
-    /// Carries out the answer to the question about a copy.
+    /// Handles the answer to the question about a copy.
     pub(super) fn answer_offer(&mut self, offer: Offer, answer: Answer) -> Vec<Effect> {
         match (answer, offer.scene) {
             (Answer::Recover, Ok(scene)) => {
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn what_is_recovered_is_unsaved_and_belongs_to_its_file() {
         let registry = Registry::builtin();
-        // Even if it were what the window shows anyway.
+        // Even if the window already shows the same scene.
         for scene in [Scene { name: Some("Mine".to_owned()), ..Scene::default() }, Scene::default()] {
             let mut session = Session::default();
             assert!(!session.is_dirty());

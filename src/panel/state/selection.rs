@@ -26,7 +26,7 @@ impl Session {
         }
     }
 
-    /// Selects what the last step made or left.
+    /// Selects the part that the latest step added or kept.
     pub(super) fn select_new(&mut self, selection: Selection) {
         self.select(selection);
         self.document.selected(self.selection);

@@ -3,16 +3,16 @@
 /// Severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Severity {
-    /// Good to know.
+    /// Information.
     Info,
-    /// Something is not as asked, and the picture is still right.
+    /// Something is not as requested, but the picture is correct.
     Warning,
     /// Something failed.
     Error,
 }
 
 impl Severity {
-    /// The word for it.
+    /// Name of the severity.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

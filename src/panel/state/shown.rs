@@ -1,4 +1,4 @@
-//! The document as the window shows it.
+//! The document as shown by the window.
 
 use std::{ffi::OsStr, path::Path};
 
@@ -12,13 +12,13 @@ use crate::{
 };
 
 impl Session {
-    /// The title of what is shown: that of the lesson, or of the user's own document.
+    /// The title: of the open lesson, otherwise of the user's own document.
     #[must_use]
     pub fn title(&self) -> String {
         self.lesson.as_ref().map_or_else(|| self.own_title(), |lesson| lesson.lesson.title.clone())
     }
 
-    /// The name of its file without extension; while it has none, its title as one.
+    /// The file name without extension; without a file, derived from the title.
     #[must_use]
     pub fn stem(&self) -> String {
         if let Some(stem) = self.path.as_deref().and_then(Path::file_stem) {
@@ -30,11 +30,11 @@ impl Session {
         if stem.is_empty() { "scene".to_owned() } else { stem }
     }
 
-    /// The title of the window: that of the document, and the file if it has another name.
+    /// The window title: title of the document, and the file if it has a different name.
     #[must_use]
     pub fn window_title(&self) -> String {
         let title = self.title();
-        // my_lesson.json is called as My lesson.
+        // my_lesson.json counts as My lesson.
         let plain = |name: &str| name.to_lowercase().replace(|c: char| !c.is_alphanumeric(), "");
         let is_title = |stem: &OsStr| plain(&stem.to_string_lossy()) == plain(&title);
         match self.path.as_ref().filter(|p| !p.file_stem().is_some_and(is_title)) {
@@ -46,15 +46,15 @@ impl Session {
         }
     }
 
-    /// The name of a part of the scene for people: its own, or its type and its number among its type.
+    /// The display name of a part of the scene: its own name, or its type and number.
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         self.document.name_of(part, registry)
     }
 
-    /// The selected object, if it has a reflection model of its own: the choice at the top is then about
-    /// that one, since a choice for the scene would not reach it. A presentation shows no selection: there the choice is
-    /// the scene's.
+    /// The selected object, if it overrides the scene's reflection model. The menu at the top then applies to that
+    /// object, since the scene's model does not affect it. In a presentation, which shows no selection, the menu
+    /// applies to the scene.
     #[must_use]
     pub fn model_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
@@ -64,7 +64,7 @@ impl Session {
         Some((i, self.scene().objects.get(i)?.reflection_model.as_deref()?))
     }
 
-    /// The same for its shading model.
+    /// The selected object, if it overrides the scene's shading model.
     #[must_use]
     pub fn shading_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
@@ -74,19 +74,19 @@ impl Session {
         Some((i, self.scene().objects.get(i)?.shading_model.as_deref()?))
     }
 
-    /// Id of the reflection model that the top of the window shows and changes.
+    /// Id of the reflection model shown at the top of the window.
     #[must_use]
     pub fn model_shown(&self) -> &str {
         self.model_override().map_or(&self.scene().reflection_model, |(_, id)| id)
     }
 
-    /// Id of the shading model that the top of the window shows and changes.
+    /// Id of the shading model shown at the top of the window.
     #[must_use]
     pub fn shading_shown(&self) -> &str {
         self.shading_override().map_or(&self.scene().shading_model, |(_, id)| id)
     }
 
-    /// The edit that chooses another reflection model at the top of the window.
+    /// The edit that selects a reflection model at the top of the window.
     #[must_use]
     pub fn edit_model(&self, id: &str) -> Edit {
         match self.model_override() {
@@ -95,7 +95,7 @@ impl Session {
         }
     }
 
-    /// The edit that chooses another shading model at the top of the window.
+    /// The edit that selects a shading model at the top of the window.
     #[must_use]
     pub fn edit_shading_model(&self, id: &str) -> Edit {
         match self.shading_override() {
@@ -104,13 +104,13 @@ impl Session {
         }
     }
 
-    /// The terms that the picture can show alone, and all of them; the terms that are 0 everywhere are left out.
+    /// The terms that the picture can isolate, and all of them together; terms that are 0 everywhere are left out.
     #[must_use]
     pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
         self.known_terms.offered(self.scene(), registry)
     }
 
-    /// True if nothing of a view's picture has the term that is shown alone.
+    /// True if nothing in a view's picture has the isolated term.
     #[must_use]
     pub fn lacks_term(&self, view: usize, registry: &Registry) -> bool {
         let shown = self.terms_of(view);
@@ -122,7 +122,7 @@ impl Session {
         !seen.map_or_else(|| present(self.scene()), |(scene, _)| present(&scene)).contains(&shown)
     }
 
-    /// The reason why the observer can't be where the camera is.
+    /// Why the observer can't be moved to the camera.
     #[must_use]
     pub fn observer_problem(&self) -> Option<&'static str> {
         let scene = &self.document;

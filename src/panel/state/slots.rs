@@ -1,17 +1,17 @@
-//! The models that keys 1–9 choose.
+//! The models on the keys 1–9.
 
 use std::ops::Deref;
 
 use crate::registry::Registry;
 
-/// The most models that keys 1–9 reach.
+/// Maximum number of models on keys.
 pub const MODEL_SLOTS: usize = 9;
 
-/// The models that keys 1–9 choose. A model keeps its number while it is among them, so that fingers can learn it.
+/// The models on the keys 1–9. A model keeps its number while it has a key, so that users can memorise it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelSlots {
     slots: Vec<String>,
-    /// The same in the order of use, latest last; those that were never used come first.
+    /// The models in order of use, latest last; never used ones come first.
     used: Vec<String>,
 }
 
@@ -24,20 +24,19 @@ impl Deref for ModelSlots {
 }
 
 impl ModelSlots {
-    /// Gives the free keys to the registered models in their order, so that there is a choice from the start.
+    /// Assigns free keys to the registered models in registration order, so that the keys work from the start.
     pub fn fill(&mut self, registry: &Registry) {
         for model in registry.models() {
             let id = model.declaration.id;
             if self.len() < MODEL_SLOTS && !self.iter().any(|m| m == id) {
                 self.slots.push(id.to_owned());
-                // Never used, so the first to give way.
+                // Never used, so the first to be replaced.
                 self.used.insert(0, id.to_owned());
             }
         }
     }
 
-    /// Gives a model one of the keys: the one that it has, a free one, or that of the model that was not used for
-    /// longest.
+    /// Assigns a key to a model: its own, a free one, or that of the least recently used model.
     pub(in crate::panel) fn take(&mut self, id: &str) {
         self.used.retain(|m| m != id);
         self.used.push(id.to_owned());

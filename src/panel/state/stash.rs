@@ -1,4 +1,4 @@
-//! Values of the document that no model takes at present.
+//! Values of the document that no model accepts at present.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -7,21 +7,21 @@ use crate::{document::PartId, parameter::Value};
 /// An object, and the name of a parameter.
 pub(in crate::panel) type ParameterPlace = (PartId, Cow<'static, str>);
 
-/// A value that was stashed.
+/// A stashed value.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::panel) struct Kept {
-    /// The value that the user wants.
+    /// The value set by the user.
     pub(in crate::panel) wanted: Value,
-    /// The value that the document has in its place, if any.
+    /// The replacement value in the document, if any.
     pub(in crate::panel) instead: Option<Value>,
 }
 
-/// The values of the document that no model takes, and that come back when one does.
+/// Values of the document that no model accepts; they are restored once a model accepts them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StashedValues(pub(in crate::panel) BTreeMap<ParameterPlace, Kept>);
 
 impl StashedValues {
-    /// The number of stashed values.
+    /// Number of stashed values.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
@@ -33,12 +33,12 @@ impl StashedValues {
         self.0.is_empty()
     }
 
-    /// Another document is open.
+    /// Clears the stash for another document.
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// An object was copied.
+    /// Copies the stashed values of an object to its duplicate.
     pub(super) fn copied(&mut self, from: PartId, to: PartId) {
         let theirs = self.0.iter().filter(|((object, _), _)| *object == from);
         let copies: Vec<_> = theirs.map(|((_, name), kept)| ((to, name.clone()), kept.clone())).collect();

@@ -1,4 +1,4 @@
-//! The choice of what is shown, and how.
+//! View settings.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,7 +12,7 @@ pub const PLOTS_TAB: &str = "plots";
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
 
-/// The sizes of everything, per cent.
+/// Available interface scales, in per cent.
 pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
 
 /// The nearest of [`SCALES`].
@@ -21,34 +21,34 @@ pub fn nearest_scale(percent: u16) -> u16 {
     SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
 }
 
-/// Light or dark.
+/// Light or dark theme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThemeChoice {
-    /// Near-black panels: for judging pictures.
+    /// Near-black panels, for judging pictures.
     #[default]
     Dark,
-    /// Near-white panels: for bright rooms and projectors.
+    /// Near-white panels, for bright rooms and projectors.
     Light,
 }
 
-/// What the handles in the picture do to what is selected, and the keys that nudge it.
+/// The effect of the handles in the picture, and of the keys that nudge the selection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HandleMode {
-    /// They move it.
+    /// Move the selection.
     #[default]
     Move,
-    /// They turn it.
+    /// Turn the selection.
     Turn,
-    /// They change its size.
+    /// Resize the selection.
     Size,
 }
 
 impl HandleMode {
-    /// Every mode, in the order of the key.
+    /// All modes, in the order of the key.
     pub const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Size];
 
-    /// The name for people.
+    /// Display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -58,7 +58,7 @@ impl HandleMode {
         }
     }
 
-    /// The one after it; after the last comes the first.
+    /// The next mode, in a cycle.
     #[must_use]
     pub const fn next(self) -> Self {
         match self {
@@ -74,27 +74,27 @@ impl HandleMode {
 pub enum HandleChange {
     /// See [`View::show_handles`].
     Show(bool),
-    /// See [`View::handles`]; they are shown then.
+    /// See [`View::handles`]; also shows the handles.
     Mode(HandleMode),
 }
 
 /// The labels of objects in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Labels {
-    /// None.
+    /// Never.
     #[default]
     Off,
     /// Always.
     On,
-    /// While the picture is presented.
+    /// In presentations.
     Presentation,
 }
 
 impl Labels {
-    /// Every choice, in the order of presentation.
+    /// All options, in menu order.
     pub const ALL: [Self; 3] = [Self::Off, Self::On, Self::Presentation];
 
-    /// The name for people.
+    /// Display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -105,76 +105,76 @@ impl Labels {
     }
 }
 
-/// The choice of what is shown, and how.
+/// View settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// Light or dark.
+    /// Light or dark theme.
     pub theme: ThemeChoice,
-    /// The size of everything, per cent: one of [`SCALES`].
+    /// Interface scale, in per cent: one of [`SCALES`].
     pub scale: u16,
-    /// True if the strip of examples is below the picture.
+    /// True if the strip of examples is shown below the picture.
     pub examples_open: bool,
-    /// The picture fills the screen, with the equation over it; the panels are hidden.
+    /// True if the picture fills the screen, with the equation over it and without panels.
     pub presenting: bool,
     /// True if the window fills the screen.
     pub fullscreen: bool,
-    /// The same before the presentation began.
+    /// Value of `fullscreen` before the presentation started.
     pub fullscreen_before: bool,
-    /// True if lights have gizmos in the picture.
+    /// True if lights have markers in the picture.
     pub show_gizmos: bool,
-    /// True if what is selected has handles in the picture.
+    /// True if the selection has handles in the picture.
     pub show_handles: bool,
-    /// What the handles do.
+    /// Effect of the handles.
     pub handles: HandleMode,
     /// True if the outline of the room is drawn.
     pub show_room: bool,
-    /// The labels of objects.
+    /// When objects have labels.
     pub labels: Labels,
-    /// True if of the parameters of a model only those that differ from their defaults have knobs.
+    /// True if only parameters that differ from their defaults have knobs.
     pub only_changed: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
-    /// True if pictures that are saved or copied have a caption.
+    /// True if saved or copied pictures have a caption.
     pub picture_caption: bool,
-    /// The terms of the equation that the picture shows.
+    /// Visible terms of the equation.
     pub terms: TermSelection,
-    /// The debug channels that the views show instead of their pictures, view A first.
+    /// Debug channels that replace the pictures of the views, view A first.
     pub channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
-    /// The view that the panels show and change: 0 is the scene, 1 view B.
+    /// The active view, which the panels show and change: 0 is the scene, 1 view B.
     pub active: usize,
     /// True while the other view is shown instead of view A.
     pub blinking: bool,
     /// True if the strip at the bottom is unfolded.
     pub bottom_open: bool,
-    /// Id of the panel that the strip at the bottom shows.
+    /// Id of the panel in the bottom strip.
     pub bottom_tab: String,
-    /// True if the tree at the left is shown.
+    /// True if the scene list at the left is shown.
     pub left_open: bool,
-    /// True if the inspector at the right is shown.
+    /// True if the properties at the right are shown.
     pub right_open: bool,
-    /// The pixel that stays explained wherever the pointer is.
+    /// The pinned pixel, which stays explained wherever the pointer is.
     pub pinned: Option<Pin>,
-    /// A number that no other pin has.
+    /// Unique number of the pin.
     pub pin_number: u64,
-    /// The lobe of the model at the point that is explained.
+    /// Display options of the lobe at the explained point.
     pub lobe: LobeChoice,
-    /// Width of the tree, points.
+    /// Width of the scene list, in points.
     pub left_width: f32,
-    /// Width of a lesson, points.
+    /// Width of a lesson, in points.
     pub lesson_width: f32,
-    /// Width of the inspector, points.
+    /// Width of the properties panel, in points.
     pub right_width: f32,
-    /// Height of the strip at the bottom, points.
+    /// Height of the bottom strip, in points.
     pub bottom_height: f32,
-    /// Ids of the panels of others that are hidden.
+    /// Ids of hidden guest panels.
     pub hidden_panels: Vec<String>,
-    /// Ids of the panels of others that are folded.
+    /// Ids of folded guest panels.
     pub folded_panels: Vec<String>,
-    /// Id of the panel of others that the strip at the bottom shows, if the user chose one. A window may not know it.
+    /// Id of the guest panel that the user chose in the bottom strip. The panel may be unknown to this window.
     pub guest_tab: Option<String>,
-    /// True if the list of keys is open.
+    /// True if the list of keyboard shortcuts is open.
     pub keys_open: bool,
-    /// True if "about" is open.
+    /// True if the *About* window is open.
     pub about_open: bool,
     /// True if the chooser of reflection models is open.
     pub chooser_open: bool,
@@ -222,16 +222,16 @@ impl Default for View {
     }
 }
 
-/// A change of what is shown.
+/// A change of the view settings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ViewChange {
     /// See [`View::theme`].
     Theme(ThemeChoice),
-    /// See [`View::scale`]; the nearest of [`SCALES`] is taken.
+    /// See [`View::scale`]; rounded to the nearest of [`SCALES`].
     Scale(u16),
-    /// The next of [`SCALES`].
+    /// Select the next larger of [`SCALES`].
     Larger,
-    /// The one before.
+    /// Select the next smaller of [`SCALES`].
     Smaller,
     /// See [`View::examples_open`].
     Examples(bool),
@@ -255,17 +255,17 @@ pub enum ViewChange {
     PictureCaption(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
-    /// The debug channel of the active view; see [`View::channels`].
+    /// Set the debug channel of the active view; see [`View::channels`].
     Channel(Option<DebugChannel>),
-    /// True if the strip at the bottom is unfolded.
+    /// Unfold or fold the strip at the bottom.
     Bottom(bool),
-    /// Shows a panel in the strip at the bottom, and unfolds it.
+    /// Show a panel in the strip at the bottom, and unfold the strip.
     BottomTab(String),
-    /// Shows or hides a panel of others at a side; unfolds its side too.
+    /// Show or hide a guest panel at a side; showing also opens that side.
     Panel(String, bool),
-    /// Folds a panel of others at a side, or unfolds it.
+    /// Fold or unfold a guest panel at a side.
     Fold(String, bool),
-    /// See [`View::pinned`]; what is pinned is shown.
+    /// See [`View::pinned`]; pinning also opens the explanation.
     Pin(Option<Pin>),
     /// See [`View::lobe`].
     Lobe(LobeChoice),
@@ -273,7 +273,7 @@ pub enum ViewChange {
     Left(bool),
     /// See [`View::right_open`].
     Right(bool),
-    /// The widths of the panels after dragging: tree, inspector, height of the strip.
+    /// Store the panel sizes after dragging: scene list, properties, bottom strip.
     Sizes {
         /// See [`View::left_width`].
         left: f32,
@@ -290,7 +290,7 @@ pub enum ViewChange {
     Chooser(bool),
 }
 
-/// Puts an id on a list, or takes it off.
+/// Adds an id to a list, or removes it.
 fn set(list: &mut Vec<String>, id: String, on: bool) {
     list.retain(|known| *known != id);
     if on {
@@ -299,27 +299,26 @@ fn set(list: &mut Vec<String>, id: String, on: bool) {
 }
 
 impl View {
-    /// Pins a pixel, or lets go of the one that is pinned. The same one pinned anew is another pin: it is for the point
-    /// that is there now.
+    /// Pins a pixel, or unpins. Pinning the same pixel again creates a new pin, for the point that is there now.
     pub fn pin(&mut self, pin: Option<Pin>) {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         self.pinned = pin;
         self.pin_number = NEXT.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Unfolds the strip at the bottom with a panel.
+    /// Unfolds the strip at the bottom with the given panel.
     pub fn unfold(&mut self, tab: &str) {
         self.bottom_open = true;
         tab.clone_into(&mut self.bottom_tab);
     }
 
-    /// True if a panel of others is hidden.
+    /// True if a guest panel is hidden.
     #[must_use]
     pub fn hides(&self, id: &str) -> bool {
         self.hidden_panels.iter().any(|hidden| hidden == id)
     }
 
-    /// True if a panel of others is folded.
+    /// True if a guest panel is folded.
     #[must_use]
     pub fn folds(&self, id: &str) -> bool {
         self.folded_panels.iter().any(|folded| folded == id)
@@ -385,7 +384,7 @@ impl View {
 }
 
 impl Session {
-    /// The change that folds the strip at the bottom away, or unfolds it with the messages.
+    /// The change that folds the strip at the bottom, or unfolds it with the messages.
     #[must_use]
     pub fn strip_change(&self) -> ViewChange {
         if self.view.bottom_open {
@@ -414,7 +413,7 @@ impl Session {
         let left = self.view.left_width;
         self.view.change(change);
         if self.lesson.is_some() {
-            // It is the lesson that is at the left.
+            // The panel at the left is the lesson.
             let width = std::mem::replace(&mut self.view.left_width, left);
             if width != left {
                 self.view.lesson_width = width;
