@@ -127,7 +127,7 @@ impl Registry {
         let files = self.files_mut();
         files.broken.remove(id);
         files.custom.insert(id, CustomSource { path: model.path, extent });
-        put(&mut self.models, model.entry, |m| m.declaration.id);
+        put(Arc::make_mut(&mut self.models), model.entry, |m| m.declaration.id);
     }
 
     /// Puts the custom models in the order of their ids, whichever was read first.
@@ -137,7 +137,7 @@ impl Registry {
         let mut custom: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
         custom.sort_by_key(|m| m.declaration.id);
         for (place, model) in places.into_iter().zip(custom) {
-            self.models[place] = model;
+            Arc::make_mut(&mut self.models)[place] = model;
         }
     }
 
@@ -148,7 +148,7 @@ impl Registry {
     /// Forgets a model, and its text if it came from a file.
     pub fn remove_model(&mut self, id: &str) {
         let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
-        let model = self.models.remove(at);
+        let model = Arc::make_mut(&mut self.models).remove(at);
         if self.files_mut().custom.remove(id).is_some() {
             self.sources.forget(model.declaration.wgsl.path);
         }

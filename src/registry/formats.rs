@@ -42,6 +42,6 @@ impl Registry {
 
     /// Adds a checked scene format.
     pub(crate) fn put_scene_format(&mut self, entry: FormatEntry) {
-        put(&mut self.formats, entry, |f| f.name);
+        put(Arc::make_mut(&mut self.formats), entry, |f| f.name);
     }
 }

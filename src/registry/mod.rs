@@ -204,16 +204,16 @@ impl<R: Register> shape::Take for Adding<'_, R> {
     }
 }
 
-/// Everything that is known, in the order of registration.
+/// Everything that is known, in the order of registration. Cloning is cheap: clones share what they hold until one of them
+/// changes, since the window makes a clone for every calculation in the background.
 #[derive(Clone, Debug, Default, Resource)]
 pub struct Registry {
-    models: Vec<ModelEntry>,
-    shadings: Vec<ShadingEntry>,
-    lights: Vec<LightEntry>,
-    shapes: Vec<ShapeEntry>,
-    formats: Vec<FormatEntry>,
+    models: Arc<Vec<ModelEntry>>,
+    shadings: Arc<Vec<ShadingEntry>>,
+    lights: Arc<Vec<LightEntry>>,
+    shapes: Arc<Vec<ShapeEntry>>,
+    formats: Arc<Vec<FormatEntry>>,
     sources: Sources,
-    /// Shared by copies of the registry, of which the window makes many.
     files: Arc<Files>,
 }
 
@@ -300,11 +300,11 @@ impl Registry {
                 }
             }
         }
-        extend(&mut self.models, &other.models, |m| m.declaration.id);
-        extend(&mut self.shadings, &other.shadings, |s| s.declaration.id);
-        extend(&mut self.lights, &other.lights, |l| l.declaration.id);
-        self.lights.iter_mut().zip(0..).for_each(|(light, index)| light.index = index);
-        extend(&mut self.shapes, &other.shapes, |s| s.declaration.id);
+        extend(Arc::make_mut(&mut self.models), &other.models, |m| m.declaration.id);
+        extend(Arc::make_mut(&mut self.shadings), &other.shadings, |s| s.declaration.id);
+        extend(Arc::make_mut(&mut self.lights), &other.lights, |l| l.declaration.id);
+        Arc::make_mut(&mut self.lights).iter_mut().zip(0..).for_each(|(light, index)| light.index = index);
+        extend(Arc::make_mut(&mut self.shapes), &other.shapes, |s| s.declaration.id);
         let files = self.files_mut();
         files.foreign.extend(&other.files.foreign);
         for folder in &other.files.folders.extensions {
@@ -312,7 +312,7 @@ impl Registry {
                 files.folders.extensions.push(folder.clone());
             }
         }
-        extend(&mut self.formats, &other.formats, |f| f.name);
+        extend(Arc::make_mut(&mut self.formats), &other.formats, |f| f.name);
     }
 
     /// Every parameter that some reflection or shading model declares, each name once, in order of first declaration.
@@ -423,7 +423,7 @@ impl Register for Registry {
         };
         check().map_err(|mistake| RegistrationError::of::<M>(PART, d.id, mistake))?;
         self.note_origin(d.wgsl.path, admission);
-        put(&mut self.models, entry, |m| m.declaration.id);
+        put(Arc::make_mut(&mut self.models), entry, |m| m.declaration.id);
         Ok(())
     }
 
@@ -444,7 +444,7 @@ impl Register for Registry {
         };
         check().map_err(|mistake| RegistrationError::of::<S>(PART, d.id, mistake))?;
         self.note_origin(d.wgsl.path, admission);
-        put(&mut self.shadings, entry, |s| s.declaration.id);
+        put(Arc::make_mut(&mut self.shadings), entry, |s| s.declaration.id);
         Ok(())
     }
 
@@ -466,7 +466,7 @@ impl Register for Registry {
         check().map_err(|mistake| RegistrationError::of::<L>(PART, d.id, mistake))?;
         self.note_origin(d.wgsl.path, admission);
         entry.index = self.light_index(d.id).unwrap_or(self.lights.len() as u32);
-        put(&mut self.lights, entry, |l| l.declaration.id);
+        put(Arc::make_mut(&mut self.lights), entry, |l| l.declaration.id);
         Ok(())
     }
 
@@ -484,7 +484,7 @@ impl Register for Registry {
             Ok(())
         };
         check().map_err(|mistake| RegistrationError::of::<T>(PART, d.id, mistake))?;
-        put(&mut self.shapes, entry, |s| s.declaration.id);
+        put(Arc::make_mut(&mut self.shapes), entry, |s| s.declaration.id);
         Ok(())
     }
 }
