@@ -1,7 +1,7 @@
 //! # Lights, Camera, Models!
 //!
 //! A laboratory for the equations that light a surface. The modules are in the order of their dependencies: each
-//! uses only those above it, which `tests/suite/modules.rs` checks.
+//! uses only those above it, which `tests/suite/code/modules.rs` checks.
 //!
 //! ```text
 //! JSON ─► scene ─► document ─► entities ─► materials, lights, meshes ─► a texture per view ─► window

@@ -23,7 +23,7 @@ use crate::{
 pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
 
 /// Larger files are refused before they are read. Reading takes time proportional to the file, whatever is in it, and at
-/// most two seconds per mebibyte, as for all readers: `tests/suite/hostile_text.rs`. The largest legal scene, with every parameter of 10 000 objects
+/// most two seconds per mebibyte, as for all readers: `tests/suite/hostile/text.rs`. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// The largest file of a picture that is opened: one of the largest size, not compressed.

@@ -3,7 +3,7 @@
 //!
 //! Only what has the same equation there is exported; the rest is refused, all parts at once. Our lights multiply a
 //! response π f_r cos θ, and Mitsuba's multiply f_r cos θ, so lights from one direction are π times as strong there.
-//! `tests/suite/mitsuba.rs` compares the pictures.
+//! `tests/suite/exports/mitsuba.rs` compares the pictures.
 
 use std::collections::{BTreeSet, HashMap};
 

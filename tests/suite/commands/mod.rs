@@ -1,0 +1,10 @@
+//! The command line.
+
+mod assets;
+mod command_line;
+mod files;
+mod outputs;
+mod plot;
+mod sampling;
+mod signals;
+mod study;

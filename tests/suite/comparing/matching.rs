@@ -1,0 +1,337 @@
+//! Matching a view to view A: `lcm match`, and the window with its question, its progress and its step of the history.
+
+use std::{fs, path::Path};
+
+use bevy::{
+    app::{App, PluginGroup as _},
+    ecs::message::Messages,
+};
+use bevy_egui::egui::{Key, Modifiers};
+use lights_camera_models::{
+    document::{Edit, VariantField},
+    matching::{self, Match, Request, What, match_view},
+    panel::state::{Action, CompareCommand, Effect, LabEffect, MatchCommand, Matching, Session, Severity},
+    parameter::{Value, Values},
+    progress::Progress,
+    registry::Registry,
+    scene::{
+        Scene, Variant,
+        load::{self, Defaults},
+    },
+    window::LabPlugins,
+};
+use serde_json::json;
+
+use crate::{
+    helpers::support::{Run, lcm_in, names},
+    library::plugins::app,
+    window::panels::Bench,
+};
+
+/// View A under Phong's model, view B under Blinn's.
+fn scene() -> Scene {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.objects[0].material.set("alpha", Value::Integer(32));
+    let variant = Variant {
+        name: Some("half".to_owned()),
+        reflection_model: Some("blinn_phong".to_owned()),
+        ..Variant::default()
+    };
+    scene.variants = vec![variant];
+    scene
+}
+
+/// A folder with that scene.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = lights_camera_models::scene::save::to_json(&scene(), None, &Registry::builtin());
+    fs::write(folder.path().join("a.json"), text).expect("writable");
+    folder
+}
+
+fn material(file: &Path) -> Values {
+    let loaded = load::file(file, &Registry::builtin(), Defaults::Refuse).expect("a scene");
+    loaded.scene.variants[0].material.clone()
+}
+
+fn refused(run: &Run, status: i32, expected: &str) {
+    assert_eq!(run.status, Some(status), "{}", run.err);
+    assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
+    assert_eq!(run.out, "");
+}
+
+#[test]
+fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
+    let folder = folder();
+    let at = folder.path();
+    let run = lcm_in(at, &["match", "a.json", "--on", "highlight"], b"");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.starts_with("view B matched to view A on the highlight\nalpha: 32 → 12"), "{}", run.out);
+    assert!(run.out.contains("0.1 is about 10 %: 0."), "{}", run.out);
+    assert!(run.out.contains("\nunchanged: k_a, k_d and k_s\n"), "{}", run.out);
+    assert_eq!(names(at), ["a.json"], "nothing is written unasked");
+
+    let arguments =
+        ["match", "a.json", "--view", "half", "--on", "highlight", "--free", "alpha,k_s", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&lcm_in(at, &arguments, b"").out).expect("JSON");
+    assert_eq!((&json["view"], &json["on"]), (&json!("B"), &json!("highlight")));
+    let alpha = json["values"]["alpha"].as_i64().expect("it was found");
+    assert!((124..=132).contains(&alpha), "{json:#}");
+    assert_eq!(json["unchanged"], json!(["k_s"]));
+    assert_eq!(json["values"].as_object().map(serde_json::Map::len), Some(1), "{json:#}");
+    let [before, after] = ["before", "after"].map(|key| json[key].as_f64().expect("a number"));
+    assert!(before > 0.5 && after < 0.01, "{json:#}");
+
+    let run = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "b.json"], b"");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), "wrote b.json\n"));
+    assert_eq!(material(&at.join("b.json")).0["alpha"], Value::Integer(alpha));
+    // Nothing is replaced unasked, and nothing is searched before that is known.
+    let run = lcm_in(at, &["match", "a.json", "-o", "b.json"], b"");
+    refused(&run, 4, "b.json already exists; it was not overwritten; --overwrite replaces it");
+    let arguments = ["match", "a.json", "--on", "highlight", "-o", "b.json", "--overwrite", "-q"];
+    assert_eq!(lcm_in(at, &arguments, b"").status, Some(0));
+    assert_eq!(material(&at.join("b.json")).0["alpha"], Value::Integer(alpha));
+    // Now it is as near as it gets.
+    let run = lcm_in(at, &["match", "b.json", "--on", "highlight"], b"");
+    assert!(
+        run.out.starts_with("view B stays as it is: no other values come nearer to view A\n"),
+        "{}",
+        run.out
+    );
+}
+
+#[test]
+fn lobes_and_pictures_come_nearer_too() {
+    let folder = folder();
+    for on in ["lobe", "picture"] {
+        let arguments = ["match", "a.json", "--on", on, "--free", "k_s,alpha", "--json"];
+        let run = lcm_in(folder.path(), &arguments, b"");
+        let json: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+        let [before, after] = ["before", "after"].map(|key| json[key].as_f64().expect("a number"));
+        assert!(after < 0.6 * before, "{json:#}");
+        assert!(
+            json["values"]["alpha"].as_i64().is_some_and(|alpha| (50..=160).contains(&alpha)),
+            "{json:#}"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("alone.json"), {
+        let alone = Scene { variants: Vec::new(), ..scene() };
+        lights_camera_models::scene::save::to_json(&alone, None, &Registry::builtin())
+    })
+    .expect("writable");
+    let alone = "alone.json: the scene has no variants, so there is no view to be matched to view A";
+    refused(&lcm_in(at, &["match", "alone.json"], b""), 1, alone);
+    let view = "a.json: --view: there is no view \"D\"; it must be A or B (half)";
+    refused(&lcm_in(at, &["match", "a.json", "--view", "D"], b""), 1, view);
+    let free = "--free: \"shine\" is free, but view B has no such parameter; free some of base_colour,";
+    refused(&lcm_in(at, &["match", "a.json", "--free", "shine"], b""), 2, free);
+    refused(&lcm_in(at, &["match", "a.json", "--on", "paper"], b""), 2, "invalid value 'paper'");
+    refused(&lcm_in(at, &["match", "a.json", "--overwrite"], b""), 2, "--output");
+    refused(&lcm_in(at, &["match"], b""), 2, "required");
+    refused(&lcm_in(at, &["match", "none.json"], b""), 1, "none.json: file not found");
+    let folder = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "x/b.json"], b"");
+    // What was found is not lost.
+    assert_eq!(folder.status, Some(4));
+    assert!(folder.out.contains("alpha: 32 → 129"), "{}", folder.out);
+    assert!(folder.err.contains("there is no folder x"), "{}", folder.err);
+}
+
+// ── the window ──
+
+fn compared() -> Bench {
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Compare(CompareCommand::Layout(
+        lights_camera_models::scene::comparison::Layout::SideBySide,
+    )));
+    bench
+}
+
+/// A bench that is asked how a view of this model shall be matched.
+pub fn ask(bench: &mut Bench, model: &str) {
+    let layout = lights_camera_models::scene::comparison::Layout::SideBySide;
+    bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+    bench.apply(Action::Edit(Edit::Model(model.to_owned())));
+    bench.apply(Action::Match(MatchCommand::Ask(1)));
+}
+
+/// Then it runs, on another one it has ended.
+pub fn run(bench: &mut Bench) {
+    bench.apply(Action::Match(MatchCommand::Close));
+    let values = vec![("k_s", Value::Number(0.3)), ("alpha", Value::Integer(128))];
+    let found = Match { values, kept: vec!["k_a"], before: 0.0312, after: 0.00204 };
+    let scene = (*bench.session.document).clone();
+    bench.session.matched(&scene, (1, What::Lobe), Some(Ok(found)), &bench.registry);
+    bench.session.facts.matching =
+        Some(Matching { view: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
+    bench.settle();
+}
+
+#[test]
+fn the_menu_of_a_view_asks_how_it_shall_be_matched() {
+    let mut bench = compared();
+    bench.click("Menu of view A");
+    assert!(bench.find("Match A to A…").is_none());
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.click("Menu of view B");
+    bench.click("Match B to A…");
+    assert!(bench.says("Match B to A") && bench.says("Free parameters of view B"));
+    assert!(bench.says(What::Lobe.summary()));
+    bench.click("Compare: picture");
+    assert!(bench.says(What::Picture.summary()));
+    // Numbers are free, colours are not.
+    bench.click("Free: ambient coefficient");
+    bench.click("Free: specular colour");
+    bench.click("Match");
+    let expected = Effect::Match {
+        view: 1,
+        what: What::Picture,
+        parameters: vec!["specular_colour", "k_d", "k_s", "alpha"],
+    };
+    assert_eq!(bench.effects, [expected]);
+    assert!(bench.session.match_draft.is_none());
+}
+
+#[test]
+fn a_question_without_an_answer_is_closed() {
+    let mut bench = compared();
+    let ask = Action::Match(MatchCommand::Ask(1));
+    bench.apply(ask.clone());
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.session.match_draft.is_none());
+    bench.apply(ask.clone());
+    // Nothing is free: nothing to start.
+    for name in ["ambient coefficient", "diffuse coefficient", "specular coefficient", "shininess"] {
+        bench.click(&format!("Free: {name}"));
+    }
+    assert!(bench.find("Match").is_some_and(|button| button.disabled));
+    bench.click("Cancel");
+    assert!(bench.session.match_draft.is_none());
+    // The view is gone.
+    bench.apply(ask);
+    bench.apply(Action::Compare(CompareCommand::Remove(1)));
+    assert!(bench.session.match_draft.is_none());
+    assert_eq!(bench.effects, []);
+}
+
+#[test]
+fn the_progress_of_a_match_is_shown_and_it_can_be_stopped() {
+    let mut bench = compared();
+    bench.session.facts.matching =
+        Some(Matching { view: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
+    bench.settle();
+    assert!(bench.says("Matching B to A"));
+    bench.apply(Action::Match(MatchCommand::Ask(1)));
+    assert!(bench.session.match_draft.is_none(), "one at a time");
+    assert!(bench.session.messages.iter().any(|m| m.text.starts_with("A match is still running")));
+    bench.click("Cancel");
+    assert_eq!(bench.effects, [Effect::CancelMatch]);
+}
+
+/// Lets a window without a window match, until it says how that ended.
+fn matched(app: &mut App, effects: Vec<Effect>) -> (Severity, String) {
+    let before = app.world().resource::<Session>().messages.added();
+    app.world_mut().resource_mut::<Messages<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
+    for _ in 0..6000 {
+        app.update();
+        let messages = &app.world().resource::<Session>().messages;
+        if messages.added() > before {
+            let last = messages.last().expect("it was added");
+            return (last.severity, last.text.clone());
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("the match does not end");
+}
+
+#[test]
+fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_everything() {
+    let folder = folder();
+    let plugins =
+        LabPlugins::default().scene(folder.path().join("a.json")).size(64, 36).exit_after(100_000).headless();
+    let mut app = app(plugins.build(), |_| ());
+    let start = |what: What| Effect::Match { view: 1, what, parameters: vec!["k_s", "alpha"] };
+    app.update();
+    let before = app.world().resource::<Session>().document.clone();
+    assert_eq!(before.variants.len(), 1);
+
+    let said = matched(&mut app, vec![start(What::Picture), Effect::CancelMatch]);
+    assert_eq!(said, (Severity::Info, "The match of view B was cancelled; nothing was changed.".to_owned()));
+    assert_eq!(*app.world().resource::<Session>().document, *before);
+
+    let (severity, text) = matched(&mut app, vec![start(What::Highlight)]);
+    assert_eq!(severity, Severity::Info, "{text}");
+    assert!(text.starts_with("View B matched to view A on the highlight: shininess 12"), "{text}");
+    let mut session = app.world_mut().resource_mut::<Session>();
+    let steps: Vec<_> = session.document.steps().collect();
+    assert_eq!(steps, ["Match of view B"]);
+    assert!(matches!(session.document.variants[0].material.0["alpha"], Value::Integer(124..=132)));
+    assert_eq!(session.document.variants[0].material.0.len(), 1, "what does not matter is not set");
+    let registry = Registry::builtin();
+    session.apply(Action::Undo, &registry);
+    assert_eq!(*session.document, *before);
+
+    // A scene that changes meanwhile is another one.
+    app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(start(What::Picture)));
+    app.update();
+    let edit = Edit::Variant(0, VariantField::Exposure(Some(1.0)));
+    app.world_mut().resource_mut::<Session>().apply(Action::Edit(edit), &registry);
+    let (severity, text) = matched(&mut app, Vec::new());
+    assert_eq!(severity, Severity::Warning);
+    assert!(
+        text.starts_with("The scene was changed while view B was matched, so nothing was applied"),
+        "{text}"
+    );
+    assert_eq!(app.world().resource::<Session>().document.done(), 1);
+
+    // What cannot be matched is said.
+    let unknown = Effect::Match { view: 2, what: What::Lobe, parameters: vec!["alpha"] };
+    let said = matched(&mut app, vec![unknown]);
+    let expected =
+        "View C was not matched: there is no view C to be matched; the scene has 2 views: A and B.";
+    assert_eq!(said, (Severity::Error, expected.to_owned()));
+}
+
+/// With every number of a model free, a view comes at least as near as with any of them alone.
+#[test]
+fn more_free_parameters_never_end_worse() {
+    let registry = Registry::builtin();
+    let cases: [(What, &str, &[(&'static str, Value)], f32); 3] = [
+        (What::Highlight, "disney", &[("roughness", Value::Number(0.2))], 0.5),
+        (What::Lobe, "disney", &[("roughness", Value::Number(0.06)), ("metallic", Value::Number(1.0))], 0.7),
+        (What::Highlight, "blinn_phong", &[("alpha", Value::Integer(200))], 0.5),
+    ];
+    for (what, model, values, other) in cases {
+        let mut scene = Scene { reflection_model: model.to_owned(), ..Scene::default() };
+        values.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
+        let mut variant = Variant { reflection_model: Some("disney".to_owned()), ..Variant::default() };
+        variant.material.set("roughness", Value::Number(other));
+        scene.variants = vec![variant];
+        let all: Vec<_> = matching::parameters(&scene, 1, &registry)
+            .into_iter()
+            .filter(|(_, usual)| *usual)
+            .map(|(parameter, _)| parameter.name)
+            .collect();
+        assert!(all.len() >= 8, "{all:?}");
+        let matched = |parameters: &[&str]| {
+            let request = Request { scene: &scene, view: 1, what, parameters };
+            match_view(&request, &registry, &Progress::NONE).expect("a match")
+        };
+        let together = matched(&all);
+        for alone in ["roughness", "metallic", "specular"] {
+            let alone = matched(&[alone]);
+            assert!(together.after <= 1.01 * alone.after + 1e-4, "{what:?} {model}: {together:?}\n{alone:?}");
+        }
+        // What stayed is told, and nothing is told twice.
+        let mut told: Vec<_> = together.values.iter().map(|(name, _)| *name).chain(together.kept).collect();
+        let mut expected = all.clone();
+        told.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(told, expected, "{what:?} {model}");
+    }
+}

@@ -1,0 +1,563 @@
+//! The window with several views of one scene.
+
+use std::fs;
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, vec2};
+use lights_camera_models::{
+    caption::header,
+    channel::DebugChannel,
+    compare::{Pair, Shown, fitting_amplification},
+    document::{Edit, VariantField},
+    optics::TermSelection,
+    panel::marks::Lens,
+    panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
+    parameter::{Value, Values},
+    scene::{
+        Comparison, Scene, Variant,
+        comparison::{Compared, Layout},
+    },
+};
+
+use crate::{
+    helpers::screen::{Picture, Screen},
+    window::panels::Bench,
+};
+
+/// A red sphere that view B shows in blue.
+fn scene(layout: &str, more: &str) -> String {
+    format!(
+        r#"{{
+  "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
+  "reflection_model": "lambert",
+  "shading_model": "phong",
+  "lights": [{{ "type": "ambient", "intensity": 1 }}],
+  "observer": {{ "position": [5, 5, 9.5], "direction": [0, 0, -1] }},
+  "objects": [{{ "type": "sphere", "position": [5, 5, 5], "size": 3, "material": {{ "base_colour": [255, 0, 0] }} }}],
+  "variants": [{{ "name": "in blue", "material": {{ "base_colour": [0, 0, 255] }} }}],
+  "comparison": {{ "layout": "{layout}"{more} }}
+}}"#
+    )
+}
+
+const RED: fn([u8; 3]) -> bool = |p| p[0] > 200 && p[1] < 30 && p[2] < 30;
+const BLUE: fn([u8; 3]) -> bool = |p| p[2] > 200 && p[1] < 30 && p[0] < 30;
+
+#[test]
+fn a_window_shows_the_views_of_a_scene_in_every_layout() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.json");
+    fs::write(&file, scene("side_by_side", "")).expect("written");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
+    // Between the panels, the picture is from 208 to 936.
+    let (left, right) = (210..570, 574..934);
+    let count = |picture: &Picture, x: &std::ops::Range<u32>, is: fn([u8; 3]) -> bool| {
+        picture.count(x.clone(), 70..640, is)
+    };
+    window.until("both views", |p| count(p, &left, RED) > 3000 && count(p, &right, BLUE) > 3000);
+    // A screen may be looked at while half of a new picture is on it.
+    let picture = window.rest();
+    assert_eq!((count(&picture, &left, BLUE), count(&picture, &right, RED)), (0, 0));
+
+    fs::write(&file, scene("wipe", "")).expect("written");
+    let halves = |p: &Picture| count(p, &left, RED) > 10_000 && count(p, &right, BLUE) > 10_000;
+    window.until("the halves of one sphere", halves);
+    let half = count(&window.rest(), &(210..934), BLUE);
+    fs::write(&file, scene("wipe", ", \"split\": 0.4")).expect("written");
+    window.until("more of the other view", |p| count(p, &(210..934), BLUE) > half + half / 8);
+    fs::write(&file, scene("wipe", ", \"edge\": \"horizontal\"")).expect("written");
+    window.until("one above the other", |p| {
+        let (top, bottom) = (70..330, 370..610);
+        p.count(210..934, top.clone(), RED) > 8000
+            && p.count(210..934, bottom.clone(), BLUE) > 8000
+            && p.count(210..934, top, BLUE) + p.count(210..934, bottom, RED) == 0
+    });
+
+    // Viridis: nothing is dark violet, all there is is yellow.
+    fs::write(&file, scene("difference", "")).expect("written");
+    let none = |p: [u8; 3]| p[0].abs_diff(68) < 4 && p[1] < 5 && p[2].abs_diff(84) < 4;
+    let most = |p: [u8; 3]| p[0] > 240 && p[1] > 220 && p[2] < 60;
+    window.until("the map of the difference", |p| {
+        count(p, &(210..934), none) > 100_000 && count(p, &(210..934), most) > 10_000
+    });
+
+    fs::write(&file, scene("single", "")).expect("written");
+    let picture = window.until("view A alone", |p| count(p, &(210..934), RED) > 20_000);
+    assert_eq!(count(&picture, &(210..934), BLUE), 0);
+    assert_eq!(window.said(), "");
+}
+
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+
+fn bench() -> Bench {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+/// The place of what a screen reader calls so.
+fn place(bench: &Bench, label: &str) -> Rect {
+    let seen = bench.tree.iter().find(|seen| seen.label.contains(label));
+    seen.unwrap_or_else(|| panic!("“{label}” is not shown")).rect
+}
+
+fn click(bench: &mut Bench, label: &str) {
+    let at = place(bench, label).center();
+    bench.click_at(at, PointerButton::Primary);
+    bench.settle();
+}
+
+#[test]
+fn a_second_view_is_added_changed_and_taken_back_by_hand() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    assert_eq!(bench.session.document.comparison.layout, Layout::SideBySide);
+    assert_eq!(bench.session.active(), 1);
+    // The shading at the top is that of view B.
+    bench.key(Key::P, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.document.shading_model, "gouraud");
+    assert_eq!(bench.session.variant().and_then(|v| v.shading_model.clone()).as_deref(), Some("phong"));
+    place(&bench, "shading model  Phong");
+    click(&mut bench, "shading model: back to A");
+    assert_eq!(bench.session.variant(), Some(&Variant::default()));
+    click(&mut bench, "View A");
+    assert_eq!(bench.session.active(), 0);
+    bench.key(Key::K, CTRL);
+    bench.settle();
+    assert_eq!(bench.session.active(), 1);
+    // A press of a shading model's key in view A is about the scene.
+    click(&mut bench, "View A");
+    bench.key(Key::F, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.document.shading_model, "flat");
+}
+
+#[test]
+fn the_edge_of_a_wipe_is_dragged_and_moved_by_keys_and_each_drag_is_one_step() {
+    let mut bench = bench();
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Wipe)));
+    bench.settle();
+    let steps = bench.session.document.done();
+    let edge = place(&bench, "Edge between the views");
+    let (from, to) = (edge.center(), edge.center() + vec2(-100.0, 0.0));
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![Event::PointerMoved(from)]);
+    bench.frame(vec![button(from, true)]);
+    for i in 1..=5 {
+        bench.frame(vec![Event::PointerMoved(from.lerp(to, i as f32 / 5.0))]);
+    }
+    bench.frame(vec![button(to, false)]);
+    bench.settle();
+    let split = bench.session.document.comparison.split;
+    assert!((0.3..0.42).contains(&split), "{split}");
+    assert_eq!(bench.session.document.done(), steps + 1);
+    bench.key(Key::Period, Modifiers::NONE);
+    bench.settle();
+    assert!((bench.session.document.comparison.split - split - 0.02).abs() < 1e-3);
+    // The picture and its other view are as large as before, so neither is drawn again.
+    let size = |bench: &Bench| bench.area.cells.iter().map(|cell| cell.rect.size()).collect::<Vec<_>>();
+    let before = size(&bench);
+    assert_eq!(before.len(), 2);
+    bench.key(Key::Comma, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(size(&bench), before);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    assert_eq!(bench.session.document.comparison.split, 0.5);
+}
+
+#[test]
+fn views_have_one_size_in_every_layout_and_stay_within_the_picture() {
+    for size in [vec2(1280.0, 720.0), vec2(1920.0, 1080.0), vec2(1000.0, 560.0)] {
+        for views in 1..4 {
+            for layout in Layout::ALL {
+                let mut bench = bench();
+                bench.size = size;
+                for _ in 0..views {
+                    bench.apply(Action::Compare(CompareCommand::Add));
+                }
+                bench.apply(Action::Compare(CompareCommand::Layout(*layout)));
+                bench.settle();
+                bench.settle();
+                let cells = &bench.area.cells;
+                let expected = match layout {
+                    Layout::Single => 1,
+                    Layout::SideBySide => views + 1,
+                    _ => 2,
+                };
+                assert_eq!(cells.len(), expected, "{layout:?}");
+                for cell in cells {
+                    let (a, b) = (cell.rect.size(), cells[0].rect.size());
+                    assert!((a - b).abs().max_elem() < 0.01, "{layout:?}: {a:?} and {b:?}");
+                    assert!(a.min_elem() > 80.0, "{layout:?} at {size:?}: {a:?}");
+                    assert!(bench.area.rect.contains_rect(cell.rect), "{layout:?}");
+                    assert!(cell.part.is_negative() || cell.rect.contains_rect(cell.part), "{layout:?}");
+                }
+                if *layout == Layout::SideBySide {
+                    for (i, a) in cells.iter().enumerate() {
+                        assert!(cells[..i].iter().all(|b| !a.rect.shrink(0.1).intersects(b.rect)));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_view_gets_a_name_and_one_that_others_are_based_on_keeps_it() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    bench.type_into("Name of view B", "sharp");
+    bench.key(Key::Enter, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.variant().and_then(|v| v.name.as_deref()), Some("sharp"));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("soft".to_owned()))));
+    let mut scene = (*bench.session.document).clone();
+    scene.variants.push(Variant { based_on: Some("soft".to_owned()), ..Variant::default() });
+    let mut bench = Bench::new(Session::new(scene));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("hard".to_owned()))));
+    assert_eq!(bench.session.document.variants[1].based_on.as_deref(), Some("hard"));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name(String::new()))));
+    assert_eq!(bench.session.document.variants[0].name.as_deref(), Some("hard"));
+    assert!(bench.says("based on this one by its name"));
+}
+
+/// A scene with three variants, of which the last is based on the first.
+fn three() -> Bench {
+    let colour = |rgb| Values([("base_colour".into(), Value::Colour(rgb))].into());
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.variants = vec![
+        Variant {
+            name: Some("b".to_owned()),
+            reflection_model: Some("lambert".to_owned()),
+            material: colour([0, 0, 255]),
+            ..Variant::default()
+        },
+        Variant { exposure: Some(1.0), ..Variant::default() },
+        Variant { based_on: Some("b".to_owned()), exposure: Some(2.0), ..Variant::default() },
+    ];
+    scene.comparison = Comparison { layout: Layout::SideBySide, with: 2, ..Comparison::default() };
+    Bench::new(Session::new(scene))
+}
+
+/// What a view shows, but for names.
+fn seen(bench: &Bench, view: usize) -> (String, String, String) {
+    let (scene, _) = bench.session.document.seen(view, &bench.registry).expect("there is such a view");
+    let object = &scene.objects[0];
+    let colour = bench.registry.material_parameter("base_colour").expect("there is one");
+    let model = scene.model_of(object).to_owned();
+    (model, format!("{:?}", object.material.get(colour)), format!("{:?}", scene.display))
+}
+
+#[test]
+fn views_are_swapped_and_the_others_stay_as_they_are() {
+    let mut bench = three();
+    let before: Vec<_> = (0..4).map(|view| seen(&bench, view)).collect();
+    bench.apply(Action::Compare(CompareCommand::Swap(1)));
+    let after: Vec<_> = (0..4).map(|view| seen(&bench, view)).collect();
+    assert_eq!([&after[0], &after[1]], [&before[1], &before[0]]);
+    assert_eq!(after[2..], before[2..]);
+    bench.apply(Action::Undo);
+    assert_eq!((0..4).map(|view| seen(&bench, view)).collect::<Vec<_>>(), before);
+    // Terms are no part of the scene that would be view A.
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Specular)))));
+    bench.apply(Action::Compare(CompareCommand::Swap(1)));
+    assert!(bench.says("terms of its own"));
+    assert_eq!(seen(&bench, 0), before[0]);
+}
+
+#[test]
+fn the_compared_view_stays_the_same_when_one_before_it_goes() {
+    let mut bench = three();
+    let with = bench.session.document.comparison.with;
+    let before = seen(&bench, with);
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::Compare(CompareCommand::Remove(1)));
+    assert_eq!(bench.session.document.comparison.with, with - 1);
+    assert_eq!(seen(&bench, with - 1), before);
+}
+
+#[test]
+fn a_scene_is_saved_with_the_view_that_was_compared() {
+    let mut bench = three();
+    bench.apply(Action::Compare(CompareCommand::Activate(3)));
+    assert_eq!((bench.session.compared_with(), bench.session.document.comparison.with), (3, 2));
+    assert!(!bench.session.is_dirty(), "looking at another view changes no scene");
+    let steps = bench.session.document.steps().len();
+    bench.session.settle_comparison();
+    assert_eq!(bench.session.document.comparison.with, 3);
+    assert_eq!(bench.session.document.steps().len(), steps);
+}
+
+#[test]
+fn a_presentation_of_views_has_equation_and_caption_and_no_handles() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(bench.says("Handle: "));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    bench.settle();
+    assert!(!bench.says("Handle: ") && !bench.says("Menu of view"));
+    let written: Vec<_> =
+        crate::window::layout::texts(&mut bench).into_iter().map(|(text, _)| text).collect();
+    let written = written.join(" ");
+    assert!(written.contains("A:") && written.contains("Phong"), "{written}");
+}
+
+#[test]
+fn the_amplification_is_fitted_to_the_largest_difference() {
+    for (largest, expected) in [(255.0, 1.0), (128.0, 1.0), (100.0, 2.0), (12.0, 20.0), (0.5, 100.0)] {
+        assert_eq!(fitting_amplification(Compared::Codes, largest), expected, "{largest}");
+    }
+    assert_eq!(fitting_amplification(Compared::Light, 0.1), 10.0);
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    bench.session.facts.comparison = Some(Numbers { largest: Some(12.0), ..Numbers::default() });
+    bench.settle();
+    assert_eq!(bench.session.document.comparison.amplification, None, "nobody had to ask for it");
+    let said =
+        |bench: &mut Bench| crate::window::layout::texts(bench).into_iter().any(|(text, _)| text == "20");
+    assert!(said(&mut bench), "it says the factor");
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, Some(20.0), "it stays from now on");
+    bench.session.facts.comparison = Some(Numbers { largest: Some(100.0), ..Numbers::default() });
+    bench.settle();
+    assert!(said(&mut bench));
+    click(&mut bench, "Amplify automatically");
+    assert!(!said(&mut bench));
+}
+
+#[test]
+fn the_amplification_of_equal_views_is_that_of_their_map() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    bench.settle();
+    let said = |bench: &mut Bench| {
+        crate::window::layout::texts(bench).into_iter().filter(|(text, _)| text == "100").count()
+    };
+    let before = said(&mut bench);
+    // Nothing is known yet.
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, None, "there is none to keep");
+    // Two equal pictures have no largest difference.
+    let grey = Shown::of_codes(2, 1, vec![50; 6]).expect("as many as pixels");
+    let differences = Pair::new(&grey, &grey).expect("of one size").differences(&Comparison::default());
+    let of_map = differences.expect("codes are known").amplification(&Comparison::default());
+    bench.session.facts.comparison = Some(Numbers::default());
+    bench.settle();
+    assert_eq!((of_map, said(&mut bench)), (100.0, before + 1), "it says the factor of the map");
+    click(&mut bench, "Amplify automatically");
+    assert_eq!(bench.session.document.comparison.amplification, Some(of_map));
+}
+
+#[test]
+fn each_view_has_its_badges_in_every_layout() {
+    let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+    for (layout, signs) in [
+        (Layout::Single, "B"),
+        (Layout::SideBySide, "AB"),
+        (Layout::Wipe, "AB"),
+        (Layout::Difference, "AB"),
+        (Layout::Blink, "A"),
+    ] {
+        let mut bench = bench();
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        let terms = VariantField::Terms(Some(TermSelection::Diffuse));
+        bench.apply(Action::Edit(Edit::Variant(0, terms)));
+        bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
+        bench.settle();
+        let is_sign = |s: &&crate::window::panels::Seen| s.label.contains(" · Clipped: ");
+        let mut all: Vec<_> = bench.tree.iter().filter(is_sign).cloned().collect();
+        all.sort_by_key(|sign| sign.label.clone());
+        let letters: String = all.iter().filter_map(|s| s.label.chars().next()).collect();
+        assert_eq!(letters, signs, "{layout:?}");
+        assert_eq!(bench.says("B · Only the diffuse term"), signs.contains('B'), "{layout:?}");
+        for (i, sign) in all.iter().enumerate() {
+            let cell = bench.area.cells.iter().find(|c| sign.label.starts_with(["A", "B"][c.view]));
+            assert!(cell.is_some_and(|c| c.rect.contains_rect(sign.rect)), "{layout:?}: {sign:?}");
+            assert!(all[..i].iter().all(|other| !other.rect.intersects(sign.rect)), "{layout:?}");
+        }
+        let share = |letter: &str| all.iter().find(|s| s.label.starts_with(letter)).map(|s| s.label.clone());
+        if signs == "AB" {
+            let [a, b] = ["A", "B"].map(|l| share(l).unwrap()[4..].to_owned());
+            assert_ne!(a, b, "each counts its own view");
+        }
+    }
+    // A click on the sign of another view is about that view.
+    let mut bench = bench();
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Diffuse)))));
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.settle();
+    click(&mut bench, "B · Only the diffuse term");
+    assert_eq!((bench.session.active(), bench.session.terms_of(1)), (1, TermSelection::All));
+}
+
+#[test]
+fn a_view_differs_only_in_what_differs_now() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Expose(1.0));
+    bench.settle();
+    let texts = |bench: &mut Bench| -> Vec<_> {
+        crate::window::layout::texts(bench).into_iter().map(|(text, _)| text).collect()
+    };
+    assert!(!texts(&mut bench).contains(&"also set in B, to what A has now".to_owned()));
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.settle();
+    let said = texts(&mut bench);
+    let at = |text: &str| said.iter().position(|t| t == text).unwrap_or_else(|| panic!("{text}: {said:?}"));
+    assert!(at("differs from A in") < at("exposure  1 EV"));
+    assert!(at("exposure  1 EV") < at("also set in B, to what A has now"));
+    assert!(at("also set in B, to what A has now") < at("reflection model  Phong"));
+    // Both are taken back as before.
+    click(&mut bench, "exposure: back to A");
+    assert!(texts(&mut bench).contains(&"as A".to_owned()));
+    click(&mut bench, "reflection model: back to A");
+    assert_eq!(bench.session.variant(), Some(&Variant::default()));
+}
+
+#[test]
+fn a_channel_is_not_compared_with_a_picture() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    bench.settle();
+    assert!(bench.says("RMSE 0.031"));
+    let why = "Not compared: A shows the picture, B shows N·V.";
+    for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+        bench.settle();
+        assert!(bench.says(why) && !bench.says("RMSE"), "{layout:?}");
+    }
+    let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+    assert_eq!(written, 2, "in the bar, and in the place of the map");
+    // A channel is compared with itself.
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+    bench.settle();
+    assert!(bench.says("RMSE 0.031"));
+}
+
+#[test]
+fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    let all = Converging { done: 256, total: 256, noise: Some(0.01) };
+    bench.session.facts.converged[0] = all;
+    bench.session.facts.converged[1] = Converging { done: 63, ..all };
+    let why = "Not converged yet: 63 of 256 samples";
+    for (layout, times) in [(Layout::SideBySide, 1), (Layout::Wipe, 1), (Layout::Difference, 2)] {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.settle();
+        assert!(!bench.says("RMSE"), "{layout:?}");
+        let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+        assert_eq!(written, times, "{layout:?}: in the bar, and in the place of a map");
+    }
+    bench.session.facts.converged[1] = all;
+    bench.settle();
+    assert!(bench.says("RMSE 0.031") && !bench.says("Not converged"));
+}
+
+#[test]
+fn legends_of_two_channels_do_not_overlap() {
+    for scale in [100, 150, 200] {
+        for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
+            let mut bench = bench();
+            bench.key(Key::B, CTRL);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+            for view in [0, 1] {
+                bench.apply(Action::Compare(CompareCommand::Activate(view)));
+                bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotL))));
+            }
+            bench.settle();
+            let legends: Vec<_> =
+                bench.tree.iter().filter(|s| s.label.starts_with("Channel: ")).map(|s| s.rect).collect();
+            let [a, b] = legends.as_slice() else { panic!("{layout:?}: {legends:?}") };
+            assert!(!a.intersects(*b), "{layout:?} at {scale} %: {a:?} and {b:?}");
+        }
+    }
+}
+
+#[test]
+fn beside_each_other_objects_keep_their_size() {
+    let radius = |bench: &Bench, cell: Rect| {
+        let lens = Lens::of(&bench.session, cell);
+        let middle = bench.session.document.objects[0].position;
+        let right = bench.session.facts.camera * glam::Vec3::X;
+        let at = lens.project(middle).unwrap();
+        lens.project(middle + right).unwrap().distance(at) / cell.size().min_elem()
+    };
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    let beside = radius(&bench, bench.area.cells[0].rect);
+    bench.size = vec2(2560.0, 900.0);
+    bench.settle();
+    let wide = radius(&bench, bench.area.cells[0].rect);
+    assert!((beside / wide - 1.0).abs() < 0.01, "of the smaller side: {beside} and {wide}");
+}
+
+#[test]
+fn a_presentation_of_two_views_says_both_and_their_difference_and_covers_nothing() {
+    for size in [vec2(1280.0, 720.0), vec2(1920.0, 1080.0)] {
+        for scale in [100, 150, 200] {
+            let mut bench = three();
+            bench.size = size;
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::Compare(CompareCommand::Activate(1)));
+            let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+            bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            bench.settle();
+            let said = crate::window::layout::texts(&mut bench);
+            let has = |text: &str| said.iter().any(|(t, _)| t == text);
+            assert!(has("A:") && has("B:") && has("B compared with A: RMSE 0.031"), "{scale} %: {said:?}");
+            let label = |text: &str| bench.tree.iter().any(|s| s.label.contains(text));
+            assert!(label("I_s = ") && label("I_d = "), "the equation of Phong, and that of Lambert");
+            for shape in bench.shapes() {
+                if let Shape::Text(text) = shape {
+                    assert!(!text.galley.elided, "{scale} %: “{}” is cut", text.galley.text());
+                }
+            }
+            let places = bench.area.cells.clone();
+            assert!(places.iter().all(|cell| cell.rect.height() > 0.2 * size.y * 100.0 / f32::from(scale)));
+        }
+    }
+}
+
+#[test]
+fn headings_of_compared_views_say_the_same_things() {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.objects[0].material.set("k_s", Value::Number(0.25));
+    let values = Values([("alpha".into(), Value::Integer(80))].into());
+    scene.variants = vec![
+        Variant { material: values, ..Variant::default() },
+        Variant { exposure: Some(1.0), ..Variant::default() },
+        Variant::default(),
+    ];
+    let registry = lights_camera_models::registry::Registry::builtin();
+    let said: Vec<_> = (0..4).map(|view| header(&scene, view, &registry)).collect();
+    assert_eq!(said, ["A · α 32, 0 EV", "B · α 80, 0 EV", "C · α 32, +1 EV", "D · as A"]);
+}

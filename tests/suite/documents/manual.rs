@@ -1,0 +1,53 @@
+//! The manual of the menu Help: whole without the folder of the program.
+
+use std::fs;
+
+use bevy_egui::egui::{Key, PointerButton};
+use lights_camera_models::{
+    panel::{
+        manual::{PAGES, dead_links, page},
+        state::{Effect, Session},
+    },
+    window::manual::write,
+};
+
+use crate::{helpers::support::root, window::panels::Bench};
+
+#[test]
+fn the_manual_has_every_document_and_no_dead_link() {
+    let page = page();
+    for file in fs::read_dir(root().join("docs")).expect("a folder").flatten() {
+        let name = file.file_name().to_string_lossy().into_owned();
+        let Some(id) = name.strip_suffix(".md").filter(|id| *id != "SUMMARY") else { continue };
+        assert!(PAGES.iter().any(|(known, _)| *known == id), "{name} is not in the manual");
+        assert!(page.contains(&format!("<section id=\"{id}\">")), "{name}");
+    }
+    assert_eq!(dead_links(&page), Default::default());
+    assert!(page.len() > 150_000 && page.contains("<table>") && page.starts_with("<!DOCTYPE html>"));
+    for absent in ["<!--", "<img", "<script", ".md\"", "href=\"..", "src=\""] {
+        assert!(!page.contains(absent), "{absent}");
+    }
+}
+
+#[test]
+fn help_writes_the_manual_where_a_browser_finds_it() {
+    let mut bench = Bench::new(Session::default());
+    bench.click("Help");
+    // Behind the word is room for a key.
+    let entry = bench.tree.iter().find(|seen| seen.label.trim() == "Manual").expect("an entry").rect;
+    bench.click_at(entry.center(), PointerButton::Primary);
+    assert_eq!(bench.effects, [Effect::OpenManual]);
+    bench.key(Key::Escape, Default::default());
+    let folder = tempfile::tempdir().expect("a folder");
+    let inner = folder.path().join("data");
+    let file = write(&inner).expect("written");
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), page());
+    // An older one is replaced, the same one is left alone.
+    fs::write(&file, "old").expect("written");
+    assert_eq!(write(&inner), Ok(file.clone()));
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), page());
+    // What is in the way is named.
+    fs::write(folder.path().join("taken"), "").expect("written");
+    let why = write(&folder.path().join("taken")).expect_err("a file is no folder");
+    assert!(why.contains("taken"), "{why}");
+}

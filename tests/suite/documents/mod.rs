@@ -1,0 +1,5 @@
+//! The documents: tables, links, and the manual in the program.
+
+mod links;
+mod manual;
+mod tables;

@@ -1,0 +1,6 @@
+//! Changes of the document: history, cost, places of new parts.
+
+mod cost;
+mod history;
+mod placing;
+mod random;

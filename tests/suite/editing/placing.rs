@@ -1,0 +1,384 @@
+//! New parts of a scene stand free and in view, and a new light shows the scene without blowing it out.
+
+use bevy_egui::egui::{Pos2, Rect, vec2};
+use glam::{Mat3, Quat, Vec3};
+use lights_camera_models::{
+    document::Selection,
+    optics::{
+        colour::srgb_encode,
+        tone::{ToneMapping, exposure_factor},
+    },
+    panel::{
+        marks::{Lens, anchor},
+        state::{Action, Session},
+    },
+    parameter::Value,
+    reference,
+    registry::Registry,
+    scene::{
+        Light, Object, Scene, SceneSize,
+        load::{self, Defaults},
+    },
+};
+
+use crate::helpers::support::root;
+
+/// A scene of those that are shipped.
+fn shipped(name: &str) -> Scene {
+    let path = root().join(format!("scenes/{name}.json"));
+    load::file(&path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene
+}
+
+/// The sphere around an object.
+fn radius(object: &Object, registry: &Registry) -> f32 {
+    let shape = registry.shape(&object.object_type).unwrap();
+    let mesh = shape.mesh(&object.shape, *shape.declaration.tessellation.start());
+    object.size * mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max)
+}
+
+fn sees(session: &Session, p: Vec3) -> bool {
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
+    Lens::of(session, rect).project(p).is_some_and(|at| rect.contains(at))
+}
+
+fn touches_nothing(what: &str, session: &Session, added: usize, registry: &Registry) {
+    let object = &session.document.objects[added];
+    let r = radius(object, registry);
+    for (i, other) in session.document.objects.iter().enumerate().filter(|(i, _)| *i != added) {
+        let apart = object.position.distance(other.position) - r - radius(other, registry);
+        assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.object_type, -apart);
+    }
+    for light in session.document.lights.iter().filter_map(|l| l.position) {
+        assert!(object.position.distance(light) > r, "{added} is around a light");
+    }
+    assert!(object.position.distance(session.facts.eye) > r);
+    assert!(session.document.scene_size.contains(object.position));
+}
+
+/// Rooms and cameras of several kinds.
+fn labs() -> Vec<Session> {
+    let mut low = Scene::default();
+    low.objects[0].position = Vec3::new(2.0, 1.0, 3.0);
+    let mut small =
+        Scene { scene_size: SceneSize { height: 1.0, width: 1.5, depth: 1.0 }, ..Scene::default() };
+    small.objects[0] = Object { position: Vec3::new(0.7, 0.5, 0.3), size: 0.3, ..Object::default() };
+    small.lights[0].position = Some(Vec3::new(0.9, 0.9, 0.9));
+    small.observer.position = Vec3::new(0.75, 0.5, 0.95);
+    let mut turned = Session::default();
+    // From the right, above.
+    turned.facts.eye = Vec3::new(9.5, 7.5, 5.0);
+    turned.facts.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
+    vec![Session::default(), Session::new(low), Session::new(small), turned]
+}
+
+#[test]
+fn new_objects_stand_free_and_in_view() {
+    let registry = Registry::builtin();
+    for (which, mut session) in labs().into_iter().enumerate() {
+        for i in 0..9 {
+            let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
+            session.apply(Action::AddObject(kind.to_owned()), &registry);
+            let added = session.document.objects.len() - 1;
+            touches_nothing(&format!("{which}"), &session, added, &registry);
+            assert!(sees(&session, session.document.objects[added].position), "{which}: {kind} {i}");
+        }
+    }
+}
+
+#[test]
+fn a_new_object_hides_nothing_where_there_is_room() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    session.apply(Action::AddObject("cube".to_owned()), &registry);
+    let [old, new] = [0, 1].map(|i| &session.document.objects[i]);
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
+    let [a, b] = [old, new].map(|o| Lens::of(&session, rect).project(o.position).unwrap());
+    assert!(a.distance(b) > 300.0, "{a:?} and {b:?}");
+}
+
+#[test]
+fn copies_stand_free_too() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    for i in 0..4 {
+        session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+        let objects = &session.document.objects;
+        // To the right and to the left there is room; then the picture is full.
+        if i < 2 {
+            touches_nothing("copy", &session, 1, &registry);
+        }
+        assert!(sees(&session, objects[1].position), "copy {i}");
+        assert_eq!((objects[1].size, objects[1].position.z), (objects[0].size, objects[0].position.z));
+        let apart = |other: &Object| other.position.distance(objects[1].position) > 0.5;
+        assert!(objects.iter().enumerate().all(|(k, other)| k == 1 || apart(other)), "copy {i}");
+    }
+    session.apply(Action::Duplicate(Selection::Light(0)), &registry);
+    let [a, b] = [0, 1].map(|i| session.document.lights[i].position.unwrap());
+    assert!(a.distance(b) > 0.2);
+}
+
+#[test]
+fn the_copy_of_the_default_sphere_stands_beside_it() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let [a, b, c] = [0, 1, 2].map(|i| session.document.objects[i].position);
+    assert!((a.z, a.y) == (b.z, b.y) && (a.z, a.y) == (c.z, c.y), "{a} {b} {c}");
+}
+
+#[test]
+fn copies_stand_beside_the_original_at_the_same_depth() {
+    let registry = Registry::builtin();
+    // From the front, and from above and aside.
+    let looks = [
+        (Vec3::new(5.0, 5.0, 9.9), Vec3::NEG_Z),
+        (Vec3::new(9.5, 9.0, 9.0), Vec3::new(-1.0, -0.9, -0.9).normalize()),
+    ];
+    for (eye, ahead) in looks {
+        let mut session = Session::default();
+        session.document = lights_camera_models::document::Document::new(Scene {
+            objects: vec![Object { size: 1.0, ..Object::default() }],
+            ..Scene::default()
+        });
+        session.facts.eye = eye;
+        session.facts.camera = Quat::from_mat3(&Mat3::look_to_rh(ahead, Vec3::Y).transpose());
+        let seen = |p: Vec3| session.facts.camera.inverse() * (p - eye);
+        let first = seen(session.document.objects[0].position);
+        let mut copied = session.clone();
+        for i in 1..=2 {
+            copied.apply(Action::Duplicate(Selection::Object(0)), &registry);
+            let copy = seen(copied.document.objects[1].position);
+            assert!((copy.z - first.z).abs() < 0.02, "{i}: at {copy}, not at the depth of {first}");
+            assert!((copy.y - first.y).abs() < 0.02, "{i}: {copy} is not beside {first}");
+            assert!(((copy.x - first.x).abs() - 1.1).abs() < 0.15, "{i}: {copy} is not next to {first}");
+        }
+        copied.apply(Action::Duplicate(Selection::Light(0)), &registry);
+        let [of, copy] = [0, 1].map(|i| seen(copied.document.lights[i].position.expect("it has one")));
+        assert!((copy.z - of.z).abs() < 0.02, "{copy} {of}");
+    }
+}
+
+#[test]
+fn copies_keep_the_depth_and_are_seen_where_there_is_little_room() {
+    let registry = Registry::builtin();
+    for (name, index) in [
+        ("portrait", 0),
+        ("gouraud_misses_highlight", 1),
+        ("shapes_and_lights", 1),
+        ("shapes_and_lights", 2),
+        ("superellipsoids", 0),
+        ("superellipsoids", 1),
+        ("superellipsoids", 4),
+    ] {
+        let mut session = Session::new(shipped(name));
+        let (eye, to_camera) = (session.facts.eye, session.facts.camera.inverse());
+        session.apply(Action::Duplicate(Selection::Object(index)), &registry);
+        let [original, copy] = [index, index + 1].map(|i| session.document.objects[i].clone());
+        let [was, is] = [&original, &copy].map(|o| to_camera * (o.position - eye));
+        let what =
+            format!("{name}, {}: from {} to {}", original.object_type, original.position, copy.position);
+        assert!((was.z - is.z).abs() < 0.02, "{what}: another depth");
+        assert!(sees(&session, copy.position), "{what}: out of the picture");
+        assert!((was - is).truncate().length() > 0.2 * original.size, "{what}: over the original");
+        // No neighbour is more in the way than the original may be.
+        let others =
+            session.document.objects.iter().enumerate().filter(|(i, _)| *i != index && *i != index + 1);
+        for (_, other) in others.filter(|(_, other)| other.size < 10.0) {
+            let there = to_camera * (other.position - eye);
+            let apart = (there.truncate() / there.z).distance(is.truncate() / is.z) * -is.z;
+            let least = 0.5 * (0.5 * original.size + 0.5 * other.size);
+            assert!(apart > least, "{what}: before or behind the {}", other.object_type);
+        }
+    }
+}
+
+#[test]
+fn copies_of_neighbours_leave_each_other_room() {
+    let registry = Registry::builtin();
+    let mut session = Session::new(Scene {
+        objects: [4.0, 5.2]
+            .map(|x| Object { size: 0.8, position: Vec3::new(x, 5.0, 5.0), ..Object::default() })
+            .into(),
+        ..Scene::default()
+    });
+    // To the right of the left one stands the other.
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let copy = session.document.objects[1].position;
+    assert!(copy.distance(Vec3::new(3.12, 5.0, 5.0)) < 0.05, "{copy}");
+    touches_nothing("copy", &session, 1, &registry);
+}
+
+#[test]
+fn new_lights_stand_free_and_in_view() {
+    let registry = Registry::builtin();
+    for (which, mut session) in labs().into_iter().enumerate() {
+        for kind in ["point", "spot", "point", "directional", "spot"] {
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let Some(light) = session.document.lights.last() else { panic!("none") };
+            let Some(at) = light.position else { continue };
+            assert!(sees(&session, at), "{which}: a {kind} at {at}");
+            assert_eq!(anchor(light, &session.document), Some(at));
+            for object in &session.document.objects {
+                let apart = at.distance(object.position) - radius(object, &registry);
+                assert!(apart > 0.0, "{which}: a {kind} stands in an object");
+            }
+            let others = &session.document.lights[..session.document.lights.len() - 1];
+            assert!(others.iter().filter_map(|l| l.position).all(|p| p.distance(at) > 0.02), "{which}");
+        }
+    }
+}
+
+/// The brightest channel of each pixel that shows an object, as a factor of what the display can show.
+fn brightness(session: &Session, registry: &Registry) -> Vec<f32> {
+    let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
+    // Of the objects alone, not of lamps before and behind them.
+    let mut scene = session.document.scene().clone();
+    for light in &mut scene.lights {
+        if registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent) {
+            light.parameters.set("visible", Value::flag(false));
+        }
+    }
+    let picture = reference::render(&scene, registry, &settings);
+    let exposure = exposure_factor(session.document.display.exposure);
+    let lit = picture.pixels.iter().filter(|p| p.w > 0.0);
+    lit.map(|p| exposure * p.truncate().max_element()).collect()
+}
+
+#[test]
+fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
+    let registry = Registry::builtin();
+    let dark = |mut scene: Scene| {
+        scene.lights[0].intensity = 0.0;
+        scene
+    };
+    let mut bright = Scene::default();
+    bright.display.exposure = 3.0;
+    let mut dim = Scene::default();
+    dim.display.exposure = -3.0;
+    let mut large =
+        Scene { scene_size: SceneSize { height: 100.0, width: 100.0, depth: 100.0 }, ..Scene::default() };
+    large.objects[0] = Object { position: Vec3::splat(50.0), size: 20.0, ..Object::default() };
+    large.observer.position = Vec3::new(50.0, 50.0, 95.0);
+    let shiny = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
+    for (what, scene) in [
+        ("default", Scene::default()),
+        ("dark", dark(Scene::default())),
+        ("bright", dark(bright)),
+        ("dim", dark(dim)),
+        ("large", dark(large)),
+        ("shiny", shiny),
+    ] {
+        for kind in registry.lights() {
+            let kind = kind.declaration.id;
+            let mut session = Session::new(scene.clone());
+            let before = brightness(&session, &registry);
+            for nth in 0..3 {
+                session.apply(Action::AddLight(kind.to_owned()), &registry);
+                let after = brightness(&session, &registry);
+                let clipped =
+                    |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
+                let more = clipped(&after) - clipped(&before);
+                let light = session.document.lights.last();
+                // Three studios shine from the same places.
+                let most = if kind == "environment" { 0.025 } else { 0.02 };
+                assert!(more < most, "{what}, {kind} {nth}: {more} of the objects clip: {light:?}");
+            }
+            let after = brightness(&session, &registry);
+            let gain = after.iter().zip(&before).map(|(a, b)| a - b).fold(0.0, f32::max);
+            assert!(gain > 0.04, "{what}, {kind}: the brightest gain is {gain}");
+        }
+    }
+}
+
+#[test]
+fn a_new_light_is_noticed_at_once() {
+    let registry = Registry::builtin();
+    let shown = |b: f32| srgb_encode(b.min(1.0));
+    for kind in registry.lights() {
+        let kind = kind.declaration.id;
+        let mut session = Session::default();
+        let before = brightness(&session, &registry);
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+        let after = brightness(&session, &registry);
+        let gains = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b));
+        let noticed = gains.filter(|gain| *gain > 0.1).count() as f32 / before.len() as f32;
+        println!("{kind} {noticed} {:?}", session.document.lights[1]);
+        // The cone of a spot is narrow.
+        let least = if kind == "spot" { 0.05 } else { 0.15 };
+        assert!(noticed > least, "{kind}: {noticed} of the objects get brighter, visibly");
+    }
+}
+
+#[test]
+fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
+    let registry = Registry::builtin();
+    let mut session = Session::default();
+    session.apply(Action::AddLight("point".to_owned()), &registry);
+    let mut mapped = Scene::default();
+    mapped.display.tone_mapping = ToneMapping::Reinhard;
+    let mut lab2 = Session::new(mapped);
+    lab2.apply(Action::AddLight("point".to_owned()), &registry);
+    let of = |session: &Session| session.document.lights.last().map_or(0.0, |l: &Light| l.intensity);
+    assert!(of(&lab2) > 2.0 * of(&session), "{} and {}", of(&lab2), of(&session));
+}
+
+/// A scene with six more objects.
+fn crowded(registry: &Registry) -> Session {
+    let mut session = Session::default();
+    for kind in ["sphere", "cube", "torus", "teapot", "sphere", "cube"] {
+        session.apply(Action::AddObject(kind.to_owned()), registry);
+    }
+    session
+}
+
+#[test]
+fn each_of_many_new_lights_can_be_seen() {
+    let registry = Registry::builtin();
+    for kind in ["point", "ambient", "directional", "spot"] {
+        let mut session = crowded(&registry);
+        for nth in 0..5 {
+            let kind = if nth < 4 { "point" } else { kind };
+            let before = brightness(&session, &registry);
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let after = brightness(&session, &registry);
+            let shown = |b: f32| srgb_encode(b.min(1.0));
+            let mut gains: Vec<_> = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b)).collect();
+            gains.sort_by(f32::total_cmp);
+            // Spots reach little of the scene.
+            let gain = gains[gains.len() * if kind == "spot" { 995 } else { 970 } / 1000];
+            let cd = session.document.lights.last().map_or(0.0, |l| l.intensity);
+            assert!(gain > 0.035, "{kind} {nth} of {cd}: a gain of {gain}");
+        }
+    }
+}
+
+#[test]
+fn a_new_light_says_if_the_picture_clips_with_it() {
+    let registry = Registry::builtin();
+    let mut session = crowded(&registry);
+    session.apply(Action::AddLight("point".to_owned()), &registry);
+    assert!(session.messages.is_empty(), "{:?}", session.messages);
+    for _ in 0..15 {
+        session.apply(Action::AddLight("point".to_owned()), &registry);
+    }
+    assert!(session.messages.iter().any(|m| m.text.contains("the picture clips")));
+}
+
+#[test]
+fn new_positions_are_short_numbers() {
+    let registry = Registry::builtin();
+    let mut session = crowded(&registry);
+    for kind in ["point", "spot", "directional", "point"] {
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+    }
+    let decimals = |v: f32| v.to_string().split_once('.').map_or(0, |(_, d)| d.len());
+    let all = |v: Vec3| v.to_array().map(decimals).into_iter().max().unwrap_or(0);
+    for object in &session.document.objects {
+        assert!(all(object.position) <= 1, "{}", object.position);
+    }
+    for light in &session.document.lights[1..] {
+        assert!(light.position.is_none_or(|p| all(p) <= 1), "{:?}", light.position);
+        assert!(light.direction.is_none_or(|d| all(d) <= 2), "{:?}", light.direction);
+    }
+}

@@ -1,0 +1,119 @@
+//! How far an explanation goes: the sentence, the equation, every factor; where numbers come from; what would change the pixel; and
+//! two views beside each other.
+
+use bevy_egui::egui::{Key, accesskit::Role, vec2};
+use lights_camera_models::{
+    document::Selection,
+    panel::state::{Action, EXPLAIN_TAB, Session, ViewChange},
+    registry::Registry,
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
+};
+
+use crate::{
+    helpers::support::root,
+    window::panels::{Bench, Seen},
+};
+
+/// A window on a scene with a pinned pixel near its middle.
+fn explaining(scene: Scene) -> Bench {
+    let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+    bench.size = vec2(1600.0, 2000.0);
+    bench.session.view.bottom_height = 1100.0;
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+    bench.settle();
+    let middle = bench.area.cells.first().map_or(bench.area.rect, |cell| cell.rect).center();
+    bench.hover(middle + vec2(13.0, 7.0));
+    bench.letter(Key::E, "e");
+    bench.settle();
+    assert!(bench.session.view.pinned.is_some());
+    bench
+}
+
+fn under(model: &str) -> Bench {
+    let mut scene = Scene { reflection_model: model.to_owned(), ..Scene::default() };
+    scene.shading_model = "phong".to_owned();
+    explaining(scene)
+}
+
+/// All that is written.
+fn texts(bench: &mut Bench) -> String {
+    bench.texts().join("\n")
+}
+
+/// The first thing whose name begins so.
+fn begins(bench: &Bench, start: &str) -> Option<String> {
+    bench.tree.iter().find(|seen| seen.label.starts_with(start)).map(|seen| seen.label.clone())
+}
+
+#[test]
+fn a_sentence_stands_alone_the_equation_has_numbers_and_every_factor_unfolds() {
+    let mut bench = under("metallic_roughness");
+    assert!(begins(&bench, "Λ(θ_i) = ").is_none(), "the equation names it, and has its number");
+    assert!(begins(&bench, "= π × ").is_some(), "the specular term with numbers");
+    bench.click("Level: Sentence");
+    bench.settle();
+    assert!(begins(&bench, "= π × ").is_none());
+    assert!(texts(&mut bench).contains("This pixel is ("));
+    bench.click("Level: Every factor");
+    bench.settle();
+    let factor = begins(&bench, "Λ(θ_i) = ").expect("a row for the half of G");
+    assert!(begins(&bench, "Λ(θ_i) over the angle of the light").is_none(), "folded");
+    bench.click(&factor);
+    bench.settle();
+    assert!(begins(&bench, "Λ(θ_i) over the angle of the light to the normal").is_some(), "its plot");
+    assert!(texts(&mut bench).contains("Source: "));
+    bench.click(&factor);
+    bench.settle();
+    assert!(begins(&bench, "Λ(θ_i) over the angle of the light").is_none(), "folded again");
+}
+
+#[test]
+fn a_number_leads_to_its_quantity_and_to_its_knob() {
+    let mut bench = under("metallic_roughness");
+    bench.click("where D comes from");
+    bench.settle();
+    assert!(begins(&bench, "D over the angle of the light").is_some(), "the row of D is unfolded");
+    bench.click("where α comes from");
+    bench.settle();
+    assert!(bench.tree.iter().any(|seen| seen.label == "where r comes from"), "α is made of r");
+}
+
+#[test]
+fn what_would_change_the_pixel_is_a_list_of_knobs() {
+    let mut bench = under("blinn_phong");
+    bench.click("What would change this pixel?");
+    bench.settle();
+    // The field of the list, beside that of the inspector.
+    let top = bench.area.rect.bottom();
+    let field = |seen: &&Seen| {
+        seen.label == "diffuse coefficient" && seen.role == Role::TextInput && seen.rect.top() > top
+    };
+    assert!(bench.tree.iter().any(|seen| field(&seen)), "the diffuse coefficient is in the list");
+    let said = texts(&mut bench);
+    assert!(said.contains("Change of luminance for 1 % of the range, by differences."), "{said}");
+    bench.click("What would change this pixel?");
+    bench.settle();
+    assert!(!bench.tree.iter().any(|seen| field(&seen)), "folded again");
+}
+
+#[test]
+fn two_views_stand_beside_each_other_with_marks_where_they_differ() {
+    let path = root().join("scenes/compare_phong_blinn_phong.json");
+    let scene =
+        load::file(&path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let mut bench = explaining(scene);
+    assert!(!texts(&mut bench).contains("View B: red"));
+    bench.click("Beside B");
+    bench.settle();
+    let said = texts(&mut bench);
+    for expected in ["View A: red", "View B: red", "≠", "≠ marks what differs: "] {
+        assert!(said.contains(expected), "{expected}\n{said}");
+    }
+    bench.click("Beside B");
+    bench.settle();
+    assert!(!texts(&mut bench).contains("View B: red"));
+}

@@ -1,0 +1,459 @@
+//! The panel that explains a pixel: which pixel, the numbers of the picture, and what is drawn over it.
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use glam::{Quat, Vec3};
+use lights_camera_models::{
+    document::{Edit, ObjectField},
+    explain::{Explanation, Place},
+    optics::{Frame, TermSelection, Terms},
+    panel::{
+        explain::{calculations, explained},
+        keys::{ELSEWHERE, bindings},
+        state::{Action, CompareCommand, EXPLAIN_TAB, Pin, Session, ThemeChoice, ViewChange},
+    },
+    parameter::Value,
+    parameters,
+    reference::{self, Settings},
+    reflection::{Declaration, ReflectionModel},
+    registry::{Register, Registry},
+    scene::{Light, Observer, Scene, comparison::Layout, examples::EXAMPLES},
+    shader::Source,
+    testing::random,
+};
+
+use crate::{helpers::support::lcm, window::panels::Bench};
+
+fn bench_of(session: Session, registry: Registry) -> Bench {
+    let mut bench = Bench::with_registry(session, registry);
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+    bench.settle();
+    bench
+}
+
+fn bench(scene: Scene) -> Bench {
+    bench_of(Session::new(scene), Registry::builtin())
+}
+
+fn scene(model: &str, shading: &str) -> Scene {
+    Scene { reflection_model: model.to_owned(), shading_model: shading.to_owned(), ..Scene::default() }
+}
+
+/// Moves the pointer to a place.
+fn point(bench: &mut Bench, at: Pos2) {
+    bench.frame(vec![Event::PointerMoved(at)]);
+    bench.frame(Vec::new());
+}
+
+/// Moves the pointer to the sphere.
+fn point_at_sphere(bench: &mut Bench) {
+    let at = middle(bench);
+    point(bench, at);
+}
+
+/// What is explained now.
+fn shown(bench: &Bench) -> Explanation {
+    explained(&bench.ctx).expect("something is explained").explanation.clone()
+}
+
+/// The middle of the picture, where the sphere is.
+fn middle(bench: &Bench) -> Pos2 {
+    bench.area.cells.first().map_or(bench.area.rect, |cell| cell.rect).center() + vec2(13.0, 7.0)
+}
+
+/// The corner of the picture, where nothing is.
+fn corner(bench: &Bench) -> Pos2 {
+    bench.area.rect.left_top() + vec2(20.0, 60.0)
+}
+
+fn alt_click(bench: &mut Bench, at: Pos2) {
+    let modifiers = Modifiers::ALT;
+    let press =
+        |pressed| Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers };
+    bench.frame(vec![Event::ModifiersChanged(modifiers), Event::PointerMoved(at)]);
+    bench.frame(vec![press(true)]);
+    bench.frame(vec![press(false)]);
+    bench.frame(vec![Event::ModifiersChanged(Modifiers::NONE)]);
+    bench.settle();
+}
+
+/// Those that every model has.
+const LETTERS: [&str; 3] = ["N", "L", "V"];
+
+fn has_vectors(bench: &mut Bench) -> bool {
+    let words = bench.words();
+    let found = LETTERS.map(|letter| words.iter().any(|word| word == letter));
+    assert!(found.iter().all(|f| *f == found[0]), "only some vectors: {words:?}");
+    found[0]
+}
+
+/// The codes of the picture of a session, as the CPU renderer draws it.
+fn picture(bench: &Bench, size: [u32; 2]) -> Vec<u8> {
+    let mut seen = (*bench.session.document).clone();
+    let fov = seen.view_angle().vertical(size[0] as f32 / size[1] as f32);
+    seen.observer = Observer {
+        position: bench.session.facts.eye,
+        direction: bench.session.facts.camera * Vec3::NEG_Z,
+        field_of_view: fov.to_degrees(),
+    };
+    let settings = Settings { width: size[0], height: size[1], samples: 1, terms: TermSelection::All };
+    reference::render_rgb8(&seen, &bench.registry, &settings)
+}
+
+#[test]
+fn the_code_is_that_of_the_picture_in_every_shading_model() {
+    for (model, shading, turn) in [
+        ("phong", "flat", 0.0),
+        ("blinn_phong", "gouraud", 0.3),
+        ("ward", "phong", 0.3),
+        ("lambert", "derivative", -0.2),
+    ] {
+        let mut session = Session::new(scene(model, shading));
+        session.facts.camera = Quat::from_rotation_y(turn);
+        session.facts.eye = Vec3::splat(5.0) + session.facts.camera * Vec3::new(0.3, 0.2, 4.5);
+        let mut bench = bench_of(session, Registry::builtin());
+        point_at_sphere(&mut bench);
+        let size = shown(&bench).size;
+        let codes = picture(&bench, size);
+        let rect = bench.area.rect;
+        let mut seed = 7;
+        for _ in 0..40 {
+            let near = vec2(random(&mut seed) - 0.5, random(&mut seed) - 0.5) * 0.7 * rect.height();
+            point(&mut bench, rect.center() + near);
+            let explanation = shown(&bench);
+            let [x, y] = explanation.pixel;
+            let at = 3 * (y * size[0] + x) as usize;
+            let code = [codes[at], codes[at + 1], codes[at + 2]];
+            assert_eq!(explanation.code(), code, "{model}, {shading}: pixel {x},{y}");
+            let [r, g, b] = code;
+            assert!(
+                bench.says(&format!("red {r}, green {g}, blue {b}")),
+                "{model}, {shading}: pixel {x},{y}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sentence_says_which_light_and_which_term_give_the_most() {
+    let of = |scene: Scene| {
+        let mut bench = bench(scene);
+        point_at_sphere(&mut bench);
+        bench
+    };
+    let says = |bench: &Bench, text: &str| {
+        let all: Vec<_> =
+            bench.tree.iter().map(|s| s.label.clone()).filter(|l| l.starts_with("This ")).collect();
+        assert!(bench.says(text), "no “{text}” in {all:?}");
+    };
+    let light = |at: [f32; 3], intensity: f32, name: Option<&str>| Light {
+        position: Some(at.into()),
+        intensity,
+        name: name.map(str::to_owned),
+        ..Scene::default().lights[0].clone()
+    };
+    let at = [3.0, 8.0, 9.0];
+    let lit = |model: &str, lights: Vec<Light>| Scene { lights, ..scene(model, "phong") };
+
+    let one = of(lit("lambert", vec![light(at, 60.0, None)]));
+    let [r, g, b] = shown(&one).code();
+    says(&one, &format!("This pixel is ({r}, {g}, {b}): "));
+    says(&one, "Point 1 gives all of its light, by the diffuse term.");
+    let two = of(lit("lambert", vec![light(at, 30.0, None), light(at, 90.0, Some("warm lamp"))]));
+    says(&two, "warm lamp gives 75 % of its light, by the diffuse term.");
+    let gouraud = Scene { shading_model: "gouraud".to_owned(), ..(*two.session.document).clone() };
+    says(&of(gouraud), "warm lamp gives 75 % of its light");
+    says(&of(lit("lambert", Vec::new())), "no light is switched on.");
+    says(&of(lit("lambert", vec![light([5.0, 5.0, 1.0], 60.0, None)])), "no light leaves this point");
+    says(&of(lit("lambert", vec![light(at, 1e6, None)])), "brighter than the display can show, and clipped.");
+    let everywhere =
+        Light { light_type: "ambient".to_owned(), position: None, intensity: 0.2, ..Light::default() };
+    says(&of(lit("lambert", vec![everywhere])), "gives all of its light, by the ambient term.");
+    let mut background = bench(Scene::default());
+    let at = corner(&background);
+    point(&mut background, at);
+    says(&background, "no object is here, and the background shows.");
+}
+
+#[test]
+fn a_presentation_keeps_the_vectors_of_a_pinned_pixel() {
+    let mut bench = bench(scene("lambert", "phong"));
+    point_at_sphere(&mut bench);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    // The equation of Lambert, which is in the picture, has no V.
+    let has_v = |bench: &mut Bench| bench.words().iter().any(|word| word == "V");
+    assert!(bench.session.view.presenting && !has_v(&mut bench), "nothing is pinned");
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    point_at_sphere(&mut bench);
+    bench.key(Key::E, Modifiers::NONE);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    assert!(bench.session.view.presenting && bench.session.view.pinned.is_some());
+    assert!(has_v(&mut bench));
+}
+
+#[test]
+fn what_is_copied_is_what_the_command_line_says() {
+    let mut bench = bench(Scene::default());
+    point_at_sphere(&mut bench);
+    bench.key(Key::E, Modifiers::NONE);
+    let Explanation { pixel: [x, y], size: [width, height], .. } = shown(&bench);
+    bench.click("Copy");
+    let (at, size) = (format!("{x},{y}"), format!("{width}x{height}"));
+    let said = lcm(&["explain", "--at", &at, "--size", &size], "");
+    assert_eq!((said.status, bench.copied.as_deref()), (Some(0), Some(&*said.out)), "{}", said.err);
+}
+
+#[test]
+fn the_pointer_is_followed_unless_a_pixel_is_pinned() {
+    let mut bench = bench(scene("phong", "phong"));
+    assert!(bench.says("Point at the picture"));
+    let (at, away) = (middle(&bench), corner(&bench));
+    point(&mut bench, at);
+    let pixel = shown(&bench).pixel;
+    let offset = (at - bench.area.rect.min).floor();
+    assert_eq!(pixel, [offset.x as u32, offset.y as u32]);
+    assert!(has_vectors(&mut bench));
+    point(&mut bench, away);
+    assert!(shown(&bench).seen.is_none() && bench.says("Background") && !has_vectors(&mut bench));
+    // Once it has left, the last pixel stays explained; its vectors hide.
+    point(&mut bench, at);
+    let panel = bench.find("Copy").expect("there").rect.center();
+    bench.frame(vec![Event::PointerMoved(panel)]);
+    assert!(shown(&bench).pixel == pixel && !has_vectors(&mut bench));
+
+    for by_key in [true, false] {
+        let toggle = |bench: &mut Bench| match by_key {
+            true => {
+                point(bench, at);
+                bench.letter(Key::E, "e");
+            }
+            false => alt_click(bench, at),
+        };
+        toggle(&mut bench);
+        assert!(bench.session.view.pinned.is_some());
+        point(&mut bench, away);
+        assert_eq!(shown(&bench).pixel, pixel);
+        bench.frame(vec![Event::PointerMoved(panel)]);
+        assert!(has_vectors(&mut bench), "what is pinned keeps its vectors");
+        toggle(&mut bench);
+        assert_eq!(bench.session.view.pinned, None);
+        toggle(&mut bench);
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert_eq!(bench.session.view.pinned, None, "Escape lets go");
+        point(&mut bench, away);
+        assert_ne!(shown(&bench).pixel, pixel);
+    }
+    alt_click(&mut bench, at);
+    alt_click(&mut bench, at + vec2(40.0, 0.0));
+    assert_eq!(shown(&bench).pixel, [pixel[0] + 40, pixel[1]], "a click elsewhere pins there");
+    bench.click("Pin");
+    assert_eq!(bench.session.view.pinned, None);
+    // A click without Alt pins nothing.
+    bench.click_at(at, PointerButton::Primary);
+    assert_eq!(bench.session.view.pinned, None);
+}
+
+#[test]
+fn it_works_by_keyboard_alone() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(!bench.session.view.bottom_open);
+    bench.letter(Key::E, "e");
+    assert!(bench.session.view.bottom_open && bench.session.view.bottom_tab == EXPLAIN_TAB);
+    let Explanation { pixel, size, .. } = shown(&bench);
+    assert_eq!(pixel, size.map(|side| side / 2));
+    bench.type_into("column of the pixel", "17");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(shown(&bench).pixel, [17, size[1] / 2]);
+    // Folded away, it is shown again before it is let go of.
+    bench.apply(Action::View(ViewChange::Bottom(false)));
+    bench.letter(Key::E, "e");
+    assert!(bench.session.view.pinned.is_some() && bench.session.view.bottom_open);
+    bench.letter(Key::E, "e");
+    assert_eq!(bench.session.view.pinned, None);
+
+    let table = bindings(&bench.session, &bench.registry);
+    assert!(table.iter().any(|b| b.keys() == "E" && b.action == Action::Pin && b.label.contains("Explain")));
+    assert!(ELSEWHERE.iter().any(|(_, keys, what)| *keys == "Alt and click" && what.contains("Explain")));
+    bench.key(Key::F1, Modifiers::NONE);
+    assert!(bench.says("Explain the pixel at the pointer"));
+}
+
+#[test]
+fn nothing_is_calculated_while_closed_or_unchanged() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    for k in 0..10 {
+        let at = middle(&bench) + vec2(k as f32, 0.0);
+        point(&mut bench, at);
+    }
+    bench.apply(Action::Edit(Edit::ShadingModel("phong".to_owned())));
+    assert_eq!((calculations(&bench.ctx), explained(&bench.ctx).is_none()), (0, true));
+
+    bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+    point_at_sphere(&mut bench);
+    bench.settle();
+    let before = calculations(&bench.ctx);
+    bench.settle();
+    assert_eq!(calculations(&bench.ctx), before, "nothing changed");
+    let light = shown(&bench).steps.light;
+    let colour = Edit::Object(0, ObjectField::Material("base_colour", Value::Colour([20, 90, 200])));
+    bench.apply(Action::Edit(colour));
+    assert_eq!(calculations(&bench.ctx), before + 1);
+    assert_ne!(shown(&bench).steps.light, light);
+    bench.session.facts.eye += 0.2 * Vec3::Z;
+    bench.settle();
+    assert_eq!(calculations(&bench.ctx), before + 2, "the camera moved");
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    bench.session.facts.eye += 0.2 * Vec3::Z;
+    bench.settle();
+    bench.apply(Action::View(ViewChange::Presenting(false)));
+    bench.apply(Action::View(ViewChange::BottomTab("messages".to_owned())));
+    bench.session.facts.eye += 0.2 * Vec3::Z;
+    bench.settle();
+    assert!(calculations(&bench.ctx) <= before + 4 && explained(&bench.ctx).is_none());
+    assert!(!has_vectors(&mut bench));
+}
+
+#[test]
+fn of_several_views_the_one_under_the_pointer_is_explained() {
+    let mut bench = bench(scene("lambert", "phong"));
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    bench.settle();
+    assert_eq!(bench.session.document.comparison.layout, Layout::SideBySide);
+    let cells = bench.area.cells.clone();
+    assert_eq!(cells.len(), 2);
+    for (cell, model, letter) in [(cells[0], "lambert", "A"), (cells[1], "blinn_phong", "B")] {
+        point(&mut bench, cell.rect.center());
+        let explanation = shown(&bench);
+        assert_eq!(explanation.seen.as_ref().expect("the sphere").model.id, model);
+        let size = [cell.rect.width().round() as u32, cell.rect.height().round() as u32];
+        assert!((0..2).all(|i| explanation.size[i].abs_diff(size[i]) <= 1), "{:?}", explanation.size);
+        assert!(bench.says(&format!("view {letter}")));
+        let words = bench.words();
+        assert_eq!(words.iter().filter(|word| *word == "N").count(), 1, "only in its view");
+    }
+    bench.key(Key::E, Modifiers::NONE);
+    assert_eq!(bench.session.view.pinned.map(|pin| pin.view), Some(1));
+    bench.apply(Action::Compare(CompareCommand::Remove(1)));
+    bench.settle();
+    assert!(explained(&bench.ctx).is_none(), "there is no view B any more");
+}
+
+#[test]
+fn vertices_can_be_chosen_and_per_pixel_shading_compared() {
+    let mut bench = bench(scene("phong", "gouraud"));
+    point_at_sphere(&mut bench);
+    bench.key(Key::E, Modifiers::NONE);
+    let seen = shown(&bench).seen.expect("the sphere");
+    for corner in &seen.corners {
+        assert!(bench.says(&format!("Point: vertex {}", corner.vertex)));
+    }
+    let most = seen.corners.iter().map(|c| c.weight).fold(0.0, f32::max);
+    let Some(Place::Vertex { vertex, .. }) = seen
+        .spots
+        .iter()
+        .map(|s| s.place)
+        .find(|p| matches!(p, Place::Vertex { weight, .. } if *weight == most))
+    else {
+        panic!("no vertex")
+    };
+    let chosen = bench.tree.iter().find(|s| s.label.starts_with(&format!("Point: vertex {vertex}")));
+    assert!(chosen.is_some());
+    bench.click("Point: per pixel");
+    assert!(bench.says("per-pixel shading would give"));
+    let light = "Point 1: ";
+    let blocks = |bench: &Bench| bench.tree.iter().filter(|s| s.label.starts_with(light)).count();
+    assert_eq!(blocks(&bench), 1);
+    assert!(bench.says("light to the observer"), "the brightest is unfolded");
+    let at = bench.tree.iter().find(|s| s.label.starts_with(light)).expect("there").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    assert!(!bench.says("light to the observer"), "a click folds it");
+}
+
+#[test]
+fn only_vectors_of_the_equation_are_drawn() {
+    for (model, expected) in [
+        ("lambert", "NLV"),
+        ("phong", "NLVR"),
+        ("blinn_phong", "NLVH"),
+        ("microfacet", "NLVH"),
+        ("disney", "NLVH"),
+        ("oren_nayar", "NLV"),
+    ] {
+        let mut bench = bench(scene(model, "phong"));
+        bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));
+        bench.settle();
+        let words = bench.words();
+        let found: String = ["N", "L", "V", "H", "R"]
+            .into_iter()
+            .filter(|letter| words.iter().any(|w| w == letter))
+            .collect();
+        assert_eq!(found, expected, "{model}");
+    }
+}
+
+parameters! {
+    /// A model without parameters.
+    pub struct Broken {}
+}
+
+impl ReflectionModel for Broken {
+    const DECLARATION: Declaration = Declaration::new("broken", "Broken", Source::new("broken.wgsl", ""));
+
+    fn response(&self, _l: Vec3, _v: Vec3, _frame: &Frame) -> Terms {
+        Terms { diffuse: Vec3::splat(f32::NAN), ..Terms::default() }
+    }
+}
+
+#[test]
+fn what_is_no_number_and_what_the_picture_does_not_show_is_said() {
+    let mut registry = Registry::builtin();
+    registry.add_reflection_model::<Broken>();
+    let mut bench = bench_of(Session::new(scene("broken", "phong")), registry);
+    point_at_sphere(&mut bench);
+    assert!(bench.says("Some light here is not a number"));
+
+    let mut registry = Registry::builtin();
+    registry.sources_mut().edit("reflection/phong.wgsl", "// mine");
+    let mut bench = bench_of(Session::new(scene("phong", "phong")), registry);
+    point_at_sphere(&mut bench);
+    assert!(bench.says("ignores the edited reflection/phong.wgsl"));
+
+    let mut bench = self::bench(scene("phong", "phong"));
+    let at = corner(&bench);
+    point(&mut bench, at);
+    bench.settle();
+    assert!(bench.says("Background") && !bench.says("light surround"));
+    bench.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+    assert!(bench.says("light surround"), "the background of the window is not that of the picture");
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    point_at_sphere(&mut bench);
+    assert!(bench.says("Only the diffuse term is shown"));
+    assert_eq!(shown(&bench).terms, TermSelection::Diffuse);
+}
+
+#[test]
+fn each_move_of_the_pointer_explains_one_pixel_in_every_example() {
+    for (i, example) in EXAMPLES.iter().enumerate() {
+        let mut bench = bench(Scene::default());
+        bench.apply(Action::OpenExample(i));
+        let at = middle(&bench);
+        point(&mut bench, at);
+        let before = calculations(&bench.ctx);
+        const COUNT: u32 = 8;
+        for k in 0..COUNT {
+            let to = at + vec2(k as f32 - 4.0, 1.0);
+            bench.frame(vec![Event::PointerMoved(to)]);
+            let seen = calculations(&bench.ctx) - before;
+            assert_eq!(seen, u64::from(k) + 1, "{} at {to}", example.file);
+        }
+        // The time is measured by `cargo bench --bench explain`.
+    }
+}

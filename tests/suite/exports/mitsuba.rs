@@ -1,0 +1,362 @@
+//! Mitsuba 3 as a witness: it renders exported scenes, and its pictures are ours, in linear light.
+//!
+//! Mitsuba comes from PyPI (`pip install mitsuba`); without it these tests are skipped. `$LCM_PYTHON` names the Python
+//! that has it.
+
+use std::{env, fs, path::Path, process::Command, sync::LazyLock};
+
+use glam::{Vec3, Vec4};
+use lights_camera_models::{
+    export::write::write,
+    export::{Export, Progress, Request, form},
+    files::Before,
+    optics::TermSelection,
+    parameter::Value,
+    reference::{self, Picture, Settings},
+    registry::Registry,
+    scene::{Light, Object, Scene},
+};
+
+const WIDTH: u32 = 128;
+const HEIGHT: u32 = 96;
+
+/// Renders a scene to 32-bit numbers, row by row.
+const RENDER: &str = "
+import sys, mitsuba as mi, numpy as np
+mi.set_variant('scalar_rgb')
+for path in sys.argv[1:]:
+    scene = mi.load_file(path)
+    np.array(mi.render(scene, spp=256), dtype='<f4').tofile(path + '.raw')
+";
+
+/// The Python that has Mitsuba, if there is one.
+static PYTHON: LazyLock<Option<String>> = LazyLock::new(|| {
+    let python = env::var("LCM_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = Command::new(&python).args(["-c", "import mitsuba, numpy"]).output();
+    found.is_ok_and(|output| output.status.success()).then_some(python)
+});
+
+/// Skips a test, and says so.
+fn skipped() -> bool {
+    let is_missing = PYTHON.is_none();
+    if is_missing {
+        crate::helpers::skipped::skip(
+            "Mitsuba 3 is not installed (pip install mitsuba; $LCM_PYTHON names the Python)",
+        );
+    }
+    is_missing
+}
+
+fn exported(scene: &Scene) -> Export {
+    let registry = Registry::builtin();
+    let request =
+        Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
+    let form = form("mitsuba").expect("listed");
+    (form.make)(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Mitsuba's pictures of exported scenes.
+fn theirs(scenes: &[&Scene]) -> Vec<Vec<Vec3>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files: Vec<_> =
+        (0..scenes.len()).map(|i| folder.path().join(i.to_string()).join("scene.xml")).collect();
+    for (scene, file) in scenes.iter().zip(&files) {
+        let place = file.parent().expect("a folder");
+        write(&exported(scene), place, &Before::of(place)).expect("written");
+    }
+    let python = PYTHON.as_ref().expect("asked for");
+    let output = Command::new(python).arg("-c").arg(RENDER).args(&files).output().expect("it runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |file: &Path| {
+        let bytes = fs::read(format!("{}.raw", file.display())).expect("written");
+        let numbers = bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
+        let numbers: Vec<_> = numbers.collect();
+        numbers.as_chunks::<3>().0.iter().map(|c| Vec3::from_array(*c)).collect()
+    };
+    files.iter().map(|file| read(file)).collect()
+}
+
+fn ours(scene: &Scene) -> Picture {
+    let settings = Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
+    reference::render(scene, &Registry::builtin(), &settings)
+}
+
+/// The error of each pixel within the objects, relative to the mean light there, from the smallest. Edges are left
+/// out: four samples are not 256.
+fn errors(ours: &Picture, theirs: &[Vec3]) -> Vec<f32> {
+    let (width, height) = (ours.width as usize, ours.height as usize);
+    let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
+    let inner = |x: usize, y: usize| (x - 1..=x + 1).all(|x| (y - 1..=y + 1).all(|y| covered(x, y)));
+    let within: Vec<_> = (1..height - 1)
+        .flat_map(|y| (1..width - 1).map(move |x| (x, y)))
+        .filter(|(x, y)| inner(*x, *y))
+        .map(|(x, y)| y * width + x)
+        .collect();
+    assert!(within.len() > 500, "the scene shows little");
+    let mean = within.iter().map(|i| ours.pixels[*i].truncate().element_sum()).sum::<f32>()
+        / (3 * within.len()) as f32;
+    let mut errors: Vec<_> =
+        within.iter().map(|i| (ours.pixels[*i].truncate() - theirs[*i]).abs().max_element() / mean).collect();
+    errors.sort_by(f32::total_cmp);
+    errors
+}
+
+/// Mean error, and the error that all but one in fifty pixels keep to.
+fn compare(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
+    let errors = errors(ours, theirs);
+    (errors.iter().sum::<f32>() / errors.len() as f32, errors[errors.len() * 49 / 50])
+}
+
+/// One object, close, and finely tessellated.
+fn scene(object_type: &str, model: &str, values: &[(&'static str, Value)]) -> Scene {
+    let mut object = Object {
+        object_type: object_type.to_owned(),
+        size: 4.0,
+        rotation: Vec3::new(20.0, 30.0, 0.0),
+        ..Object::default()
+    };
+    let finest = *Registry::builtin().shape(object_type).expect("built in").declaration.tessellation.end();
+    object.tessellation = Some(finest.min(128));
+    values.iter().for_each(|(name, value)| object.material.set(*name, value.clone()));
+    Scene {
+        reflection_model: model.to_owned(),
+        shading_model: "phong".to_owned(),
+        objects: vec![object],
+        ..Scene::default()
+    }
+}
+
+fn choice(id: &'static str) -> Value {
+    Value::Choice(id.into())
+}
+
+fn metal(more: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
+    let gold = [
+        ("fresnel", choice("conductor")),
+        ("masking", choice("smith_separable")),
+        ("diffuse", choice("none")),
+        ("ior", Value::Triple([0.18, 0.42, 1.37])),
+        ("extinction", Value::Triple([3.42, 2.35, 1.77])),
+    ];
+    gold.into_iter().chain(more.iter().cloned()).collect()
+}
+
+fn light(id: &str, change: impl FnOnce(&mut Light)) -> Light {
+    let registry = Registry::builtin();
+    let mut light = Light::default();
+    light.set_type(registry.light(id).expect("built in"), &registry, Scene::default().scene_size);
+    change(&mut light);
+    light
+}
+
+/// Compares exported scenes, each with a name and a bound of the mean error.
+fn agree(scenes: &[(&str, Scene, f32)]) {
+    let pictures = theirs(&scenes.iter().map(|(_, scene, _)| scene).collect::<Vec<_>>());
+    let mut wrong = Vec::new();
+    for ((name, scene, most), theirs) in scenes.iter().zip(&pictures) {
+        let (mean, nearly_all) = compare(&ours(scene), theirs);
+        println!("{name}: mean {mean:.5}, 98 % within {nearly_all:.5}");
+        if mean.is_nan() || mean > *most || nearly_all > 8.0 * most {
+            wrong.push(format!("{name}: mean {mean}, 98 % within {nearly_all}, bound {most}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn models_look_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let orange = ("base_colour", Value::Colour([240, 130, 40]));
+    let wide = ("alpha_x", Value::Number(0.3));
+    agree(&[
+        ("lambert", scene("sphere", "lambert", std::slice::from_ref(&orange)), 0.005),
+        (
+            "burley",
+            scene("sphere", "burley_diffuse", &[orange.clone(), ("roughness", Value::Number(0.9))]),
+            0.005,
+        ),
+        (
+            "matte phong",
+            scene("sphere", "phong", &[orange, ("k_s", Value::Number(0.0)), ("k_a", Value::Number(0.0))]),
+            0.005,
+        ),
+        ("gold", scene("sphere", "microfacet", &metal(&[])), 0.005),
+        ("beckmann", scene("sphere", "microfacet", &metal(&[("distribution", choice("beckmann"))])), 0.005),
+        (
+            "brushed",
+            scene("sphere", "microfacet", &metal(&[wide.clone(), ("alpha_y", Value::Number(0.1))])),
+            0.01,
+        ),
+        (
+            "glass surface",
+            scene(
+                "sphere",
+                "microfacet",
+                &metal(&[("fresnel", choice("dielectric")), ("ior", Value::Triple([1.5; 3]))]),
+            ),
+            0.005,
+        ),
+        ("mirror", scene("sphere", "microfacet", &metal(&[("fresnel", choice("none"))])), 0.005),
+    ]);
+}
+
+#[test]
+fn lights_and_shapes_look_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let lit = |light: Light| Scene { lights: vec![light], ..scene("sphere", "lambert", &[]) };
+    let centre = Vec3::splat(5.0);
+    let spot = |penumbra: f32| {
+        light("spot", |light| {
+            let position = Vec3::new(7.0, 8.0, 9.0);
+            (light.position, light.direction) = (Some(position), Some(centre - position));
+            light.parameters.set("cone_angle", Value::Number(15.0));
+            light.parameters.set("penumbra", Value::Number(penumbra));
+        })
+    };
+    let warm = |light: &mut Light| light.colour = [255, 200, 120];
+    let mut all = lit(light("point", warm));
+    all.lights.extend([spot(1.0), light("ambient", |light| light.intensity = 0.3)]);
+    let mut flat = scene("cube", "lambert", &[]);
+    flat.shading_model = "derivative".to_owned();
+    agree(&[
+        ("point", lit(light("point", warm)), 0.005),
+        ("soft spot", lit(spot(1.0)), 0.005),
+        ("edged spot", lit(spot(0.3)), 0.005),
+        (
+            "directional",
+            lit(light("directional", |l| l.direction = Some(Vec3::new(-1.0, -1.0, -1.0)))),
+            0.005,
+        ),
+        ("ambient", lit(light("ambient", warm)), 0.005),
+        ("three lights", all, 0.005),
+        ("cube", flat, 0.005),
+    ]);
+}
+
+/// Light with extent: the difference of the means over pixels within the object, relative, and the part of those pixels that
+/// differ by more than three standard errors of both and the rounding of the picture. The noise is that of five pixels around.
+fn unlike(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
+    let (width, height) = (ours.width as usize, ours.height as usize);
+    let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
+    let inner = |x: usize, y: usize| (x - 2..=x + 2).all(|x| (y - 2..=y + 2).all(|y| covered(x, y)));
+    let within: Vec<_> = (2..height - 2)
+        .flat_map(|y| (2..width - 2).map(move |x| (x, y)))
+        .filter(|(x, y)| inner(*x, *y))
+        .map(|(x, y)| y * width + x)
+        .collect();
+    assert!(within.len() > 500, "the scene shows little");
+    let [own, other] = [&|i: usize| ours.pixels[i].y, &|i: usize| theirs[i].y] as [&dyn Fn(usize) -> f32; 2];
+    let mean = |of: &dyn Fn(usize) -> f32| within.iter().map(|i| of(*i)).sum::<f32>() / within.len() as f32;
+    let [a, b] = [mean(own), mean(other)];
+    // Second differences are nearly free of the picture itself; their variance is six times that of a pixel.
+    let bend = |of: &dyn Fn(usize) -> f32, i: usize| of(i - 1) - 2.0 * of(i) + of(i + 1);
+    let variance = |of: &dyn Fn(usize) -> f32, i: usize| {
+        let rows = [i - 2 * width, i - width, i, i + width, i + 2 * width];
+        rows.iter().map(|i| bend(of, *i).powi(2)).sum::<f32>() / 30.0
+    };
+    let far = |i: &&usize| {
+        let error = (variance(own, **i) + variance(other, **i)).sqrt() + 2e-4 * a;
+        (own(**i) - other(**i)).abs() > 3.0 * error
+    };
+    ((a - b).abs() / a, within.iter().filter(far).count() as f32 / within.len() as f32)
+}
+
+#[test]
+fn light_with_extent_is_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let lit = |id: &str, light_of: &dyn Fn(&mut Light)| Scene {
+        lights: vec![light(id, |light| {
+            let position = Vec3::new(8.0, 8.0, 9.0);
+            (light.position, light.direction) = (Some(position), Some(Vec3::splat(5.0) - position));
+            light_of(light);
+        })],
+        ..scene("sphere", "lambert", &[])
+    };
+    let two_sided = |light: &mut Light| {
+        light.parameters.set("two_sided", choice("true"));
+        light.direction = light.direction.map(|direction| -direction);
+        light.parameters.set("roll", Value::Number(30.0));
+    };
+    let mut gold = lit("rectangle", &|_| ());
+    let rough = [("alpha_x", Value::Number(0.3)), ("alpha_y", Value::Number(0.3))];
+    let shiny = scene("sphere", "microfacet", &metal(&rough));
+    (gold.reflection_model, gold.objects) = (shiny.reflection_model, shiny.objects);
+    let mut everywhere = gold.clone();
+    everywhere.lights = vec![light("environment", |light| light.parameters.set("source", choice("uniform")))];
+    let mut studio = everywhere.clone();
+    studio.lights = vec![light("environment", |light| light.colour = [255, 220, 180])];
+    let mut sky = lit("environment", &|light| light.parameters.set("source", choice("sky")));
+    sky.lights[0].parameters.set("rotation", Value::Number(40.0));
+    let all = [
+        ("sun", lit("sun", &|light| light.parameters.set("diameter", Value::Number(8.0)))),
+        ("studio on gold", studio),
+        ("sky", sky),
+        ("rectangle", lit("rectangle", &|_| ())),
+        ("rectangle, turned, seen from its back", lit("rectangle", &two_sided)),
+        ("disc", lit("disc", &|_| ())),
+        ("sphere", lit("sphere", &|_| ())),
+        ("cylinder", lit("cylinder", &|light| light.direction = Some(Vec3::new(1.0, 0.2, -1.0)))),
+        ("rectangle on gold", gold),
+        ("uniform environment on gold", everywhere),
+    ];
+    // Lamps that are seen would cover what is compared.
+    let hidden = |mut scene: Scene| {
+        scene.lights.iter_mut().for_each(|light| light.parameters.set("visible", choice("false")));
+        scene
+    };
+    let all = all.map(|(name, scene)| (name, hidden(scene)));
+    let pictures = theirs(&all.iter().map(|(_, scene)| scene).collect::<Vec<_>>());
+    /// The most that means may differ by, relatively.
+    const MOST: f32 = 1e-3;
+    let mut wrong = Vec::new();
+    for ((name, scene), theirs) in all.iter().zip(&pictures) {
+        let ours = ours(scene);
+        let (means, far) = unlike(&ours, theirs);
+        println!(
+            "{name}: means differ by {means:.6}, {far:.4} of the pixels by more than three standard errors"
+        );
+        if !(means < MOST && far < 0.01) {
+            wrong.push(format!("{name}: {means}, {far}"));
+        }
+        let mut dimmer = ours.clone();
+        dimmer.pixels.iter_mut().for_each(|pixel| *pixel *= Vec4::new(0.995, 0.995, 0.995, 1.0));
+        assert!(unlike(&dimmer, theirs).0 > MOST, "{name}: half a per cent less must show");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The wrong twins: light without the factor π, another masking, a brushed surface turned.
+#[test]
+fn what_is_different_shows() {
+    if skipped() {
+        return;
+    }
+    let right = scene("sphere", "lambert", &[]);
+    let mut dimmer = right.clone();
+    dimmer.lights[0].intensity *= 0.95;
+    let brushed = |x: f32, y: f32| {
+        let alphas = [("alpha_x", Value::Number(x)), ("alpha_y", Value::Number(y))];
+        scene("sphere", "microfacet", &metal(&alphas))
+    };
+    let mut masked = scene(
+        "sphere",
+        "microfacet",
+        &metal(&[("alpha_x", Value::Number(0.8)), ("alpha_y", Value::Number(0.8))]),
+    );
+    let (turned, separable) = (brushed(0.1, 0.3), masked.clone());
+    let pictures = theirs(&[&right, &brushed(0.3, 0.1), &separable]);
+    masked.objects[0].material.set("masking", choice("smith_height_correlated"));
+    for ((name, wrong), theirs) in
+        [("5 % dimmer", dimmer), ("turned", turned), ("height-correlated", masked)].iter().zip(&pictures)
+    {
+        let (mean, _) = compare(&ours(wrong), theirs);
+        println!("{name}: mean {mean:.5}");
+        assert!(mean > 0.02, "{name}: {mean}");
+    }
+}

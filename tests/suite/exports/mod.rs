@@ -1,0 +1,9 @@
+//! Exports: each form, and what they share.
+
+mod bevy;
+mod executable;
+mod forms;
+mod mitsuba;
+mod pages;
+mod shaders;
+pub(crate) mod window;

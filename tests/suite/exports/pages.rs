@@ -1,0 +1,533 @@
+//! Pages: small, closed, and with the pictures of `lcm render`, drawn by Chromium with WebGPU and with WebGL 2.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
+
+use lights_camera_models::{
+    custom,
+    export::{Export, ExportError, Progress, Request, html},
+    optics::TermSelection,
+    reference::{self, LightSamples, Settings},
+    registry::Registry,
+    scene::{
+        Scene, has_extent,
+        load::{self, Defaults},
+    },
+};
+use serde_json::{Value, json};
+
+use crate::{
+    helpers::browser::{Browser, rgb},
+    helpers::support::{lcm, root, shipped_scenes},
+};
+
+const WIDTH: u32 = 384;
+const HEIGHT: u32 = 216;
+
+fn export(scene: &Scene, registry: &Registry) -> Result<Export, ExportError> {
+    let request = Request { scene, registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0, point: None };
+    (html::HTML.make)(&request, &Progress::NONE)
+}
+
+/// The page of a scene.
+fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
+    let export = export(scene, &Registry::builtin())?;
+    assert!(export.files.len() == 1 && export.files[0].path.is_empty());
+    Ok(export.files[0].bytes.clone())
+}
+
+fn scene(path: &Path) -> Scene {
+    load::file(path, &Registry::builtin(), Defaults::Refuse).expect("valid").scene
+}
+
+fn shipped(name: &str) -> PathBuf {
+    root().join("scenes").join(name)
+}
+
+#[test]
+fn every_shipped_scene_is_a_page_within_the_limit() {
+    for path in shipped_scenes() {
+        let page = page(&scene(&path)).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert!(page.len() <= html::LIMIT, "{}: {}", path.display(), page.len());
+        let page = String::from_utf8(page).expect("UTF-8");
+        // Nothing is loaded from anywhere.
+        assert!(page.contains("Content-Security-Policy\" content=\"default-src 'none';"));
+        for reference in ["http:", "https:", "src=", "href=", "url(", "@import", "import ", "fetch("] {
+            assert!(!page.contains(reference), "{}: {reference}", path.display());
+        }
+        assert!(!page.contains("{{"), "a place is empty");
+    }
+}
+
+/// Translation to GLSL ES 3.00 is a part of making a page.
+#[test]
+fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
+    let registry = Registry::builtin();
+    let mut scene = scene(&shipped("default.json"));
+    let object = scene.objects[0].clone();
+    scene.objects.clear();
+    for model in registry.models() {
+        let mut object = object.clone();
+        object.reflection_model = Some(model.declaration.id.to_owned());
+        scene.objects.push(object);
+    }
+    let light = scene.lights[0].clone();
+    let mut all = Vec::new();
+    for entry in registry.lights() {
+        let mut light = light.clone();
+        light.set_type(entry, &registry, scene.scene_size);
+        scene.lights = vec![light.clone()];
+        all.push(light);
+        page(&scene).unwrap_or_else(|e| panic!("{}: {e}", entry.declaration.id));
+    }
+    scene.lights = all;
+    // All models under all lights at once are more than a page holds.
+    for some in scene.objects.clone().chunks(12) {
+        scene.objects = some.to_vec();
+        page(&scene).expect("all lights at once");
+    }
+}
+
+#[test]
+fn what_users_write_is_no_markup() {
+    let mut scene = scene(&shipped("default.json"));
+    scene.name = Some("<script>alert(1)</script>".to_owned());
+    scene.description = Some("{{script}} & \"quoted\"".to_owned());
+    scene.objects[0].name = Some("</script><b>".to_owned());
+    let page = String::from_utf8(page(&scene).expect("a page")).expect("UTF-8");
+    assert!(page.contains("<title>&lt;script&gt;alert(1)&lt;/script&gt;</title>"));
+    assert!(page.contains("{{script}} &amp; &quot;quoted&quot;"));
+    assert_eq!(page.matches("</script>").count(), 4);
+}
+
+#[test]
+fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().join("page.html");
+    let place = place.to_str().expect("Unicode");
+    let refused = |change: &dyn Fn(&mut Value)| {
+        let text = fs::read_to_string(shipped("white_furnace.json")).expect("readable");
+        let mut scene: Value = serde_json::from_str(&text).expect("JSON");
+        change(&mut scene);
+        let run = lcm(&["export", "-", "--as", "html", "-o", place, "-q"], &scene.to_string());
+        assert_eq!(run.status, Some(1), "{}", run.err);
+        assert!(!Path::new(place).exists());
+        run.err
+    };
+    let table = refused(&|scene| scene["display"] = json!({ "tone_mapping": "agx" }));
+    assert!(table.contains("cannot be exported as html: display.tone_mapping: agx is a table"), "{table}");
+    let large = refused(&|scene| {
+        for (i, object) in scene["objects"].as_array_mut().expect("objects").iter_mut().enumerate() {
+            object["type"] = "superellipsoid".into();
+            object["vertical_exponent"] = (0.3 + 0.1 * i as f64).into();
+        }
+    });
+    assert!(large.contains("and 300 kB is the limit") && large.contains("kB are meshes"), "{large}");
+    let hidden = refused(&|scene| {
+        for object in scene["objects"].as_array_mut().expect("objects") {
+            object["visible"] = false.into();
+        }
+    });
+    assert!(hidden.contains("all objects are hidden; make one visible"), "{hidden}");
+}
+
+/// The mean difference of two pictures in levels, and the fraction of values that differ by more than 2.
+#[derive(Clone, Copy, Debug)]
+struct Difference {
+    mean: f64,
+    beyond: f64,
+}
+
+fn difference(a: &[u8], b: &[u8]) -> Difference {
+    assert_eq!(a.len(), b.len());
+    let off = || a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+    let count = a.len() as f64;
+    Difference {
+        mean: off().map(f64::from).sum::<f64>() / count,
+        beyond: off().filter(|d| *d > 2).count() as f64 / count,
+    }
+}
+
+/// One sample per pixel, so that no edge is smoothed: the page smooths colours as they are shown, and the program light.
+/// Corners stand on a grid in the page, which moves a few pixels of silhouettes; no others may differ.
+const MEAN: f64 = 0.15;
+const BEYOND: f64 = 0.004;
+
+fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
+    let file = folder.join("rendered.png");
+    let size = format!("{WIDTH}x{HEIGHT}");
+    let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
+    let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
+    // A page takes 64 samples of light with extent, and the CPU renderer alone can be told so.
+    let lit = load::file(Path::new(scene), &Registry::builtin(), Defaults::Refuse).expect("valid").scene;
+    let extended = has_extent(lit.shining(), &Registry::builtin());
+    arguments.extend(match extended {
+        true => &["--renderer", "cpu", "--light-samples", "64"][..],
+        false => &["--renderer", "gpu"],
+    });
+    arguments.extend(options);
+    let run = lcm(&arguments, "");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let (pixels, width) = rgb(&fs::read(&file).expect("a picture"));
+    fs::remove_file(&file).expect("gone");
+    assert_eq!(width, WIDTH as usize);
+    pixels
+}
+
+/// Sets a control of the panel as a user does, and waits until the picture followed.
+fn set(browser: &Browser, selector: &str, value: &str) {
+    browser.run(&format!(
+        "const control = document.querySelector({selector:?});
+        if (control.type === 'radio') control.click();
+        else {{
+            control.value = {value:?};
+            control.dispatchEvent(new Event('input', {{ bubbles: true }}));
+            control.dispatchEvent(new Event('change', {{ bubbles: true }}));
+        }}"
+    ));
+    browser.settle();
+}
+
+/// A scene, and knobs that are turned in its page.
+struct Case {
+    scene: &'static str,
+    shading: Option<&'static str>,
+    /// Parameter, value in the scene, value in the control.
+    knob: Option<(&'static str, Value, &'static str)>,
+}
+
+const fn case(scene: &'static str) -> Case {
+    Case { scene, shading: None, knob: None }
+}
+
+#[test]
+fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let knob =
+        |scene, name, value: Value, control| Case { knob: Some((name, value, control)), ..case(scene) };
+    let shaded = |scene, shading| Case { shading: Some(shading), ..case(scene) };
+    let cases = [
+        case("default.json"),
+        case("shapes_and_lights.json"),
+        case("photometric_lamps.json"),
+        case("fresnel_effect.json"),
+        shaded("gouraud_misses_highlight.json", "flat"),
+        shaded("gouraud_misses_highlight.json", "gouraud"),
+        shaded("superellipsoids.json", "derivative"),
+        case("portrait.json"),
+        // Under uniform light, the albedo curve has to follow the knob.
+        knob("portrait.json", "alpha_x", json!(0.6), "0.6"),
+        // And here the lobe's as well.
+        knob("white_furnace.json", "alpha_y", json!(0.7), "0.7"),
+        knob("white_furnace.json", "k_d", json!(0.6), "0.6"),
+        // OpenPBR's curves, each layer: the page calculates them as the program does.
+        knob("openpbr_car_paint.json", "coat_roughness", json!(0.5), "0.5"),
+        knob("openpbr_car_paint.json", "coat_ior", json!(2.2), "2.2"),
+        knob("openpbr_velvet.json", "fuzz_roughness", json!(0.9), "0.9"),
+        knob("openpbr_brushed_steel.json", "roughness", json!(0.9), "0.9"),
+        knob("openpbr_anodised_titanium.json", "thin_film_thickness", json!(0.3), "0.3"),
+        knob("openpbr_satin.json", "specular_ior", json!(2.5), "2.5"),
+    ];
+    // Lamps name it.
+    fs::copy(shipped("wall_washer.ies"), folder.path().join("wall_washer.ies")).expect("copied");
+    let page_file = folder.path().join("page.html");
+    let lamps = scene(&shipped("gouraud_misses_highlight.json"));
+    let mut seen = 0;
+    for case in &cases {
+        let mut text: Value =
+            serde_json::from_str(&fs::read_to_string(shipped(case.scene)).expect("readable")).expect("JSON");
+        let mut original = scene(&shipped(case.scene));
+        let registry = Registry::builtin();
+        // What knobs do is seen without noise, too: under two lamps and uniform light.
+        if case.knob.is_some() && has_extent(original.shining(), &registry) {
+            original.lights.clone_from(&lamps.lights);
+            text["lights"] = json!(lamps.lights);
+        }
+        fs::write(&page_file, page(&original).expect("a page")).expect("written");
+        let object = case.knob.as_ref().and_then(|(name, ..)| {
+            original.objects.iter().position(|o| {
+                registry.model(original.model_of(o)).is_some_and(|m| m.parameter(name).is_some())
+            })
+        });
+        if let (Some((name, value, _)), Some(object)) = (&case.knob, object) {
+            text["objects"][object]["material"][name] = value.clone();
+        }
+        let changed = folder.path().join("changed.json");
+        fs::write(&changed, text.to_string()).expect("written");
+        let shading = case.shading.map(|s| ["--shading", s]);
+        let expected = rendered(&changed, folder.path(), shading.as_ref().map_or(&[], |s| s.as_slice()));
+        for renderer in ["webgpu", "webgl"] {
+            let what = format!("{} {:?} {:?} {renderer}", case.scene, case.shading, case.knob);
+            browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+            if let Some(shading) = case.shading {
+                set(&browser, &format!("input[value={shading}]"), "");
+            }
+            if let (Some((name, _, control)), Some(object)) = (&case.knob, object) {
+                browser.run(&format!(
+                    "const list = document.getElementById('object');
+                    list.value = {object};
+                    list.dispatchEvent(new Event('change'));"
+                ));
+                set(&browser, &format!("[data-name={name}] input[type=number]"), control);
+            }
+            let (shown, width) = browser.look();
+            assert_eq!(width, WIDTH as usize, "{what}");
+            let off = difference(&shown, &expected);
+            println!("{what}: {off:?}");
+            assert!(off.mean < MEAN && off.beyond < BEYOND, "{what}: {off:?}");
+            seen += 1;
+        }
+        if case.shading.is_some() || case.knob.is_some() {
+            continue;
+        }
+        // A wrong twin would be found.
+        let wrong = rendered(&shipped(case.scene), folder.path(), &["--exposure", "0.1"]);
+        let off = difference(&wrong, &expected);
+        assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
+    }
+    assert_eq!(seen, 2 * cases.len());
+}
+
+/// The page takes the first samples of those that the program takes, so that even the noise is the same. The light itself is
+/// left out of the picture: pages do not show it.
+#[test]
+fn pages_have_light_with_extent() {
+    let Some(browser) = Browser::start() else { return };
+    // Software draws a frame of 64 samples in seconds; a larger one would outlast the patience of the browser on a busy machine.
+    const SIZE: [u32; 2] = [WIDTH / 2, HEIGHT / 2];
+    let [width, height] = SIZE;
+    browser.resize(width, height);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.json");
+    let text = json!({
+        "scene_size": { "height": 10, "width": 10, "depth": 10 },
+        "observer": { "position": [5, 5, 9.9], "direction": [0, 0, -1], "field_of_view": 60 },
+        "reflection_model": "microfacet", "shading_model": "phong",
+        "lights": [
+            { "type": "rectangle", "position": [7, 8, 9], "direction": [-1, -1, -2], "intensity": 20, "visible": false },
+            { "type": "point", "position": [1, 9, 9], "intensity": 20 },
+            { "type": "environment", "source": "studio", "visible": false }
+        ],
+        "objects": [{ "type": "sphere", "position": [5, 5, 5], "size": 4, "material": { "alpha_x": 0.3, "alpha_y": 0.3 } }]
+    });
+    fs::write(&file, text.to_string()).expect("written");
+    let registry = Registry::builtin();
+    let read = scene(&file);
+    let rendered = |count: u32, scene: &Scene| {
+        let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
+        let samples = LightSamples { first: 0, count };
+        let picture = reference::render_samples(scene, &registry, &settings, samples, &AtomicBool::default());
+        picture.to_rgb8(&scene.display)
+    };
+    let expected = rendered(64, &read);
+    let page_file = folder.path().join("page.html");
+    fs::write(&page_file, page(&read).expect("a page")).expect("written");
+    for renderer in ["webgpu", "webgl"] {
+        browser.open(&page_file, &format!("renderer={renderer}&picture={width}x{height}&samples=1"));
+        let (shown, _) = browser.look();
+        let off = difference(&shown, &expected);
+        println!("{renderer}: {off:?}");
+        assert!(off.mean < MEAN && off.beyond < BEYOND, "{renderer}: {off:?}");
+    }
+    // The wrong twins: without the light, and with other samples.
+    let mut dark = read.clone();
+    dark.lights.remove(0);
+    for wrong in [rendered(64, &dark), rendered(8, &read)] {
+        let off = difference(&wrong, &expected);
+        assert!(off.beyond > BEYOND, "{off:?}");
+    }
+}
+
+#[test]
+fn a_page_holds_every_view_with_a_switch() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = shipped("compare_diffuse_models.json");
+    let page_file = folder.path().join("page.html");
+    fs::write(&page_file, page(&scene(&file)).expect("a page")).expect("written");
+    let text = |what: &str| browser.run(what).as_str().unwrap_or_default().to_owned();
+    for renderer in ["webgpu", "webgl"] {
+        browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+        let expected = |view: &str| rendered(&file, folder.path(), &["--view", view]);
+        for view in ["A", "C", "B", "A"] {
+            set(&browser, &format!("#views input[value={view}]"), "");
+            let (shown, _) = browser.look();
+            let off = difference(&shown, &expected(view));
+            assert!(off.mean < MEAN && off.beyond < BEYOND, "{renderer} {view}: {off:?}");
+        }
+        // Another view is another picture.
+        let off = difference(&expected("A"), &expected("B"));
+        assert!(off.mean > MEAN || off.beyond > BEYOND, "{off:?}");
+        // The panel follows: the model, its knobs, the exposure.
+        let model = "return document.querySelector('#model h2').textContent";
+        let of_a = text(model);
+        set(&browser, "#views input[value=B]", "");
+        assert_ne!(text(model), of_a);
+        assert_eq!(browser.run("return document.querySelectorAll('#shadings label').length"), json!(4));
+    }
+}
+
+#[test]
+fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
+    let scene = scene(&shipped("compare_tone_mappings.json"));
+    let export = export(&scene, &Registry::builtin()).expect("a page of the others");
+    let left_out: Vec<_> = export.notes.iter().filter(|note| note.contains("is left out")).collect();
+    assert!(left_out.len() == 1 && left_out[0].starts_with("view C (AgX) is left out: "), "{left_out:?}");
+}
+
+/// A model whose lobe only the program can calculate.
+const BORROWED: &str = "/* lcm { \"lobe\": \"microfacet\", \"parameters\": [\"alpha_x\", \"k_s\"] } */
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s * lobe_albedo(dot(frame.n, v)) * max(dot(frame.n, l), 0.0)));
+}
+";
+
+#[test]
+fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
+    let mut registry = Registry::builtin();
+    let model = custom::read(Path::new("models/borrowed.wgsl"), BORROWED, &registry).expect("valid");
+    registry.put_custom_model(model);
+    let notes_of = |id: &str| {
+        let mut scene = scene(&shipped("openpbr_car_paint.json"));
+        scene.reflection_model = id.to_owned();
+        scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
+        export(&scene, &registry).expect("a page").notes
+    };
+    let about = |notes: &[String]| notes.iter().filter(|n| n.contains("knobs are fixed")).count();
+    assert_eq!(about(&notes_of("borrowed")), 1);
+    for id in ["openpbr", "microfacet", "phong"] {
+        assert_eq!(about(&notes_of(id)), 0, "{id}");
+    }
+}
+
+#[test]
+fn a_page_reacts_to_fingers_keys_and_taps() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(900, 600);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    fs::write(&file, page(&scene(&shipped("gold_three_lights.json"))).expect("a page")).expect("written");
+    browser.open(&file, "renderer=webgl");
+    let (first, _) = browser.look();
+    let key = |key: &str| {
+        browser.run(&format!(
+            "document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', {{ key: {key:?} }}))"
+        ));
+        browser.settle();
+        browser.look().0
+    };
+    let turned = key("ArrowLeft");
+    assert!(difference(&first, &turned).mean > 0.5);
+    let back = key("0");
+    assert!(difference(&first, &back).mean < 0.01, "{:?}", difference(&first, &back));
+    // Nothing is drawn while nothing changes.
+    let drawn = browser.run("return document.body.dataset.drawn");
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(browser.run("return document.body.dataset.drawn"), drawn);
+    // A picture that the system takes away comes back.
+    browser.run(
+        "const canvas = document.querySelector('canvas');
+        document.body.dataset.state = 'busy';
+        canvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()",
+    );
+    browser.settle();
+    let again = browser.look().0;
+    assert!(difference(&first, &again).mean < 0.01, "{:?}", difference(&first, &again));
+    // A tap on the teapot at the right selects it.
+    let tap = "const picture = document.getElementById('picture');
+        const at = { pointerId: 1, isPrimary: true, clientX: 0.8 * picture.clientWidth, clientY: 0.5 * picture.clientHeight };
+        picture.setPointerCapture = () => {};
+        picture.dispatchEvent(new PointerEvent('pointerdown', at));
+        picture.dispatchEvent(new PointerEvent('pointerup', at));
+        return document.getElementById('object').value";
+    assert_ne!(browser.run(tap), "0");
+    // Everything to touch is large enough, and has a name.
+    let small = browser.run(
+        "return [...document.querySelectorAll('button, select, input, summary')]
+            .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 40 && e.type !== 'radio')
+            .map((e) => e.outerHTML)",
+    );
+    assert_eq!(small, json!([]));
+    let nameless = browser.run(
+        "return [...document.querySelectorAll('select, input')]
+            .filter((e) => !e.ariaLabel && e.labels.length === 0).map((e) => e.outerHTML)",
+    );
+    assert_eq!(nameless, json!([]));
+}
+
+/// Larger than a browser takes as arguments of a function.
+#[test]
+fn pages_with_large_meshes_draw_with_webgpu_and_webgl() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    let registry = Registry::builtin();
+    let most = *registry.shape("sphere").expect("built in").declaration.tessellation.end();
+    let mut pages = Vec::new();
+    for tessellation in [252, 256, most] {
+        let mut scene = scene(&shipped("default.json"));
+        scene.objects[0].tessellation = Some(tessellation);
+        pages.push((format!("sphere {tessellation}"), page(&scene).expect("a page")));
+    }
+    // A regular surface takes few bytes: 302 500 squares that face the observer.
+    let grid = folder.path().join("grid.obj");
+    let side = 550;
+    let mut text = String::new();
+    for y in 0..=side {
+        (0..=side).for_each(|x| text.push_str(&format!("v {x} {y} 0\n")));
+    }
+    for (x, y) in (0..side).flat_map(|y| (0..side).map(move |x| (x, y))) {
+        let at = y * (side + 1) + x + 1;
+        text.push_str(&format!("f {at} {} {} {}\n", at + 1, at + side + 2, at + side + 1));
+    }
+    fs::write(&grid, text).expect("written");
+    let mut json: Value =
+        serde_json::from_str(&fs::read_to_string(shipped("default.json")).expect("readable")).expect("JSON");
+    json["objects"][0]["type"] = "mesh".into();
+    json["objects"][0]["path"] = "grid.obj".into();
+    json["objects"][0].as_object_mut().expect("an object").remove("tessellation");
+    let place = folder.path().join("grid.json");
+    fs::write(&place, json.to_string()).expect("written");
+    pages.push(("grid".to_owned(), page(&scene(&place)).expect("a page")));
+    for (what, page) in pages {
+        fs::write(&file, page).expect("written");
+        for renderer in ["webgpu", "webgl"] {
+            browser.open(&file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+            for shading in ["flat", "phong"] {
+                set(&browser, &format!("input[value={shading}]"), "");
+                assert_eq!(browser.run("return document.body.dataset.state"), "ready", "{what} {renderer}");
+                let (shown, _) = browser.look();
+                let middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2) as usize;
+                let corner = &shown[..3];
+                assert_ne!(
+                    &shown[middle..middle + 3],
+                    corner,
+                    "{what} {renderer} {shading}: nothing is drawn"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_browser_that_cannot_read_the_program_says_so() {
+    let Some(browser) = Browser::start() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    let page = String::from_utf8(page(&scene(&shipped("default.json"))).expect("a page")).expect("UTF-8");
+    // As in a browser that does not know a part of the language.
+    fs::write(&file, page.replacen("class Uniform {", "class Uniform { #?", 1)).expect("written");
+    browser.visit(file.to_str().expect("Unicode"));
+    browser.settle();
+    let said = browser.run("return document.getElementById('failure').textContent");
+    assert!(said.as_str().is_some_and(|said| said.contains("This browser cannot run the page")), "{said}");
+}

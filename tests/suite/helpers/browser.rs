@@ -1,0 +1,174 @@
+//! A browser without a window: Chromium, driven over WebDriver (W3C), which is HTTP with JSON.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    io::{BufRead as _, BufReader, Read as _, Write as _},
+    net::TcpStream,
+    path::Path,
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+use serde_json::{Value, json};
+
+use super::skipped::skip;
+
+/// Chromium draws on the CPU: WebGPU by its own SwiftShader, WebGL by Mesa. Colours are not adapted to a display.
+const ARGUMENTS: [&str; 9] = [
+    "--headless=new",
+    "--no-sandbox",
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--use-gl=angle",
+    "--use-angle=gl-egl",
+    "--ignore-gpu-blocklist",
+    "--force-color-profile=srgb",
+    "--hide-scrollbars",
+];
+
+/// A browser, gone when dropped.
+pub struct Browser {
+    driver: Child,
+    port: u16,
+    session: String,
+}
+
+impl Browser {
+    /// Starts one. On other systems than Linux, tests without Chromium's driver are skipped.
+    pub fn start() -> Option<Self> {
+        let spawned =
+            Command::new("chromedriver").arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut driver = match spawned {
+            Ok(driver) => driver,
+            Err(error) if cfg!(target_os = "linux") => {
+                panic!(
+                    "chromedriver: {error}; on Debian and Ubuntu: apt-get install chromium chromium-driver"
+                )
+            }
+            Err(error) => {
+                skip(&format!("chromedriver: {error}; it comes with Chromium or Chrome"));
+                return None;
+            }
+        };
+        let output = BufReader::new(driver.stdout.take().expect("piped"));
+        let port = output.lines().map_while(Result::ok).find_map(|line| {
+            let (_, port) = line.split_once("successfully on port ")?;
+            port.trim_end_matches('.').parse().ok()
+        });
+        let mut browser = Self { driver, port: port.expect("it says its port"), session: String::new() };
+        let options = json!({ "goog:chromeOptions": { "args": ARGUMENTS } });
+        let answer = browser.ask("POST", "", &json!({ "capabilities": { "alwaysMatch": options } }));
+        browser.session = format!("/{}", answer["sessionId"].as_str().expect("an id"));
+        Some(browser)
+    }
+
+    /// One command; panics with the answer if it is an error.
+    fn ask(&self, method: &str, path: &str, body: &Value) -> Value {
+        let body = if method == "POST" { body.to_string() } else { String::new() };
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
+        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a timeout");
+        let length = body.len();
+        let session = &self.session;
+        write!(
+            stream,
+            "{method} /session{session}{path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n\
+             Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
+        )
+        .expect("it reads");
+        let mut reader = BufReader::new(stream);
+        let mut length = 0;
+        loop {
+            let mut line = String::new();
+            reader.read_line(&mut line).expect("an answer");
+            if let Some((_, value)) = line.to_lowercase().split_once("content-length:") {
+                length = value.trim().parse().expect("a number");
+            }
+            if line.trim().is_empty() {
+                break;
+            }
+        }
+        let mut answer = vec![0; length];
+        reader.read_exact(&mut answer).expect("an answer");
+        let mut answer: Value = serde_json::from_slice(&answer).expect("JSON");
+        let value = answer["value"].take();
+        assert!(value.get("error").is_none(), "{method} {path}: {value}");
+        value
+    }
+
+    /// The value of a function's body in the page.
+    pub fn run(&self, script: &str) -> Value {
+        self.ask("POST", "/execute/sync", &json!({ "script": script, "args": [] }))
+    }
+
+    /// Opens a page of an export, and waits until it drew, or said why not.
+    pub fn open(&self, file: &Path, fragment: &str) {
+        // A change of the fragment alone would not load it again.
+        self.ask("POST", "/url", &json!({ "url": "about:blank" }));
+        self.visit(&format!("{}#{fragment}", file.display()));
+        self.settle();
+        let failure = self.run("return document.getElementById('failure').textContent");
+        assert_eq!(failure, "", "{}", file.display());
+    }
+
+    /// Opens a file, with a fragment of its address.
+    pub fn visit(&self, address: &str) {
+        self.ask("POST", "/url", &json!({ "url": format!("file://{address}") }));
+    }
+
+    /// Waits until the picture shows everything that was set, or the page said that it cannot.
+    pub fn settle(&self) {
+        let state = "return document.body?.dataset.state ?? null";
+        self.wait(state, |state| state == "ready" || state == "failed");
+    }
+
+    /// Waits until a value is as wanted.
+    pub fn wait(&self, script: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+        let begin = Instant::now();
+        loop {
+            let value = self.run(script);
+            if wanted(&value) {
+                return value;
+            }
+            assert!(begin.elapsed() < Duration::from_secs(90), "{script}: {value}");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Gives the page a size, as if on a screen of it.
+    pub fn resize(&self, width: u32, height: u32) {
+        let parameters = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        let command = json!({ "cmd": "Emulation.setDeviceMetricsOverride", "params": parameters });
+        self.ask("POST", "/goog/cdp/execute", &command);
+    }
+
+    /// The page as it is seen: red, green and blue of each pixel, and the width.
+    pub fn look(&self) -> (Vec<u8>, usize) {
+        let answer = self.ask("GET", "/screenshot", &Value::Null);
+        let png = STANDARD.decode(answer.as_str().expect("base64")).expect("base64");
+        rgb(&png)
+    }
+}
+
+/// Red, green and blue of each pixel of a PNG file, and the width.
+pub fn rgb(png: &[u8]) -> (Vec<u8>, usize) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("a PNG");
+    pixels.truncate(info.buffer_size());
+    let channels = info.color_type.samples();
+    let rgb = pixels.chunks(channels).flat_map(|p| p[..3].to_vec()).collect();
+    (rgb, info.width as usize)
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        if !self.session.is_empty() && !thread::panicking() {
+            self.ask("DELETE", "", &Value::Null);
+        }
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}

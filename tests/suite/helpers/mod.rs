@@ -1,0 +1,8 @@
+//! Helpers of several tests.
+
+pub(crate) mod browser;
+pub(crate) mod keyboard;
+pub(crate) mod pictures;
+pub(crate) mod screen;
+pub(crate) mod skipped;
+pub(crate) mod support;

@@ -1,0 +1,4 @@
+//! Input that is made to do harm.
+
+mod models;
+mod text;

@@ -1,0 +1,450 @@
+//! Every reader of text and files from outside against one table of hostile inputs: deep nesting, a mebibyte of one
+//! sign or one phrase, files cut off, with a zero byte and with bytes that are not UTF-8. Each is answered, read or
+//! refused, on a small stack, without a panic and long before a quadratic reader would be done.
+
+use std::{
+    fs,
+    path::Path,
+    sync::{LazyLock, mpsc},
+    thread,
+    time::{Duration, Instant},
+};
+
+use lights_camera_models::{
+    custom,
+    lesson::{Condition, Lesson},
+    light::{ies, panorama},
+    panel::{progress, settings},
+    recovery::Store,
+    registry::Registry,
+    scene::load::{self, Defaults},
+    shape::mesh_file,
+};
+
+use rayon::prelude::*;
+
+use crate::helpers::support::root;
+
+/// The stack of a thread of Bevy.
+const STACK: usize = 2 << 20;
+/// The time for one input. What is meant to take two seconds takes ten times as long without optimisation on a busy
+/// machine; a quadratic reader takes minutes, and an endless one for ever.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// The size of the inputs.
+const SIZE: usize = 1 << 20;
+
+static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
+
+/// A reader, and what belongs around hostile text so that it is read at all.
+struct Reader {
+    name: &'static str,
+    around: [String; 2],
+    /// Brackets of the language.
+    pairs: &'static [(&'static str, &'static str)],
+    /// Phrases of the language, to be repeated.
+    phrases: &'static [&'static str],
+    read: fn(&[u8]) -> Result<(), String>,
+}
+
+/// Signs that mean something in one language or another.
+const SIGNS: &[&str] = &[
+    "[", "]", "(", ")", "{", "}", "<", ">", "\"", "'", "*", "_", "`", "~", "#", "\\", "/", "|", "=", ":",
+    ",", ";", "-", "+", ".", "!", "&", "^", "@", "0", "a", "é", " ", "\n", "\r", "\t", "\0",
+];
+
+fn lesson(bytes: &[u8]) -> Result<(), String> {
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let file = folder.path().join("a.md");
+    fs::write(&file, bytes).map_err(|e| e.to_string())?;
+    let read = Lesson::read(&file, &REGISTRY);
+    read.map(|lesson| drop(lesson.to_text())).map_err(|problems| {
+        assert!(problems.len() <= 200, "{} problems", problems.len());
+        problems.iter().map(|p| p.annotated("a.md")).collect()
+    })
+}
+
+fn condition(bytes: &[u8]) -> Result<(), String> {
+    Condition::parse(&String::from_utf8_lossy(bytes)).map(drop).map_err(|(_, what)| what)
+}
+
+fn scene(bytes: &[u8], name: &str) -> Result<(), String> {
+    load::from_bytes(bytes, name, &REGISTRY, Defaults::Use).map(drop).map_err(|e| e.to_string())
+}
+
+fn model(bytes: &[u8]) -> Result<(), String> {
+    let text = String::from_utf8_lossy(bytes);
+    let read = custom::declare(Path::new("somewhere/a.wgsl"), &text, &REGISTRY);
+    read.map(drop).map_err(|problems| format!("{problems:?}"))
+}
+
+/// A file in a folder of the user's data.
+fn in_folder(name: &str, bytes: &[u8], read: impl Fn(&Path) -> Option<String>) -> Result<(), String> {
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    fs::write(folder.path().join(name), bytes).map_err(|e| e.to_string())?;
+    read(folder.path()).map_or(Ok(()), Err)
+}
+
+/// A copy of unsaved work that another window left: the file about it.
+fn recovery(bytes: &[u8]) -> Result<(), String> {
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let store = Store::new(folder.path().to_owned());
+    let journal = folder.path().join("a");
+    fs::create_dir(&journal).map_err(|e| e.to_string())?;
+    for (name, content) in [("about.json", bytes), ("scene.json", b"{}".as_slice()), ("lock", b"")] {
+        fs::write(journal.join(name), content).map_err(|e| e.to_string())?;
+    }
+    assert_eq!(store.left().len(), 1, "the copy counts whatever the file about it holds");
+    Ok(())
+}
+
+const BRACKETS: &[(&str, &str)] = &[("(", ")"), ("[", "]"), ("{", "}")];
+
+fn readers() -> Vec<Reader> {
+    let text = |path: &str| fs::read_to_string(root().join(path)).expect("readable");
+    let split = |whole: &str, at: &str| -> [String; 2] {
+        let (before, after) = whole.split_once(at).expect("there");
+        [before.to_owned(), after.to_owned()]
+    };
+    let front = "---\ntitle: T\nsummary: S.\n---\n\n## S\n\n";
+    let of_lesson = |name, before: &str, after: &str, pairs, phrases| Reader {
+        name,
+        around: [format!("{front}{before}"), after.to_owned()],
+        pairs,
+        phrases,
+        read: lesson,
+    };
+    let scene_json = text("scenes/default.json");
+    let table = "part,name,type,size,position,direction\nscene,a\nlight,b,point,,1 1 1\n\
+        observer,,,,5 5 9,0 0 -1\nobject,c,sphere,1,5 5 5\n";
+    vec![
+        Reader {
+            name: "lesson",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["---\n", "a: b\n", "title: a\n", "## a\n"],
+            read: lesson,
+        },
+        of_lesson("steps", "", "\n", BRACKETS, &[
+            "## a\n\nb\n\n",
+            "a\n\n",
+            "- a\n",
+            "- ",
+            "1. ",
+            "> ",
+            "![",
+            "[a](",
+            "[a]: b\n",
+            "[^a]: b\n\n",
+            "a|b\n-|-\n",
+            "*a **b ",
+            "**a*b",
+            "a_",
+            "~~a",
+            "<a",
+            "<!--",
+            "<?",
+            "&amp;",
+            "`a``b",
+            "```\n",
+            "```scene\nexposure = 1\n```\n\n## a\n\n",
+            "\\*",
+            "* *",
+            "a **",
+        ]),
+        of_lesson("equation", "```equation\n", "\n```\n", &[("(", ")"), ("√(", ")"), ("|(", ")|"), ("⟨", "⟩"), ("{", "}")], &[
+            "x_{", "x\n", "a/", "x^", "a b ",
+        ]),
+        of_lesson("scene block", "```scene\n", "\n```\n", &[("exposure = [", "]")], &[
+            "exposure = 1\n",
+            "objects[0].size = 1\n",
+            "open: default.json\n",
+            "a: b\n",
+            "a\n",
+        ]),
+        of_lesson("path", "```scene\nobjects", " = 1\n```\n", &[], &["[0]", ".a", "[0].a", "[1"]),
+        of_lesson("value", "```scene\nobjects[0].size = ", "\n```\n", &[("[", "]"), ("{\"a\":", "}")], &[
+            "[1],", "\"a\",", "1,", "{}", "1e",
+        ]),
+        of_lesson("view block", "```view\n", "\n```\n", &[], &["active: A\n", "select: object 1\n", "pin: 0, 0\n", "a: b\n"]),
+        of_lesson("point block", "```point\n", "\n```\n", &[], &["knob: exposure\n", "part: object 1\n", "knob: alpha7\n", "part: sphere\n"]),
+        of_lesson("question", "```predict\na?\n", "\n```\n", &[], &["[ ] a | b\n", "[x] a\n", "a | ", "[ ]"]),
+        of_lesson("task", "```do\na\nuntil: ", "\n```\n", &[("(", ")"), ("not (", ")"), ("not ", "")], &[
+            "probe.red > 1 and ",
+            "until: a\n",
+            "hint: a\n",
+            "a ",
+            "scene.objects[0]",
+            "\"",
+        ]),
+        Reader {
+            name: "condition",
+            around: ["".into(), "probe.pinned".into()],
+            pairs: &[("(", ")"), ("not (", ")"), ("not ", "")],
+            phrases: &["probe.red > 1 and ", "probe.red > 1 or ", "a.b(", "scene.a[0]", "1 degrees ", "1", "- "],
+            read: condition,
+        },
+        Reader {
+            name: "scene",
+            around: split(&scene_json, "\"lights\""),
+            pairs: &[("[", "]"), ("{\"a\":", "}"), ("{\"objects\":[", "]}")],
+            phrases: &["\"a\":1,", "\"objects\":[],", "[],", "{},", "\\u0000", "//\n", "1e", "\"\","],
+            read: |bytes| scene(bytes, "a.json"),
+        },
+        Reader {
+            name: "list in a scene",
+            around: split(&scene_json.replacen("\"lights\": [", "\"lights\": [HERE", 1), "HERE"),
+            pairs: &[("[", "]")],
+            phrases: &["{},", "1,", "{\"type\":\"pint\"},", "{\"a\":1,\"b\":2},", "{\"type\":\"point\",\"name\":\"a\"},"],
+            read: |bytes| scene(bytes, "a.json"),
+        },
+        Reader {
+            name: "table",
+            around: [table.into(), String::new()],
+            pairs: &[],
+            phrases: &["object,a,sphere,1,1 1 1\n", "a\n", "#\n", ",", ",\n", "\"\"\n", "object\n", "scene\n", "light\n", "x,"],
+            read: |bytes| scene(bytes, "a.csv"),
+        },
+        Reader {
+            name: "heading of a table",
+            around: ["part,".into(), "\nobject\n".into()],
+            pairs: &[],
+            phrases: &["name,", "a,", "position.x,", "\"a\","],
+            read: |bytes| scene(bytes, "a.csv"),
+        },
+        Reader {
+            name: "cell of a table",
+            around: ["part;type;size\nobject;sphere;".into(), "\n".into()],
+            pairs: &[("[", "]")],
+            phrases: &["1,5 ", "1 ", "\"\"", "1,", "a ", "#"],
+            read: |bytes| scene(bytes, "a.csv"),
+        },
+        Reader {
+            name: "picture",
+            around: ["\u{0}".into(), String::new()],
+            pairs: &[],
+            phrases: &["\0\0\0\0iTXt\0\0\0\0", "\0\0\0\0tEXt\0\0\0\0", "iTXtlights-camera-models scene\0"],
+            read: |bytes| scene(&[b"\x89PNG\r\n\x1a\n", bytes].concat(), "a.png"),
+        },
+        Reader {
+            name: "declaration",
+            around: ["/* lcm { \"name\": \"a\", ".into(), " } */\nfn response() {}\n".into()],
+            pairs: &[("\"equation\": [", "]"), ("[", "]"), ("{\"a\":", "}")],
+            phrases: &["\"name\": \"a\",", "\"parameters\": [],", "/*", "//\n", "\"a\":1,"],
+            read: model,
+        },
+        Reader {
+            name: "equation of a model",
+            around: ["/* lcm { \"equation\": \"".into(), "\" } */\nfn response() {}\n".into()],
+            pairs: &[("(", ")"), ("√(", ")"), ("|(", ")|")],
+            phrases: &["x_{", "a/"],
+            read: model,
+        },
+        Reader {
+            name: "photometric file",
+            around: split(&format!("{}HERE", text("scenes/wall_washer.ies")), "HERE"),
+            pairs: &[],
+            phrases: &["1 ", "1\n", "[A] a\n", "1e", "1,"],
+            read: |bytes| (ies::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "head of a photometric file",
+            around: ["IESNA:LM-63-2002\n".into(), "\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n".into()],
+            pairs: &[],
+            phrases: &["[A] a\n", "TILT=INCLUDE\n", "1 "],
+            read: |bytes| (ies::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "head of a picture of surroundings",
+            around: ["#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n".into(), "\n-Y 1 +X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &["#a\n", "EXPOSURE=1\n", "COLORCORR=1 1 1\n", "a=b\n", "1 "],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "size of a picture of surroundings",
+            around: ["#?RADIANCE\n\n-Y 1 ".into(), "+X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &["-Y 1 ", "1 ", "+X 2\n"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "pixels of a picture of surroundings",
+            around: ["#?RADIANCE\n\n-Y 128 +X 256\n".into(), String::new()],
+            pairs: &[],
+            phrases: &["\u{1}\u{1}\u{1}\u{1}", "\u{2}\u{2}\u{4}\0", "aaaa"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "OpenEXR picture",
+            around: ["v/1\u{1}\u{2}\0\0\0".into(), String::new()],
+            pairs: &[],
+            phrases: &["a\0string\0\u{1}\0\0\0a", "channels\0chlist\0\u{1}\0\0\0\0", "a\0"],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "OBJ file",
+            around: ["v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n".into(), "\n".into()],
+            pairs: &[],
+            phrases: &["v 0 0 0\n", "f 1 2 3\n", "\\\n", "g a\n", "usemtl a\n", "f ", "1 ", "f 9 9 9\n", "f 1/1/1 2/1/1 3/1/1\n"],
+            read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "polygon of an OBJ file",
+            around: ["v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 ".into(), "\n".into()],
+            pairs: &[],
+            phrases: &["1 ", "1/1 ", "-1 "],
+            read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "head of a PLY file",
+            around: ["ply\nformat ascii 1.0\n".into(), "\nelement vertex 1\nproperty float x\nproperty float y\n\
+                property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0\n".into()],
+            pairs: &[],
+            phrases: &["comment a\n", "element a 1\n", "property float a\n", "property list uchar int a\n"],
+            read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "body of a PLY file",
+            around: ["ply\nformat ascii 1.0\nelement vertex 100000\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 1\nproperty list uchar int vertex_indices\nend_header\n".into(), "\n".into()],
+            pairs: &[],
+            phrases: &["0 0 0\n", "1 ", "4 1 1 1 1\n"],
+            read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "glTF file",
+            around: [String::new(), String::new()],
+            pairs: &[("[", "]"), ("{\"a\":", "}")],
+            phrases: &["{},", "\"meshes\":[],"],
+            read: |json| {
+                let sizes = [json.len() + 20, json.len()].map(|n| (n as u32).to_le_bytes());
+                let whole = [b"glTF\x02\0\0\0", &sizes[0][..], &sizes[1], b"JSON", json].concat();
+                (mesh_file::FORMAT.read)(&whole).map(drop).map_err(|p| p.message)
+            },
+        },
+        Reader {
+            name: "settings",
+            around: ["{\"recent_files\": ".into(), "}".into()],
+            pairs: &[("[", "]"), ("{\"a\":", "}")],
+            phrases: &["\"a\",", "[],"],
+            read: |bytes| in_folder("settings.json", bytes, |folder| settings::load(folder).1),
+        },
+        Reader {
+            name: "progress",
+            around: ["{\"lessons\": ".into(), "}".into()],
+            pairs: &[("[", "]"), ("{\"a\":", "}")],
+            phrases: &["\"a\":", "[],"],
+            read: |bytes| in_folder("lessons.json", bytes, |folder| progress::load(folder).1),
+        },
+        Reader {
+            name: "recovery",
+            around: ["{\"title\": ".into(), "}".into()],
+            pairs: &[("[", "]"), ("{\"a\":", "}")],
+            phrases: &["\"a\",", "[],"],
+            read: recovery,
+        },
+    ]
+}
+
+/// The hostile inputs of a reader, with their names.
+fn inputs(reader: &Reader) -> Vec<(String, Vec<u8>)> {
+    let mut inputs = Vec::new();
+    let [before, after] = &reader.around;
+    let mut add = |name: String, text: &str| inputs.push((name, [before, text, after].concat().into_bytes()));
+    let room = SIZE - before.len() - after.len();
+    let shown = |text: &str| text.escape_debug().to_string();
+    for (open, close) in reader.pairs {
+        // The deepest nesting, and a little beyond the limits of libraries.
+        for count in [room / (open.len() + close.len()), 300] {
+            add(
+                format!("{count} × {} and back", shown(open)),
+                &[open.repeat(count), close.repeat(count)].concat(),
+            );
+        }
+        add(format!("{} never closed", shown(open)), &open.repeat(room / open.len()));
+    }
+    for piece in SIGNS.iter().chain(reader.phrases) {
+        add(format!("{} again and again", shown(piece)), &piece.repeat(room / piece.len()));
+    }
+    // Something well-formed, then cut off or with a wrong byte.
+    let phrase = reader.phrases.concat();
+    let whole = format!("{before}{phrase}{after}").into_bytes();
+    let step = (whole.len() / 40).max(1);
+    for at in (0..whole.len()).step_by(step) {
+        inputs.push((format!("cut off at {at}"), whole[..at].to_vec()));
+        for byte in [0, 0xff, 0xc3] {
+            let changed = [&whole[..at], &[byte], &whole[at..]].concat();
+            inputs.push((format!("with {byte:#x} at {at}"), changed));
+        }
+    }
+    inputs
+}
+
+/// Reads all inputs of a reader, one after the other; the names of those that fail it.
+fn failures(reader: &Reader) -> Vec<String> {
+    let mut failures = Vec::new();
+    for (name, input) in inputs(reader) {
+        let name = format!("{}: {name}", reader.name);
+        let (send, answer) = mpsc::channel();
+        let (read, start) = (reader.read, Instant::now());
+        let thread = thread::Builder::new().stack_size(STACK).spawn(move || {
+            let _ = read(&input);
+            let _ = send.send(());
+        });
+        match answer.recv_timeout(PATIENCE) {
+            Ok(()) => {}
+            Err(mpsc::RecvTimeoutError::Timeout) => {
+                // Nothing can end a thread: the next ones would be slow, too.
+                failures.push(format!("{name} takes more than {PATIENCE:?}"));
+                return failures;
+            }
+            Err(mpsc::RecvTimeoutError::Disconnected) => failures.push(format!("{name} panics")),
+        }
+        drop(thread);
+        if start.elapsed() > Duration::from_secs(2) {
+            eprintln!("{name}: {:?}", start.elapsed());
+        }
+    }
+    failures
+}
+
+#[test]
+fn every_reader_answers_every_hostile_input() {
+    let failures: Vec<_> = readers().par_iter().flat_map_iter(failures).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn what_is_put_around_hostile_text_is_read() {
+    // Else the table would test nothing but the first line of each file.
+    for reader in readers() {
+        let good = match reader.name {
+            "steps" | "question" => "a\n",
+            "equation" => "x = (1 + y)/2",
+            "value" => "1",
+            "view block" => "active: A",
+            "point block" => "knob: exposure",
+            "task" => "probe.pinned",
+            "photometric file"
+            | "OBJ file"
+            | "head of a photometric file"
+            | "head of a picture of surroundings"
+            | "size of a picture of surroundings" => "",
+            "condition" => "not ",
+            "table" => "object,d,sphere,1,2 2 2\n",
+            "list in a scene" => "{\"type\": \"point\", \"position\": [1, 1, 1]}, ",
+            _ => continue,
+        };
+        let text = [reader.around[0].as_str(), good, &reader.around[1]].concat();
+        let said = (reader.read)(text.as_bytes());
+        let expected = match reader.name {
+            // Without its answers; the reader got to them.
+            "question" => "a question has two answers at least",
+            _ => "",
+        };
+        match said {
+            Ok(()) => {}
+            Err(what) => assert!(!expected.is_empty() && what.contains(expected), "{}: {what}", reader.name),
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Programs made with the library, with a name and folders of their own: this file runs itself as one.
+
+#![cfg(target_os = "linux")]
+
+use std::{env, ffi::OsString, fs, path::Path, process::Command};
+
+use bevy::prelude::{DetectChangesMut as _, Local, Res, ResMut, Update};
+use bevy_egui::egui;
+use lights_camera_models::{
+    cli,
+    document::Edit,
+    panel::{
+        Panel, PanelApp as _, PanelContext, Place,
+        state::{Action, Session},
+    },
+    recovery::Store,
+    registry::{Register as _, Registry},
+};
+
+use crate::{
+    helpers::screen::{Screen, alone},
+    helpers::support::root,
+    library::extension::Toon,
+};
+
+/// The arguments of the program that a child is.
+const ARGUMENTS: &str = "LCM_TEST_ARGUMENTS";
+
+/// The frame in which the system panics, after it changed the scene in an earlier one.
+const LAST: u32 = 40;
+
+fn breaking(mut frame: Local<u32>, mut session: ResMut<Session>, registry: Res<Registry>) {
+    *frame += 1;
+    if *frame == 5 {
+        session.apply(Action::Edit(Edit::SceneName("Unsaved".to_owned())), &registry);
+    }
+    // So that there is another frame.
+    session.set_changed();
+    assert!(*frame < LAST, "the forty frames are over");
+}
+
+/// Run by the tests below in a process of its own: windows are for the first thread.
+#[test]
+#[ignore = "a program, run by other tests"]
+fn a_program() {
+    let Ok(arguments) = env::var(ARGUMENTS) else { return };
+    let arguments = ["velvet"].into_iter().chain(arguments.split_whitespace()).map(OsString::from);
+    let breaks = env::var_os("LCM_TEST_BREAKS").is_some();
+    let code = cli::run_with(
+        arguments,
+        |_| (),
+        move |app| {
+            app.add_reflection_model::<Toon>();
+            if breaks {
+                app.add_panel(Fragile).add_systems(Update, breaking);
+            }
+        },
+    );
+    // What the command line would give to the system.
+    std::process::exit(i32::from(code != std::process::ExitCode::SUCCESS));
+}
+
+/// A panel that panics long before the system does, and is caught.
+struct Fragile;
+
+impl Panel for Fragile {
+    fn id(&self) -> &'static str {
+        "fragile"
+    }
+
+    fn title(&self) -> &'static str {
+        "Fragile"
+    }
+
+    fn place(&self) -> Place {
+        Place::Right
+    }
+
+    fn show(&mut self, _: &mut egui::Ui, _: &mut PanelContext<'_>) {
+        panic!("the panel is fragile");
+    }
+}
+
+fn program(arguments: &str, config: &Path) -> Command {
+    let mut command = Command::new(env::current_exe().expect("it runs"));
+    command.args(["--exact", "library::programs::a_program", "--ignored", "--nocapture", "--test-threads=1"]);
+    alone(&mut command, config).env(ARGUMENTS, arguments);
+    command
+}
+
+fn said(command: &mut Command) -> (String, String) {
+    let output = command.output().expect("it starts");
+    [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).into()
+}
+
+#[test]
+fn its_help_and_its_errors_have_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name =
+        env::current_exe().expect("it runs").file_stem().expect("a name").to_string_lossy().into_owned();
+    for arguments in ["--help", "render --help", "models new --help", "rendr"] {
+        let (out, err) = said(&mut program(arguments, folder.path()));
+        let all = [out, err].concat();
+        assert!(all.contains(&name), "{arguments}: {all}");
+        assert!(!all.contains("lcm ") && !all.contains("`lcm`"), "{arguments}: {all}");
+    }
+}
+
+#[test]
+fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
+    let screen = Screen::new(800, 600);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("toon.json");
+    let text = fs::read_to_string(root().join("scenes/default.json")).expect("readable");
+    let mut scene: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    scene["reflection_model"] = "toon".into();
+    fs::write(&file, scene.to_string()).expect("written");
+    let mut open = program(&format!("view {} --exit-after 3", file.display()), folder.path());
+    let (_, err) = said(open.env("DISPLAY", screen.display()));
+    assert!(!err.contains("toon"), "{err}");
+    // What is missing is asked about, accepted or refused, as in the laboratory itself.
+    let mut lacking = scene.clone();
+    lacking.as_object_mut().expect("an object").remove("shading_model");
+    fs::write(&file, lacking.to_string()).expect("written");
+    let said_of = |flags: &str| {
+        let arguments = format!("view {} --exit-after 5 {flags}", file.display());
+        said(program(&arguments, folder.path()).env("DISPLAY", screen.display())).1
+    };
+    for flags in ["", "--use-defaults"] {
+        let err = said_of(flags);
+        assert!(!err.contains("shading_model"), "{flags}: {err}");
+    }
+    let err = said_of("--no-defaults");
+    assert!(err.contains("shading_model") && err.contains("--use-defaults"), "{err}");
+    // A type that nobody registers is still an error.
+    scene["reflection_model"] = "tune".into();
+    fs::write(&file, scene.to_string()).expect("written");
+    let (_, err) = said(open.env("DISPLAY", screen.display()));
+    assert!(err.contains("tune") && err.contains("or \"toon\""), "{err}");
+}
+
+#[test]
+fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alone() {
+    let screen = Screen::new(800, 600);
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut breaks = program("view", folder.path());
+    let (_, err) = said(breaks.env("DISPLAY", screen.display()).env("LCM_TEST_BREAKS", "1"));
+    let line = err.lines().find(|line| line.contains("the window was closed: the system")).expect(&err);
+    assert!(line.contains("programs.rs:") && line.contains("the forty frames are over"), "{line}");
+    assert!(err.contains("the panel is fragile") && !line.contains("fragile"), "it was caught: {err}");
+    let data = folder.path().join("data");
+    assert!(Store::new(data.join("recovery")).left().is_empty(), "nothing in the folder of the laboratory");
+    let name = env::current_exe().expect("it runs").file_stem().expect("a name").to_owned();
+    let left = Store::new(data.join("programs").join(name).join("recovery")).left();
+    assert_eq!(left.len(), 1, "{err}");
+    let scene = fs::read_to_string(left[0].journal.file()).expect("the copy");
+    assert!(scene.contains("\"Unsaved\""), "{scene}");
+    drop(left);
+    // It is asked about at the next start.
+    let mut next = program("view --exit-after 3", folder.path());
+    let (_, err) = said(next.env("DISPLAY", screen.display()));
+    assert!(err.contains("unsaved"), "{err}");
+}

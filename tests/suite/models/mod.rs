@@ -1,0 +1,16 @@
+//! Reflection models: equations, laws, and models of users.
+
+mod albedo;
+mod custom_curves;
+mod custom_folder;
+mod custom_models;
+mod foreign;
+mod interpret;
+mod laws;
+mod mistakes;
+mod precision;
+mod swallowed;
+#[cfg(unix)]
+mod trial;
+mod usage;
+mod witness;

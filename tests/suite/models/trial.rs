@@ -1,0 +1,163 @@
+//! Shaders are tried in another process: its messages are reported here, and however it ends, the picture and the
+//! program survive.
+
+use std::{
+    fs,
+    os::unix::fs::PermissionsExt as _,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use lights_camera_models::render::trial::{
+    Bench,
+    process::{Budget, TrialProcess},
+};
+
+use crate::renderers::reload::{BREAKAGES, Breakage, Lab, original, phong_scene};
+
+/// The laboratory, with shaders tried by a program.
+fn apart(program: &Path, budget: Budget) -> Lab {
+    let mut lab = Lab::new(phong_scene("phong"));
+    let process = TrialProcess::new(program.to_owned(), budget, || {});
+    lab.renderer.app().world_mut().resource_mut::<Bench>().try_in(process);
+    lab
+}
+
+fn lcm() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_lcm"))
+}
+
+/// Frames until everything is tried and reported.
+fn settled(lab: &mut Lab) -> Vec<u8> {
+    let start = Instant::now();
+    while lab.live().is_trying() {
+        lab.renderer.step();
+        assert!(start.elapsed() < Duration::from_secs(60), "it goes on trying");
+        thread::sleep(Duration::from_millis(2));
+    }
+    lab.settled()
+}
+
+#[test]
+fn another_process_says_what_this_one_would() {
+    let mut lab = apart(lcm(), Budget::default());
+    let before = lab.frame();
+    for Breakage { name, file, change, said, line } in BREAKAGES {
+        lab.save(file, change(original(file)));
+        assert!(settled(&mut lab) == before, "{name}: the picture changed");
+        let troubles = lab.troubles();
+        let [trouble] = &troubles[..] else { panic!("{name}: {troubles:?}") };
+        assert!(trouble.problem.message.contains(said), "{name}: {}", trouble.problem);
+        if !line.is_empty() {
+            assert_eq!(trouble.problem.file, *file, "{name}: {}", trouble.problem);
+        }
+        lab.save(file, original(file));
+        assert!(settled(&mut lab) == before, "{name}");
+        assert_eq!(lab.troubles(), [], "{name}");
+    }
+    // The twin: a valid shader is used.
+    lab.save("loop.wgsl", original("loop.wgsl").replace("* light.colour;", "* light.colour * 0.5;"));
+    assert!(settled(&mut lab) != before);
+    assert_eq!(lab.troubles(), []);
+}
+
+#[test]
+fn a_model_that_is_tried_for_the_first_time_takes_no_object_away() {
+    let mut lab = apart(lcm(), Budget::default());
+    let before = lab.frame();
+    lab.save("reflection/lambert.wgsl", format!("{}\n// mine\n", original("reflection/lambert.wgsl")));
+    let mut scene = phong_scene("phong");
+    scene.reflection_model = "lambert".to_owned();
+    lab.renderer.set_scene(scene.clone());
+    let expected = Lab::new(scene).frame();
+    assert!(before != expected);
+    let mut frames = 0;
+    let start = Instant::now();
+    loop {
+        let frame = lab.frame();
+        if frame == expected {
+            break;
+        }
+        frames += 1;
+        assert!(frame == before, "frame {frames} is neither the old nor the new one");
+        assert!(start.elapsed() < Duration::from_secs(60), "the new one does not come");
+    }
+    assert!(frames > 0, "it was not tried in another process");
+}
+
+#[test]
+fn a_shader_that_draws_for_ever_is_refused() {
+    let mut lab = apart(lcm(), Budget::default());
+    let before = lab.frame();
+    let slow = original("reflection/phong.wgsl").replacen(
+        "var specular = vec3(0.0);",
+        "var specular = vec3(0.0);\n    for (var i = 0u; i < 40000u; i++) { specular += vec3(sin(f32(i) * m.k_s)); }\n    specular *= 1e-30;",
+        1,
+    );
+    assert_ne!(slow, original("reflection/phong.wgsl"));
+    lab.save("reflection/phong.wgsl", &slow);
+    assert!(settled(&mut lab) == before);
+    let troubles = lab.troubles();
+    let [trouble] = &troubles[..] else { panic!("{troubles:?}") };
+    assert!(trouble.problem.message.contains("loop of very many rounds"), "{}", trouble.problem);
+    lab.save("reflection/phong.wgsl", original("reflection/phong.wgsl"));
+    assert!(settled(&mut lab) == before);
+    assert_eq!(lab.troubles(), []);
+}
+
+/// A program that does something other than trying shaders.
+fn program(folder: &Path, does: &str) -> PathBuf {
+    let path = folder.join("program");
+    fs::write(&path, format!("#!/bin/sh\n{does}\n")).expect("writable");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("possible");
+    path
+}
+
+#[test]
+fn whatever_becomes_of_the_process_is_told_and_the_picture_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ready = r#"echo '"Ready"'"#;
+    let budget = Budget { time: Duration::from_secs(2), memory: 100 << 20 };
+    for (does, said) in [
+        ("read line; kill -SEGV $$", "crashes"),
+        ("read line; exit 0", "crashes"),
+        ("read line; sleep 100", "within 2 s"),
+        ("read line; x=$(head -c 300000000 /dev/zero | tr '\\0' a); sleep 100", "more than 100 MiB"),
+    ] {
+        let path = program(folder.path(), &format!("{ready}\n{does}"));
+        let mut lab = apart(&path, budget);
+        let before = lab.frame();
+        lab.save("reflection/phong.wgsl", format!("{}\n", original("reflection/phong.wgsl")));
+        assert!(settled(&mut lab) == before, "{does}");
+        let troubles = lab.troubles();
+        let [trouble] = &troubles[..] else { panic!("{does}: {troubles:?}") };
+        assert!(trouble.problem.message.contains(said), "{does}: {}", trouble.problem);
+        assert_eq!(trouble.stale, ["Phong"]);
+    }
+}
+
+#[test]
+fn what_cannot_be_tried_is_refused_and_tried_again_with_the_next_save() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("program");
+    let mut lab = apart(&path, Budget::default());
+    let before = lab.frame();
+    let dark = original("loop.wgsl").replace("* light.colour;", "* light.colour * 0.5;");
+    for does in [None, Some("exit 3")] {
+        if let Some(does) = does {
+            program(folder.path(), does);
+        }
+        lab.save("loop.wgsl", format!("{dark}// {does:?}\n"));
+        assert!(settled(&mut lab) == before, "{does:?}: it was not tried, and is shown");
+        let troubles = lab.troubles();
+        let [trouble] = &troubles[..] else { panic!("{does:?}: {troubles:?}") };
+        assert!(trouble.problem.message.contains("could not be tried"), "{}", trouble.problem);
+    }
+    // The program exists again.
+    std::fs::remove_file(&path).expect("removed");
+    std::os::unix::fs::symlink(lcm(), &path).expect("linked");
+    lab.save("loop.wgsl", &dark);
+    assert!(settled(&mut lab) != before);
+    assert_eq!(lab.troubles(), []);
+}

@@ -1,0 +1,14 @@
+//! Scene files: reading, checking, writing.
+
+mod errors;
+pub(crate) mod formats;
+mod in_pictures;
+mod mesh_files;
+mod missing_size;
+mod overrides;
+mod photometric;
+mod reload;
+pub(crate) mod roundtrip;
+mod saving;
+mod schema;
+mod tables;

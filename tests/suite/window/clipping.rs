@@ -1,0 +1,92 @@
+//! The picture says where it clips: counted in what the renderer draws.
+
+use bevy_egui::egui::{Color32, PointerButton};
+use lights_camera_models::panel::state::{Action, Clipping, Session, ViewChange};
+
+use crate::{helpers::screen::Picture, window::panels::Bench};
+
+#[test]
+fn the_sign_tells_the_share_and_the_view_shows_where() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(!bench.says("Clipped"));
+    // The fields of a quarter of the picture, at its upper left.
+    let rect = bench.area.rect;
+    let [across, down] = Clipping::GRID;
+    let field = (rect.area() / (across * down) as f32) as u32;
+    let corner = |i: usize| i % across < across / 2 && i / across < down / 2;
+    let counts = (0..across * down).map(|i| if corner(i) { field } else { 0 }).collect();
+    bench.session.facts.clipping[0] = Clipping::new(counts);
+    bench.settle();
+    let folder = tempfile::tempdir().unwrap();
+    let shown = |bench: &mut Bench| {
+        let file = folder.path().join("window.png");
+        bench.picture(&file, Color32::from_gray(119)).unwrap();
+        let picture = Picture::read(&file);
+        let marked = |p: [u8; 3]| p[0] > 200 && p[1] < 60 && p[2] > 150;
+        let (x, y) = (rect.center().x as u32, rect.center().y as u32);
+        [(x - 100, y - 100), (x + 4, y + 4)].map(|(x, y)| picture.count(x..x + 90, y..y + 90, marked))
+    };
+    assert_eq!(shown(&mut bench), [0, 0], "not before it is asked for");
+    bench.apply(Action::View(ViewChange::Clipping(true)));
+    let selected = bench.session.selection;
+    let [there, elsewhere] = shown(&mut bench);
+    // The sign itself switches them on and off.
+    let sign = bench.tree.iter().find(|s| s.label.starts_with("Clipped")).map(|s| s.rect.center()).unwrap();
+    bench.click_at(sign, PointerButton::Primary);
+    assert!(!bench.session.view.show_clipping);
+    bench.click_at(sign, PointerButton::Primary);
+    assert!(bench.session.view.show_clipping && bench.session.selection == selected);
+    // A chequered pattern, less what the object's marks cover.
+    assert!((3200..4900).contains(&there) && elsewhere == 0, "{there} and {elsewhere} of 8100");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_window_has_a_sign_only_where_the_picture_clips() {
+    use crate::helpers::screen::Screen;
+
+    let screen = Screen::new(1280, 720);
+    let folder = tempfile::tempdir().unwrap();
+    let sign = |name: &str, intensity: f32, display: &str| {
+        let scene = folder.path().join(format!("{name}.json"));
+        let text = format!(
+            r#"{{
+  "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
+  "reflection_model": "lambert",
+  "shading_model": "phong",
+  "lights": [{{ "type": "point", "position": [7.5, 8, 9], "intensity": {intensity} }}],
+  "observer": {{ "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 }},
+  "objects": [{{ "type": "sphere", "position": [5, 5, 5], "size": 2 }}],
+  "display": {display}
+}}"#
+        );
+        std::fs::write(&scene, text).unwrap();
+        let file = folder.path().join(format!("{name}.png"));
+        let (scene, file_name) = (scene.to_string_lossy(), file.to_string_lossy());
+        let arguments = ["view", &*scene, "--exit-after", "30", "--capture", &*file_name];
+        let output = screen.lcm(&arguments, folder.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        // The rim of the sign, which nothing else there has.
+        let warning = |p: [u8; 3]| p == [0xf0, 0xc0, 0x50];
+        Picture::read(&file).count(212..480, 40..76, warning) > 100
+    };
+    let plain = r#"{ "exposure": 0 }"#;
+    assert!(sign("bright", 60.0, plain));
+    assert!(!sign("dim", 10.0, plain));
+    assert!(sign("exposed", 10.0, r#"{ "exposure": 3 }"#));
+    assert!(!sign("mapped", 60.0, r#"{ "tone_mapping": "reinhard" }"#));
+    // Of two views, the one that clips has the sign.
+    let views = |a: i32, b: i32| {
+        let variants =
+            format!(r#""variants": [{{ "exposure": {b} }}], "comparison": {{ "layout": "side_by_side" }}"#);
+        let file = format!("views_{a}_{b}");
+        sign(&file, 10.0, &format!(r#"{{ "exposure": {a} }}, {variants}"#));
+        let picture = Picture::read(&folder.path().join(format!("{file}.png")));
+        let warning = |p: [u8; 3]| p == [0xf0, 0xc0, 0x50];
+        [208..566, 574..936].map(|x| picture.count(x, 66..106, warning) > 100)
+    };
+    assert_eq!(views(0, 3), [false, true]);
+    assert_eq!(views(3, 0), [true, false]);
+}

@@ -1,0 +1,269 @@
+//! The lines of the knobs: what can be seen without scrolling, and that there is more where there is.
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
+use lights_camera_models::{
+    document::{Edit, ObjectField, Selection},
+    panel::{
+        state::{Action, ThemeChoice, ViewChange},
+        theme,
+    },
+    parameter::Value,
+    registry::Registry,
+};
+
+use crate::window::panels::{Bench, Seen};
+
+/// A laptop's window with the only object of the default scene selected.
+fn laptop(model: &str) -> Bench {
+    let mut bench = Bench::with_model(model);
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench
+}
+
+fn widget(bench: &Bench, role: Role, label: &str) -> Seen {
+    let found = bench.tree.iter().find(|s| s.role == role && s.label.starts_with(label));
+    found.unwrap_or_else(|| panic!("no {role:?} “{label}”")).clone()
+}
+
+#[test]
+fn every_knob_of_phong_is_seen_at_1280_by_720_without_scrolling() {
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        for model in ["phong", "blinn_phong"] {
+            let mut bench = laptop(model);
+            bench.apply(Action::View(ViewChange::Theme(theme)));
+            // The panel reaches from the bar at the top to the line at the bottom, as the picture does.
+            let seen = bench.area.rect.y_range();
+            let labels = ["ambient coefficient", "diffuse coefficient", "specular coefficient", "shininess"];
+            for label in labels {
+                let field = bench.field(label).rect;
+                let slider = widget(&bench, Role::Slider, label).rect;
+                for rect in [field, slider] {
+                    assert!(
+                        seen.contains(rect.top()) && seen.contains(rect.bottom()),
+                        "{model}: {label} is at {rect:?}, beyond {seen:?}"
+                    );
+                }
+                assert!((field.center().y - slider.center().y).abs() < 1.0, "{label}: on two lines");
+                assert!(slider.right() <= field.left() && slider.width() >= 64.0, "{label}: {slider:?}");
+                assert!(field.right() < 1280.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn sliders_and_fields_stand_in_line() {
+    let bench = Bench::with_model("phong");
+    let lefts = |role: Role| -> Vec<i32> {
+        let labels = ["ambient coefficient", "diffuse coefficient", "shininess", "size", "tessellation"];
+        labels.map(|label| widget(&bench, role, label).rect.left().round() as i32).to_vec()
+    };
+    for role in [Role::Slider, Role::TextInput] {
+        let lefts = lefts(role);
+        assert!(lefts.iter().all(|x| *x == lefts[0]), "{role:?}: {lefts:?}");
+    }
+}
+
+#[test]
+fn the_material_stands_above_the_shape() {
+    let bench = Bench::with_model("phong");
+    let lowest = bench.field("shininess").rect.bottom();
+    for label in ["size", "position x", "rotation x", "tessellation"] {
+        assert!(bench.field(label).rect.top() > lowest, "{label}");
+    }
+}
+
+#[test]
+fn the_tooltip_says_where_range_and_slider_end() {
+    let mut bench = Bench::with_model("phong");
+    let at = widget(&bench, Role::Slider, "diffuse coefficient").rect.center();
+    bench.hover(at);
+    assert!(bench.says("Between 0.5 and 1") && bench.says("Default 0.8"));
+    for role in [Role::Slider, Role::TextInput] {
+        let at = widget(&bench, role, "shininess").rect.center();
+        bench.hover(at);
+        assert!(bench.says("Slider: 0 to 512. Larger values can be typed"), "{role:?}");
+    }
+}
+
+/// The bars at the right edge of the window: narrow and long, in another colour than the panel.
+fn scroll_bars(bench: &mut Bench) -> Vec<Rect> {
+    let right = bench.size.x;
+    let bar = |shape: &Shape| match shape {
+        Shape::Rect(r) => {
+            let thin = r.rect.width() <= 10.0 && r.rect.height() >= 40.0 && r.rect.left() > right - 24.0;
+            (thin && r.fill.a() > 100).then_some(r.rect)
+        }
+        _ => None,
+    };
+    bench.shapes().iter().filter_map(bar).collect()
+}
+
+#[test]
+fn a_scroll_bar_is_there_whenever_there_is_more() {
+    let mut bench = laptop("disney");
+    assert!(!scroll_bars(&mut bench).is_empty(), "nothing says that there are more knobs");
+    let mut tall = Bench::with_model("lambert");
+    assert!(scroll_bars(&mut tall).is_empty(), "nothing is hidden");
+}
+
+#[test]
+fn model_and_shading_of_one_object_are_overridden_beside_the_name_of_the_model() {
+    let mut bench = laptop("phong");
+    let control = "Override model and shading: none";
+    let at = bench.find(control).expect("there").rect;
+    let terms = bench.find("Terms: all").expect("below").rect;
+    assert!(at.bottom() < terms.top() && at.height() < 30.0);
+    bench.click(control);
+    bench.click("Shading of this object: Flat");
+    assert_eq!(bench.session.document.objects[0].shading_model.as_deref(), Some("flat"));
+    assert!(bench.says("Override model and shading: Flat shading"));
+    bench.click("Lambert");
+    assert_eq!(bench.session.document.objects[0].reflection_model.as_deref(), Some("lambert"));
+    assert_eq!(bench.session.document.reflection_model, "phong");
+    assert!(bench.find("Shading of this object: Flat").is_none(), "choosing a model closes the list");
+    bench.click("Override model and shading: Lambert, Flat shading");
+    bench.click("Shading of this object: Scene default");
+    bench.click("Scene default (Phong)");
+    let object = &bench.session.document.objects[0];
+    assert_eq!((&object.reflection_model, &object.shading_model), (&None, &None));
+    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    bench.click_at(bench.area.rect.center(), PointerButton::Primary);
+    assert!(bench.find(control).is_some());
+}
+
+#[test]
+#[ignore = "draws pictures to look at: scripts/pictures"]
+fn pictures_of_the_knobs() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = crate::helpers::pictures::picture_folder()?;
+    for (name, theme, ground) in
+        [("dark", ThemeChoice::Dark, theme::DARK), ("light", ThemeChoice::Light, theme::LIGHT)]
+    {
+        let shot = |bench: &mut Bench, what: &str| {
+            bench.picture(&folder.join(format!("knobs-{name}-{what}.png")), ground.surround)
+        };
+        let with = |model: &str| {
+            let mut bench = laptop(model);
+            bench.apply(Action::View(ViewChange::Theme(theme)));
+            bench
+        };
+        let mut bench = with("phong");
+        bench.click("Override model and shading: none");
+        bench.click("Shading of this object: Flat");
+        shot(&mut bench, "override")?;
+        let mut bench = with("phong");
+        let at = widget(&bench, Role::Slider, "shininess").rect.center();
+        bench.hover(at);
+        shot(&mut bench, "tooltip")?;
+        let mut bench = with("microfacet");
+        bench.size.y = 1080.0;
+        bench.settle();
+        let at = bench.field("exponent of GTR").rect.center();
+        bench.hover(at);
+        shot(&mut bench, "unused")?;
+        shot(&mut with("disney"), "disney")?;
+    }
+    Ok(())
+}
+
+/// The texts that are painted, each with its place and true if some of it is left out.
+fn painted(bench: &mut Bench) -> Vec<(String, Pos2, bool)> {
+    let text = |shape| match shape {
+        Shape::Text(t) => Some((t.galley.text().to_owned(), t.pos, t.galley.elided)),
+        _ => None,
+    };
+    bench.shapes().into_iter().filter_map(text).collect()
+}
+
+#[test]
+fn knobs_and_authors_are_named_in_full() {
+    for (size, scale) in [((1280.0, 4000.0), 100), ((1920.0, 4000.0), 100), ((1280.0, 4000.0), 150)] {
+        for model in Registry::builtin().models() {
+            let d = model.declaration;
+            let mut bench = Bench::with_model(d.id);
+            bench.size = size.into();
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            let panel = bench.area.rect.right();
+            let texts: Vec<_> = painted(&mut bench).into_iter().filter(|(_, at, _)| at.x > panel).collect();
+            let labels = model.parameters.iter().filter(|p| p.symbol != p.label).map(|p| p.label);
+            for label in labels.chain([d.author]) {
+                let whole = texts.iter().any(|(text, _, cut)| text == label && !cut);
+                assert!(whole, "{}, {scale} %: “{label}” is not there in full", d.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn derived_values_stand_in_line() {
+    let mut bench = Bench::with_model("blinn_phong");
+    let texts = painted(&mut bench);
+    let left = |word: &str| texts.iter().find(|(text, ..)| text == word).map(|(_, at, _)| at.x);
+    assert!(left("equivalent GGX α").is_some());
+    assert_eq!(left("equivalent GGX α"), left("equivalent roughness"));
+}
+
+/// True if a knob of that name is there to be turned.
+fn has_knob(bench: &Bench, label: &str) -> bool {
+    bench.tree.iter().any(|s| s.role == Role::TextInput && s.label.starts_with(label))
+}
+
+#[test]
+fn the_groups_of_a_model_fold_and_say_how_much_is_changed() {
+    let mut bench = Bench::with_model("disney");
+    let order = ["Base", "metallic", "Specular", "roughness", "Sheen", "Clear coat", "clear coat"];
+    let tops: Vec<_> = order
+        .map(|label| {
+            let found = bench.tree.iter().find(|s| s.label.starts_with(label));
+            found.unwrap_or_else(|| panic!("no “{label}”")).rect.top()
+        })
+        .to_vec();
+    assert!(tops.is_sorted(), "each knob below the heading of its group: {tops:?}");
+    assert!(!bench.tree.iter().any(|s| s.label.starts_with("Sheen") && s.label.contains("changed")));
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.settle();
+    let heading = bench.tree.iter().find(|s| s.label.starts_with("Sheen") && s.label.contains("1 changed"));
+    let at = heading.expect("the heading counts").rect.center();
+    assert!(has_knob(&bench, "sheen tint"));
+    bench.click_at(at, PointerButton::Primary);
+    for _ in 0..20 {
+        bench.frame(Vec::new());
+    }
+    assert!(!has_knob(&bench, "sheen tint") && has_knob(&bench, "roughness"), "folded");
+    // A model without groups has no headings and no filter.
+    let bench = Bench::with_model("phong");
+    assert!(bench.find("Only changed").is_none());
+}
+
+#[test]
+fn the_filter_shows_what_differs_and_keeps_what_is_being_changed() {
+    let mut bench = Bench::with_model("disney");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.settle();
+    bench.click("Only changed");
+    bench.settle();
+    assert!(has_knob(&bench, "sheen") && !has_knob(&bench, "sheen tint") && !has_knob(&bench, "roughness"));
+    // Dragged to its default, the knob stays until it is let go of.
+    let slider = widget(&bench, Role::Slider, "sheen").rect;
+    let press = |pressed, pos| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::default(),
+    };
+    let end = slider.left_center() - vec2(30.0, 0.0);
+    bench.frame(vec![Event::PointerMoved(slider.center()), press(true, slider.center())]);
+    bench.frame(vec![Event::PointerMoved(end)]);
+    bench.frame(Vec::new());
+    assert!(has_knob(&bench, "sheen"), "it is being dragged");
+    bench.frame(vec![press(false, end)]);
+    bench.key(Key::Escape, Modifiers::default());
+    bench.frame(vec![Event::PointerMoved(Pos2::new(2.0, 2.0))]);
+    bench.settle();
+    assert!(!has_knob(&bench, "sheen"), "it has its default");
+    assert!(bench.says("Every parameter has its default."));
+    bench.click("Only changed");
+    bench.settle();
+    assert!(has_knob(&bench, "sheen") && has_knob(&bench, "roughness"));
+}

@@ -1,0 +1,23 @@
+//! The window: panels, keys, pointer, pictures.
+
+mod clipping;
+mod dialogs;
+mod editors;
+mod equations;
+pub(crate) mod examples;
+mod focus;
+mod handles;
+mod knobs;
+mod law_check;
+pub(crate) mod layout;
+mod marks;
+pub(crate) mod panels;
+mod plots;
+mod pointer;
+mod presentation;
+mod program;
+mod redraw;
+mod reload;
+mod scene_list;
+mod shader_panel;
+mod taken;

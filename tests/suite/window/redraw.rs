@@ -1,0 +1,57 @@
+//! The picture is drawn when something that it shows changed, and at no other time.
+
+#![cfg(target_os = "linux")]
+
+use std::{thread, time::Duration};
+
+use crate::{helpers::keyboard::Keyboard, helpers::screen::Screen};
+
+/// The frames that a window drew in which the pointer was moved: those with panels alone, those with the picture too,
+/// and those in which its state changed.
+fn frames(moves: impl Fn(&mut Keyboard)) -> [u64; 3] {
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", "--verbose"]);
+    window.until("a sphere", |p| p.at(610, 310)[0] > 180);
+    window.rest();
+    moves(&mut Keyboard::new(screen.display()));
+    window.rest();
+    let said = window.ended();
+    let line = said.lines().find(|line| line.starts_with("Frames: ")).expect("it says how many there were");
+    ["panels alone ", "panels and picture ", "session changed in "].map(|kind| {
+        let (_, number) = line.split_once(kind).expect("it names both kinds");
+        let digits = number.find(|c: char| !c.is_ascii_digit()).unwrap_or(number.len());
+        number[..digits].parse().expect("a number")
+    })
+}
+
+#[test]
+fn a_pointer_over_the_panels_draws_no_picture_and_a_drag_in_the_picture_does() {
+    let pause = || thread::sleep(Duration::from_millis(40));
+    let [_, still, calm] = frames(|_| {});
+    let [panels, hovered, changes] = frames(|pointer| {
+        // Over the scene list, the knobs on the right, and the strip below.
+        for k in 0..15 {
+            for (x, y) in [(60, 80 + 30 * k), (1100, 80 + 30 * k), (300 + 40 * k, 700)] {
+                pointer.point_at(x, y);
+                pause();
+            }
+        }
+    });
+    assert!(panels >= 20, "the panels follow the pointer: {panels}");
+    // The number of pictures at the start depends on when its shaders are ready.
+    assert!(changes <= calm + 2, "hovering changed the state in {changes} frames, and nothing in {calm}");
+    assert!(hovered <= still + 4, "{hovered} pictures, and {still} without a pointer");
+    let [_, dragged, turned] = frames(|pointer| {
+        pointer.point_at(560, 300);
+        pause();
+        pointer.button(true);
+        pause();
+        for k in 1..=15 {
+            pointer.point_at(560 + 8 * k, 300);
+            pause();
+        }
+        pointer.button(false);
+    });
+    assert!(turned <= calm + 2, "turning the camera changed the state in {turned} frames");
+    assert!(dragged >= still + 8, "{dragged} pictures, and {still} without a drag");
+}
