@@ -85,8 +85,7 @@ impl Declaration {
         Self { extent: true, ..self }
     }
 
-    /// Sets an intensity that is a factor of the light's own luminance: the default, and the maximum of the
-    /// slider.
+    /// Sets an intensity that is a factor of the light's own output: the default, and the maximum of the slider.
     #[must_use]
     pub const fn factor(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "×", default_intensity: default, slider_max, ..self }

@@ -47,7 +47,7 @@ struct View {
 }
 
 impl Cylinder {
-    /// `None` from inside the side, extended to any length.
+    /// `None` inside the cylinder, extended to infinite length.
     fn from(&self, light: &LightRecord, p: Vec3) -> Option<View> {
         let to_point = p - light.position;
         let across = to_point - to_point.dot(light.direction) * light.direction;

@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(factors.len(), 2);
         assert_eq!((factors[0].value, factors[0].unit), (Vec3::splat(4.0), "lx"));
         assert_eq!(factors[1].value, Vec3::new(0.5, 0.25, 0.0));
-        // Nothing to tell apart, or nothing to divide by.
+        // Nothing to separate, or division by zero.
         assert_eq!(whole(from(Vec3::splat(4.0)), &light, "lx").len(), 1);
         assert_eq!(whole(from(Vec3::ZERO), &LightRecord::default(), "lx").len(), 1);
     }

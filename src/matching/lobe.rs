@@ -107,7 +107,7 @@ mod tests {
         let all = directions(0.0, 80.0);
         assert!(all.len() > 800, "{}", all.len());
         let near = all.iter().filter(|(l, v)| ((*l + *v).normalize().z) > 10f32.to_radians().cos()).count();
-        // The pairs with these half vectors, an eighth of the 80 degrees, are about half of all.
+        // Half vectors within 10 of the 80 degrees belong to about half of all pairs.
         assert!(near * 5 > all.len() * 2, "{near} of {}", all.len());
         for (l, v) in &all {
             assert!(l.is_normalized() && v.is_normalized() && l.z > 0.17 && v.z > 0.17);

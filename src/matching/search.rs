@@ -496,7 +496,7 @@ mod tests {
     use super::*;
     use crate::parameter::{ALPHA, K_A, K_D, K_S};
 
-    /// A bell of an exponent and a height, over a floor that hides its foot; `k_a` does nothing.
+    /// A bell with an exponent and a height, above a floor that hides its foot; `k_a` has no effect.
     struct Bell {
         wanted: [f64; 2],
         asked: usize,

@@ -11,7 +11,7 @@ use super::{equivalence::alpha_of_exponent, sampling};
 /// Maximum number of lobes of a model.
 pub const MAX_LOBES: usize = 3;
 
-/// Minimum width of sampled GGX lobes, and their maximum exponent.
+/// Minimum width of sampled GGX lobes; below, the maximum exponent of sampled power lobes.
 const NARROWEST: f32 = 1e-3;
 const STEEPEST: f32 = 1e6;
 

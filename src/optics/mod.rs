@@ -26,11 +26,11 @@ pub use geometry::Frame;
 
 use glam::Vec3;
 
-/// The answer of a reflection model to one light of unit intensity, split into the three terms of
+/// The response of a reflection model to one light of unit intensity, split into the three terms of
 /// the equation.
 ///
 /// The sum is the **response** `π · f_r(l, v) · cos θ_i` (dimensionless, linear RGB); the ambient
-/// term is the part that does not depend on any direction (`I_a`, CA DD3).
+/// term is the part that depends on no direction (`I_a`, CA DD3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Terms {
     /// The term without a direction, `I_a` (CA DD3).

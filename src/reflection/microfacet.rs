@@ -476,7 +476,7 @@ impl Microfacet {
             .sum()
     }
 
-    /// The albedo of the lobe with F = 1, where it is needed.
+    /// The albedo of the lobe with F = 1, if needed.
     fn lobe_of(&self) -> LobeAlbedo {
         if self.multiple_scattering == 0 {
             return LobeAlbedo::default();
@@ -565,7 +565,7 @@ impl ReflectionModel for Microfacet {
         let gamma = if self.distribution == 3 { self.gamma } else { 2.0 };
         let bare = self.diffuse == 0 || self.fresnel == 0;
         let body = if bare { Vec3::ZERO } else { self.base_colour };
-        // Light of several bounces leaves in all directions.
+        // Multiply reflected light leaves in all directions.
         let bounced = if self.multiple_scattering == 1 { 1.0 - self.lobe.average() } else { 0.0 };
         Lobes::diffuse_and(Lobe::of_gtr(self.alpha(), gamma), body + bounced, self.f(lobes::OBLIQUE))
     }
