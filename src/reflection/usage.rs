@@ -162,7 +162,7 @@ mod tests {
             one.set(p.name, Value::Choice((*a).into()));
             all.push(one.clone());
             for (q, b) in &choices[i + 1..] {
-                // The compensation of multiple scattering integrates anew for every value.
+                // The compensation of multiple scattering is integrated again for every value.
                 if q.name != p.name && q.name != "multiple_scattering" {
                     let mut two = one.clone();
                     two.set(q.name, Value::Choice((*b).into()));
