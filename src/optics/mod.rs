@@ -30,7 +30,7 @@ use glam::Vec3;
 /// the equation.
 ///
 /// The sum is the **response** `π · f_r(l, v) · cos θ_i` (dimensionless, linear RGB); the ambient
-/// term is the part that depends on no direction (`I_a`, CA DD3).
+/// term does not depend on any direction (`I_a`, CA DD3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Terms {
     /// The term without a direction, `I_a` (CA DD3).

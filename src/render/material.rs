@@ -36,7 +36,7 @@ use bevy::{
 use super::{illumination::LightBuffers, trial::MARK};
 use crate::{custom::CustomFile, reflection::ReflectionModel};
 
-/// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
+/// The tangent of the vertex. Three numbers instead of Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
     MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
 /// The normal of the polygon (CA DD8), on meshes for shading models that calculate per polygon.

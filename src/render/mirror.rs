@@ -244,7 +244,7 @@ pub(super) fn read_place(transform: &Transform, known: bool, object: &mut Object
 /// The object that an entity represents; values equal to those of the `known` object stay as they were.
 ///
 /// # Errors
-/// The reason why it stands for none.
+/// Returns the reason why it does not represent an object.
 pub(super) fn read_object(
     entity: EntityRef,
     known: Option<&Object>,

@@ -102,7 +102,7 @@ impl std::fmt::Debug for Bench {
 }
 
 impl Bench {
-    /// Has everything tried in another process from now on, and nothing here.
+    /// Runs all trials in another process from now on, and none here.
     pub fn try_in(&mut self, process: TrialProcess) {
         self.process = Some(process);
     }
