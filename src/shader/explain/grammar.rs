@@ -104,9 +104,9 @@ const TYPES: &[&str] = &[
     "float3", "float4", "ivec2", "ivec3", "mat2", "mat3", "mat4", "void",
 ];
 
-/// The expected word, the word before, the one found, and the message. An empty text stands for anything, `TYPE` for a
-/// type, `WORD` for a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these words,
-/// `{earlier}` that before both, `{next}` that after, `{type}` the type as it is written here.
+/// The expected word, the word before, the one found, and the message. An empty text matches anything, `TYPE`
+/// a type, `WORD` a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these
+/// words, `{earlier}` is the one before both, `{next}` the one after, `{type}` the type as written here.
 const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
     (
         "",
