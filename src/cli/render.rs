@@ -49,7 +49,7 @@ use crate::{
     text::quoted,
 };
 
-/// Number of objects above which the model is not tried on the CPU before the GPU draws it.
+/// Maximum number of objects whose models are tried on the CPU before the GPU draws them.
 const MOST_TRIED: usize = 64;
 /// Maximum number of lights listed one by one.
 const MOST_LISTED: usize = 16;
