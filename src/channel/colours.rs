@@ -1,8 +1,8 @@
-//! The colours of channels that are no scale; data colours of M. Okabe, K. Ito (2008), *Color Universal Design*.
+//! Fixed colours of debug channels; data colours of M. Okabe, K. Ito (2008), *Color Universal Design*.
 
 use glam::Vec3;
 
-/// A cosine below 0: grey, which viridis has not.
+/// Negative cosine: grey, a colour that viridis does not contain.
 pub const BELOW: [u8; 3] = [120; 3];
 /// Not a number.
 pub const NAN: [u8; 3] = [255, 0, 200];
@@ -10,11 +10,11 @@ pub const NAN: [u8; 3] = [255, 0, 200];
 pub const INFINITE: [u8; 3] = [240, 228, 66];
 /// Light below 0.
 pub const NEGATIVE: [u8; 3] = [86, 180, 233];
-/// A normal that looks towards the observer.
+/// A normal that faces the observer.
 pub const TOWARDS: [u8; 3] = [86, 180, 233];
-/// A normal that looks away from the observer.
+/// A normal that faces away from the observer.
 pub const AWAY: [u8; 3] = [213, 94, 0];
-/// Stripes on what is cut off; the others are black.
+/// Stripes on clipped values; the others are black.
 pub const CLIPPED: [u8; 3] = [240, 228, 66];
 
 /// The edges of polygons.

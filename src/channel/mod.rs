@@ -85,7 +85,7 @@ impl DebugChannel {
         Self::Light,
     ];
 
-    /// The name on the command line.
+    /// Name on the command line.
     #[must_use]
     pub const fn id(self) -> &'static str {
         match self {
@@ -106,7 +106,7 @@ impl DebugChannel {
         }
     }
 
-    /// The name for people.
+    /// Display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -127,7 +127,7 @@ impl DebugChannel {
         }
     }
 
-    /// Its values, and what to look for.
+    /// The values of the channel, and what to look for.
     #[must_use]
     pub const fn explanation(self) -> &'static str {
         match self {
@@ -201,8 +201,8 @@ impl DebugChannel {
         Self::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture. Lines and dots are drawn over the dim
-    /// grey surface of [`NotANumber`](Self::NotANumber).
+    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture. Lines and dots are drawn
+    /// over the dim grey surface of [`NotANumber`](Self::NotANumber).
     #[must_use]
     pub const fn code(self) -> u32 {
         match self {
@@ -252,12 +252,12 @@ impl DebugChannel {
     }
 }
 
-/// A channel with what its picture depends on.
+/// A channel with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// The channel.
     pub channel: DebugChannel,
-    /// Its light, by its place among the lights that shine; `None` if there is none of the kind it needs.
+    /// The channel's light, as an index among the active lights; `None` if there is no suitable one.
     pub light: Option<usize>,
     /// The values at the ends of the scale: for depth, metres.
     pub range: [f32; 2],
@@ -266,8 +266,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// A channel of a scene seen from an eye. It is about the `chosen` light of the scene if that shines and, where a
-    /// direction is asked for, has one; otherwise about the one that is brightest at the objects.
+    /// A channel of a scene seen from an eye. It refers to the `chosen` light of the scene if that is active
+    /// and, where a direction is needed, has one; otherwise to the light that is brightest at the objects.
     #[must_use]
     pub fn new(
         channel: DebugChannel,
@@ -284,7 +284,7 @@ impl Setting {
         Self { channel, light, range, from_position: declared.is_some_and(|l| l.declaration.has_position) }
     }
 
-    /// True if the light with that place among those that shine takes part in the picture.
+    /// True if the light with this index among the active ones takes part in the picture.
     #[must_use]
     pub fn shines(&self, light: usize) -> bool {
         !self.channel.is_picture() || self.light.is_none_or(|alone| alone == light)
@@ -311,7 +311,7 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
     let arriving = |light: &Light| {
         let (entry, emitter, record) = emitter(light, registry, encoding)?;
         if entry.declaration.extent {
-            // It shines from no one direction.
+            // It has no single direction.
             return channel
                 .is_picture()
                 .then(|| luminance(from_all(&*emitter, &record, middle) * record.colour));

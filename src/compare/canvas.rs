@@ -2,7 +2,7 @@
 
 use crate::lettering::Lettering;
 
-/// The ground of plates with text, and between pictures.
+/// Background of plates with text, and between pictures.
 pub(super) const DARK: [u8; 3] = [22, 22, 22];
 /// Text on a plate.
 pub(super) const BRIGHT: [u8; 3] = [240, 240, 240];

@@ -170,7 +170,7 @@ pub(super) struct Scratch {
     parts: [Plane<Tile>; 2],
 }
 
-/// A picture as it is seen.
+/// A picture as perceived.
 #[derive(Default)]
 pub(super) struct Seen {
     /// The opponent channels, blurred.

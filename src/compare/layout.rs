@@ -88,10 +88,11 @@ pub fn edge(split: f32, length: u32) -> u32 {
 /// of [`Comparison::views`], each of the size of its cell. A layout of two views shows view A if there is no other.
 ///
 /// # Errors
-/// If pictures of a layout over each other have different sizes, or light is to be compared and one has none.
+/// Returns an error if overlaid pictures have different sizes, or if light is to be compared and one picture
+/// has none.
 ///
 /// # Panics
-/// If there is no picture.
+/// Panics if there are no pictures.
 pub fn compose(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Result<Vec<u8>, Unequal> {
     let (a, b) = (&shown[0], shown.get(1));
     match (comparison.layout, b) {
@@ -138,7 +139,7 @@ fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
     let at = edge(comparison.split, length);
     let [_, b] = sides(comparison, size);
     canvas.copy(pair.b.rgb8(), width, [b[0], b[1]], b);
-    // A view that is not seen has neither letter nor edge.
+    // A view that is not visible has neither letter nor edge.
     if at > 0 && at < length {
         let line = (2.0 * canvas.scale()).round().max(1.0) as u32;
         for (extra, colour) in [(1, DARK), (0, BRIGHT)] {

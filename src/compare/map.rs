@@ -44,7 +44,7 @@ impl Pair<'_> {
     /// green, blue, row by row from the top.
     ///
     /// # Errors
-    /// If light is to be compared, and one picture has none.
+    /// Returns an error if light is to be compared, and one picture has none.
     pub fn map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
         let differences = self.differences(comparison)?;
         let mut canvas = Canvas { size: self.a.size(), rgb8: differences.colours(comparison) };

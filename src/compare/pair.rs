@@ -17,7 +17,7 @@ pub enum Unequal {
         "one picture has {}×{} pixels, the other {}×{}; they must have the same size", .0[0], .0[1], .1[0], .1[1]
     )]
     Sizes([u32; 2], [u32; 2]),
-    /// Light is to be compared, and one of them has none.
+    /// Light is to be compared, but one of them has none.
     #[error("the light of a picture is not known; compare display codes")]
     NoLight,
 }
@@ -71,7 +71,7 @@ impl<'a> Pair<'a> {
     /// View A and the other.
     ///
     /// # Errors
-    /// If their sizes differ.
+    /// Returns an error if their sizes differ.
     pub fn new(a: &'a Shown, b: &'a Shown) -> Result<Self, Unequal> {
         if a.size() == b.size() { Ok(Self { a, b }) } else { Err(Unequal::Sizes(a.size(), b.size())) }
     }
@@ -86,7 +86,7 @@ impl<'a> Pair<'a> {
     /// The differences of the pixels, in the channel and the values of a comparison.
     ///
     /// # Errors
-    /// If light is to be compared, and one picture has none.
+    /// Returns an error if light is to be compared, and one picture has none.
     pub fn differences(&self, comparison: &Comparison) -> Result<Differences, Unequal> {
         let channel = comparison.channel;
         match comparison.values {

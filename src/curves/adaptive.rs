@@ -1,4 +1,4 @@
-//! Points of a function: more where it bends.
+//! Points of a function: denser where it bends.
 
 use glam::Vec3;
 use rayon::prelude::*;

@@ -23,7 +23,7 @@ impl Format {
     /// The format that the name of a file asks for.
     ///
     /// # Errors
-    /// If there is no such format.
+    /// Returns an error if no format has this extension.
     pub fn of(path: &Path) -> Result<Self, String> {
         let extension = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
         let known = |format: &Self| extension.as_deref() == Some(format.extension());
@@ -45,7 +45,7 @@ impl Format {
         }
     }
 
-    /// Behind the point in the name of a file.
+    /// The extension, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ impl Format {
         }
     }
 
-    /// How such a file begins: others are not replaced.
+    /// The signature of such a file: others are not replaced.
     #[must_use]
     pub fn signature(self) -> Signature {
         match self {
@@ -68,7 +68,7 @@ impl Format {
     /// The content of the file.
     ///
     /// # Errors
-    /// If the picture is too large to be encoded.
+    /// Returns an error if the picture is too large to be encoded.
     pub fn bytes(self, sheet: &Sheet) -> io::Result<Vec<u8>> {
         Ok(match self {
             Self::Svg => sheet.figure().svg().into_bytes(),

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::optics::colour::luminance;
 
-/// What a plot shows.
+/// The quantity of a plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// `f` in sr⁻¹ in the plane of incidence.
@@ -125,7 +125,7 @@ impl Kind {
     }
 }
 
-/// What of three channels a curve shows.
+/// The channel shown by a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
     /// ITU-R BT.709.

@@ -57,7 +57,7 @@ impl Lobe {
     /// The lobe at a point with a frame, for light from `l`; all vectors are those of the room.
     ///
     /// # Errors
-    /// If the user no longer wants it.
+    /// Returns [`Cancelled`] if the user cancels.
     pub fn new(
         surface: &dyn Surface,
         l: Vec3,

@@ -44,7 +44,7 @@ pub use sheet::{Sheet, Style};
 pub use slice::{Slice, slice};
 pub use subject::{Subject, subjects_with};
 
-/// What all curves of a plot have in common.
+/// The settings shared by all curves of a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
     /// The quantity.
@@ -60,7 +60,7 @@ impl Setup {
     /// A setup with legal angles.
     ///
     /// # Errors
-    /// If the light is not above the surface, or an angle is not finite.
+    /// Returns an error if the light is not above the surface, or an angle is not finite.
     pub fn new(kind: Kind, theta_i: f64, phi_i: f64) -> Result<Self, CurveError> {
         if !(0.0..90.0).contains(&theta_i) {
             return Err(CurveError::Light(theta_i));
@@ -93,7 +93,7 @@ pub struct Point {
 /// A curve, or measured points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
     /// By increasing angle.
     pub points: Vec<Point>,
@@ -142,7 +142,7 @@ impl std::fmt::Display for Missing {
     }
 }
 
-/// The reason why there is no curve.
+/// The reason why a curve cannot be calculated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurveError {
     /// Light from below.
@@ -185,7 +185,7 @@ pub enum CurveError {
         /// The reason.
         why: String,
     },
-    /// The user no longer wants it.
+    /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

@@ -42,7 +42,8 @@ fn grid(from: i32, to: i32, step: usize, special: &[f64]) -> Vec<f64> {
 /// The curve of a kind: of measured paints the points, of everything else a line.
 ///
 /// # Errors
-/// If there is no such curve of the subject, the CPU cannot run the model, or the user no longer wants it.
+/// Returns an error if the subject has no such curve, if the CPU cannot run the model, or if the user
+/// cancels.
 pub fn curve(
     subject: &Subject,
     setup: &Setup,
@@ -91,7 +92,7 @@ pub fn curve(
         (Kind::Fresnel, _) => grid(0, 90, 2, &[]),
         (Kind::Distribution, _) => grid(0, 89, 1, &[0.05, 0.5, GRAZING]),
         _ => {
-            // Where lobes stand: the mirror direction, the way back to the light, the normal.
+            // The positions of lobes: the mirror direction, the direction back to the light, the normal.
             let lobes = [theta_i, -theta_i, 0.0].into_iter().flat_map(around);
             grid(-88, 88, 2, &lobes.chain([-GRAZING, GRAZING]).collect::<Vec<_>>())
         }

@@ -1,4 +1,4 @@
-//! A plot: curves with what they have in common, as a figure.
+//! A plot: curves with their shared settings, as a figure.
 
 use std::io;
 
@@ -59,7 +59,7 @@ impl Sheet {
         self.channel.unwrap_or(Channel::Luminance).of(rgb)
     }
 
-    /// What must be said of the values: those that are not finite, and those that the figure cannot show.
+    /// Remarks on values that are not finite, and on those that the figure cannot show.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
@@ -167,7 +167,7 @@ impl Sheet {
     /// The figure as the bytes of a PNG file.
     ///
     /// # Errors
-    /// If the picture is too large to be encoded.
+    /// Returns an error if the picture is too large to be encoded.
     pub fn png(&self) -> io::Result<Vec<u8>> {
         let picture = self.figure().picture();
         let mut bytes = Vec::new();
@@ -176,7 +176,7 @@ impl Sheet {
         Ok(bytes)
     }
 
-    /// What the axis cuts off.
+    /// Remarks on values beyond the axis.
     fn beyond(&self, axis: &Axis) -> Vec<String> {
         let largest = |curve: &Curve| {
             let values = curve.points.iter().map(|p| self.value(p.rgb));

@@ -13,7 +13,7 @@ use crate::{optics::colour::srgb_encode8, progress::Progress};
 /// Efficient BRDF Representation*.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
-    /// The name of its subject.
+    /// Name of the subject.
     pub name: String,
     /// Pixels across and down.
     pub side: u32,
@@ -86,7 +86,7 @@ fn shown(f: Vec3, channel: Option<Channel>) -> Vec3 {
 /// The image slice of a subject.
 ///
 /// # Errors
-/// If it is a paint, the CPU cannot run the model, or the user no longer wants it.
+/// Returns an error if the subject is a paint, if the CPU cannot run the model, or if the user cancels.
 pub fn slice(
     subject: &Subject,
     setup: &Setup,

@@ -1,4 +1,4 @@
-//! What a curve is of.
+//! The subject of a curve.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::{
 /// A model with its parameters, a measured paint, or the fit to a measured material.
 #[derive(Clone)]
 pub struct Subject {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
     source: Source,
 }
@@ -68,7 +68,7 @@ impl Subject {
     /// Measured data by name: a paint of [`PAINTS`], or a material of the MERL database, as fitted.
     ///
     /// # Errors
-    /// The names that there are.
+    /// Returns the existing names.
     pub fn measured(id: &str) -> Result<Self, String> {
         if let Some((id, name)) = PAINTS.iter().find(|(known, _)| *known == id) {
             return Ok(Self { name: format!("{name}{MEASURED}"), source: Source::Paint(id) });
@@ -136,10 +136,10 @@ impl Subject {
         }
     }
 
-    /// Fails if there is no such curve of it.
+    /// Fails if the subject has no curve of this kind.
     ///
     /// # Errors
-    /// The reason.
+    /// Returns the reason.
     pub fn has(&self, kind: Kind) -> Result<(), CurveError> {
         let asked = match kind {
             Kind::Fresnel => Some(Factor::Fresnel { cos_d: 1.0 }),

@@ -80,7 +80,7 @@ pub enum VariantField {
 }
 
 impl VariantField {
-    /// Its name within that of a step.
+    /// Name of the field within the name of a step.
     fn label(&self, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -177,7 +177,7 @@ fn named(text: &str) -> Option<String> {
 }
 
 impl LightField {
-    /// Its name within that of a step.
+    /// Name of the field within the name of a step.
     fn label(&self, light: &Light, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -199,7 +199,7 @@ impl LightField {
     }
 
     fn put(self, light: &mut Light, registry: &Registry, room: SceneSize) {
-        // A field that is absent gets the value that it has when the file is read again.
+        // A missing field gets the value that it has when the file is read again.
         match self {
             Self::Name(name) => light.name = named(&name),
             Self::Enabled(on) => light.enabled = on,
@@ -224,7 +224,7 @@ impl LightField {
 }
 
 impl ObjectField {
-    /// Its name within that of a step.
+    /// Name of the field within the name of a step.
     fn label(&self, object: &Object, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -291,10 +291,10 @@ fn step(label: &str, part: &str) -> String {
 }
 
 impl Document {
-    /// Makes a change, if the rules of scenes allow it. `selection` is the present one.
+    /// Makes a change, if the rules of scenes allow it. `selection` is the present selection.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
         self.check(&edit, registry)?;
         let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut Scene)| {
@@ -373,10 +373,11 @@ impl Document {
     }
 
     /// Changes the type of a light, which gets everything that the type requires. `place` is a position and a
-    /// direction for one that has none; without it, the light hangs in the middle of the room and shines down.
+    /// direction for one without them; if not given, the light hangs in the middle of the room and shines
+    /// down.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn change_light_type(
         &mut self,
         i: usize,
@@ -399,7 +400,7 @@ impl Document {
             }
             field.put(light, registry, room);
             if let Some(position) = light.position.filter(|_| !has_place) {
-                // Heights that stay apart, however many others are in the way.
+                // Heights that stay distinct, however many others are in the way.
                 let height = |k: usize| (k as f64 * GOLDEN_RATIO).fract() as f32 * room.height;
                 let column =
                     (1..document.scene.objects.len() + 3).map(|k| (0.5 * room.corner()).with_y(height(k)));
@@ -465,7 +466,7 @@ impl Document {
         self.came_or_went(patch, format!("Delete {name}"), part);
     }
 
-    /// A part came or went: a step of its own.
+    /// Records that a part was added or removed, as a separate step.
     fn came_or_went(&mut self, patch: Patch, name: String, selection: Selection) {
         self.end_gesture();
         self.touch(Extent::All, true);

@@ -94,7 +94,7 @@ impl Serialize for Problem {
 /// file.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("{name}: file not found{}", .hint.as_deref().unwrap_or(""))]
     NotFound {
         /// The file.
@@ -184,7 +184,7 @@ pub enum LoadError {
         /// The mistake.
         what: String,
     },
-    /// Readable, but not a valid scene. With every problem, in the order of the file.
+    /// The content is readable, but not a valid scene. Contains every problem, in the order of the file.
     #[error("{}", lines(.name, .problems))]
     Invalid {
         /// The file.
@@ -251,7 +251,7 @@ impl LoadError {
     }
 }
 
-/// What has this limit.
+/// The kind of file with this limit.
 fn kind_of(most: u64) -> &'static str {
     if most == MAX_PICTURE_BYTES { "picture with a scene in it" } else { "scene" }
 }
@@ -292,7 +292,7 @@ fn similar_file(path: &FilePath) -> Option<String> {
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        // A hint at what was given helps nobody.
+        // A suggestion equal to the given name helps nobody.
         .filter(|name| path.file_name().is_none_or(|given| given != name.as_str()))
         .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness > 0.85)

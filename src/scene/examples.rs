@@ -1,4 +1,4 @@
-//! The shipped scenes, built into the program, so that it needs no folder beside it.
+//! The shipped scenes, built into the program, so that it needs no folder next to it.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ use crate::{parameter::Values, registry::Registry};
 /// A shipped scene.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// Its file name in the folder `scenes`.
+    /// File name in the folder `scenes`.
     pub file: &'static str,
     /// The text of the file.
     pub text: &'static str,
@@ -72,16 +72,16 @@ const LOOKS: [(&str, &str); 10] = texts![
     "openpbr_ceramic.json",
 ];
 
-/// A material that artists reach for, a preset of its reflection model.
+/// A ready-made material: a preset of its reflection model.
 #[derive(Clone, Debug)]
 pub struct Look {
     /// The id of the reflection model.
     pub model: String,
-    /// Its name: "Car paint".
+    /// Name: "Car paint".
     pub name: String,
     /// One line: its parts.
     pub description: String,
-    /// The values of its parameters.
+    /// Values of the parameters.
     pub material: Values,
 }
 

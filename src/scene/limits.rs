@@ -25,7 +25,7 @@ pub struct Limits {
     pub slider_max: f64,
     /// True if only whole numbers are legal.
     pub whole: bool,
-    /// The reason for the limits, where the numbers alone do not say it.
+    /// The reason for the limits, if the numbers alone do not explain it.
     pub because: Option<String>,
 }
 
@@ -42,14 +42,14 @@ impl Limits {
         Self { min: f64::from(ABOVE_ZERO), slider_min: 0.0, ..Self::between(0.0, max) }
     }
 
-    /// The same limits with a slider that walks through a part of them.
+    /// The limits with a slider over a part of them.
     #[must_use]
     pub fn slider(mut self, min: f64, max: f64) -> Self {
         (self.slider_min, self.slider_max) = (min, max);
         self
     }
 
-    /// The same limits for whole numbers.
+    /// The limits for integers.
     #[must_use]
     pub fn whole(mut self) -> Self {
         self.whole = true;
@@ -59,7 +59,7 @@ impl Limits {
     /// True if a value is legal.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
-        // In f32, which the scene holds: 0.1 is legal where the limit is the f32 next to it.
+        // In f32, as in the scene: 0.1 is legal if the limit is the f32 next to it.
         let within = value as f32 >= self.min as f32 && value as f32 <= self.max as f32;
         value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
@@ -94,7 +94,7 @@ impl Limits {
     }
 }
 
-/// A number as people write it: at most four decimals, no trailing zeros, a real minus sign.
+/// A number in plain notation: at most four decimals, no trailing zeros, a true minus sign.
 #[must_use]
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
@@ -124,7 +124,7 @@ pub fn position(size: SceneSize, axis: usize) -> Limits {
     Limits { because: Some(because), ..Limits::above_zero(extent) }
 }
 
-/// A component of a direction. Which triples are one is up to [`check::direction`].
+/// A component of a direction. [`check::direction`] decides which triples are valid.
 #[must_use]
 pub fn direction() -> Limits {
     Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-1.0, 1.0)

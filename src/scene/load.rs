@@ -22,9 +22,10 @@ use crate::{
 
 pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
 
-/// Larger files are refused before they are read. Reading takes time proportional to the file, whatever is in it, and at
-/// most two seconds per mebibyte, as for all readers: `tests/suite/hostile_text.rs`. The largest legal scene, with every parameter of 10 000 objects
-/// given, is less than a tenth of this.
+/// Maximum size of a file; larger files are refused before they are read. Reading takes time proportional to
+/// the file, whatever its content, and at most two seconds per mebibyte, as for all readers:
+/// `tests/suite/hostile_text.rs`. The largest legal scene, with every parameter of 10 000 objects given, is
+/// less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// The largest file of a picture that is opened: one of the largest size, not compressed.
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
@@ -50,7 +51,7 @@ pub struct Missing {
     pub path: Path,
     /// The default as shown to people: `lambert`, `10 × 10 × 10 m`.
     pub default: String,
-    /// Its place in the file: the beginning of the object that lacks it.
+    /// Position of the enclosing object, which lacks the field.
     pub place: Option<Place>,
 }
 
@@ -61,7 +62,7 @@ impl fmt::Display for Missing {
 }
 
 impl Missing {
-    /// The same as a problem.
+    /// The missing part as a problem.
     #[must_use]
     pub fn problem(&self) -> Problem {
         let predicate = format!("is missing; --use-defaults accepts the default, {}", self.default);
@@ -100,13 +101,13 @@ pub struct Loaded {
 /// Reads a scene from a regular file.
 ///
 /// # Errors
-/// [`LoadError`]; its text names the file as `path` does.
+/// Returns a [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
     let folder = path.parent().unwrap_or(FilePath::new(""));
     in_folder(&bytes(path, registry)?, (&path.shown().to_string(), folder), registry, defaults)
 }
 
-/// What reading a file gives. A picture may be larger than other files: the scene is a small part of it.
+/// The result of reading a file. A picture may be larger than other files: the scene is a small part of it.
 fn larger_if_picture(
     path: &FilePath,
     read: impl Fn(u64) -> Result<Vec<u8>, FileError>,
@@ -120,7 +121,7 @@ fn larger_if_picture(
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
-/// [`LoadError`]; its text names it as `path` does.
+/// Returns a [`LoadError`]; its text names the input as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
     larger_if_picture(path, |most| files::read_input(path, most))
         .map_err(|e| LoadError::from_file(path, e, registry))
@@ -129,7 +130,7 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// Reads the content of a scene file, valid or not.
 ///
 /// # Errors
-/// [`LoadError`] if it is not a regular file, too large, or cannot be read.
+/// Returns a [`LoadError`] if it is not a regular file, is too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
     larger_if_picture(path, |most| files::read(path, most))
         .map_err(|e| LoadError::from_file(path, e, registry))
@@ -138,7 +139,7 @@ pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError>
 /// Reads a scene from a stream, for example [standard input](STDIN).
 ///
 /// # Errors
-/// [`LoadError`] with `name` as the name of the file.
+/// Returns a [`LoadError`] with `name` as the name of the file.
 pub fn reader(
     from: impl Read,
     name: &str,
@@ -161,7 +162,7 @@ pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<S
 /// Reads the content of a stream, which can be read once.
 ///
 /// # Errors
-/// [`LoadError`] if it is too large for a scene, or cannot be read.
+/// Returns a [`LoadError`] if it is too large for a scene, or cannot be read.
 pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     let failed = |source| LoadError::Io { name: name.to_owned(), source };
     let mut bytes = Vec::new();
@@ -177,7 +178,7 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
 /// scene names, and its extension decides on the [format](super::formats).
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn from_bytes(
     bytes: &[u8],
     name: &str,
@@ -188,10 +189,10 @@ pub fn from_bytes(
     in_folder(bytes, (name, folder), registry, defaults)
 }
 
-/// The same, with the folder of the files that the scene names.
+/// Like [`from_bytes`], with the folder of the files named in the scene.
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn in_folder(
     bytes: &[u8],
     (name, folder): (&str, &FilePath),
@@ -211,7 +212,7 @@ pub fn in_folder(
 /// Reads a scene from text: [`from_bytes`].
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn from_text(
     text: &str,
     name: &str,

@@ -130,7 +130,7 @@ impl Default for SceneSize {
 pub struct Light {
     /// Id of the light type.
     pub light_type: String,
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
     /// False while switched off.
     pub enabled: bool,
@@ -168,11 +168,11 @@ pub struct Object {
     pub object_type: String,
     /// Parameters declared by the type; absent ones have their defaults.
     pub shape: Values,
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
     /// False while hidden.
     pub visible: bool,
-    /// Position of its centre.
+    /// Position of the centre.
     pub position: Vec3,
     /// Largest extent in metres.
     pub size: f32,
@@ -248,8 +248,8 @@ impl Light {
         self.colour_temperature.map_or(self.colour, temperature::black_body_rgb8)
     }
 
-    /// Changes its type: position, direction and parameters are added or removed as the new type requires. Intensity or
-    /// luminous flux is kept, unless the new type has another unit.
+    /// Changes the type: position, direction and parameters are added or removed as the new type requires.
+    /// Intensity or luminous flux is kept, unless the new type has another unit.
     pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
         let new = to.declaration;
         let flux = self.luminous_flux.filter(|_| to.has_flux());
@@ -268,7 +268,7 @@ impl Light {
 }
 
 impl Object {
-    /// Changes its type. Of the parameters, those of both types are kept; not so the tessellation: each type counts
+    /// Changes the type. Parameters of both types are kept, but not the tessellation: each type counts
     /// something else.
     pub fn set_type(&mut self, to: &ShapeEntry) {
         self.shape = self.shape.legal(to.parameters);
@@ -336,18 +336,19 @@ impl Scene {
         own.chain(of_variants).chain([self.reflection_model.as_str()]).collect()
     }
 
-    /// The lights that are on.
+    /// The active lights.
     pub fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
     }
 
-    /// The light types of the lights, switched off or not: what a shader for the scene is composed of.
+    /// The light types of all lights, including those switched off: the light types in a shader for the
+    /// scene.
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
     }
 
-    /// The files that lights and objects name, as often as they do.
+    /// The files named by lights and objects, with repetitions.
     pub fn files(&self) -> impl Iterator<Item = &NamedFile> {
         let of_lights = self.lights.iter().map(|light| &light.parameters);
         let values = of_lights.chain(self.objects.iter().map(|object| &object.shape));
@@ -375,7 +376,7 @@ impl Scene {
     }
 }
 
-/// A light of the scene for calculation, but for its own parameters. A light of an unknown type gives no light.
+/// A light of the scene for calculation, without its type's parameters. A light of an unknown type is dark.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
     let Some(entry) = registry.light(&light.light_type) else {
@@ -390,7 +391,8 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
-/// A light of the scene for calculation: its type, its type with its own parameters, and the rest. None if its type is unknown.
+/// A light of the scene for calculation: its type, its type with its parameters, and the rest. `None` if its
+/// type is unknown.
 #[must_use]
 pub fn emitter<'a>(
     light: &Light,
@@ -401,7 +403,7 @@ pub fn emitter<'a>(
     Some((entry, (entry.instantiate)(&light.parameters, encoding), record(light, registry, encoding)))
 }
 
-/// True if some of the lights that shine has extent, so that they are sampled.
+/// True if any active light has extent, so that lights are sampled.
 #[must_use]
 pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &Registry) -> bool {
     shining
@@ -409,7 +411,7 @@ pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &R
         .any(|light| registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent))
 }
 
-/// True if some of the lights that shine is uniform, so that albedos are needed.
+/// True if any active light is uniform, so that albedos are needed.
 #[must_use]
 pub fn shines_from_everywhere<'a>(
     shining: impl IntoIterator<Item = &'a Light>,

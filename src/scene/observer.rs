@@ -78,8 +78,9 @@ impl ViewAngle {
 }
 
 impl Scene {
-    /// The field of view of its pictures in a window. One alone shows what a wide picture shows at the sides; of views beside
-    /// each other the smaller side has the observer's angle, so that objects keep their size.
+    /// The field of view of the scene's pictures in a window. A single picture shows at the sides what a wide
+    /// picture shows; in views side by side the smaller side has the observer's angle, so that objects keep
+    /// their size.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
         let beside = self.comparison.layout == Layout::SideBySide && !self.variants.is_empty();

@@ -152,7 +152,7 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
 /// file's extension. Returns the stamp to expect next time.
 ///
 /// # Errors
-/// [`SaveError`]; the old file is then untouched.
+/// Returns a [`SaveError`]; the old file is then untouched.
 pub fn write(
     path: &Path,
     scene: &Scene,
@@ -169,7 +169,7 @@ pub fn write(
     let writer =
         format.writer().ok_or_else(|| SaveError::CannotWrite { path: shown(), format: format.name() })?;
     let failed = |error| SaveError::from_file(path, error);
-    // What /dev/stdout leads to has no folder for a draft.
+    // The target of /dev/stdout has no folder for a draft.
     if let Ok(kind @ (files::Kind::Pipe | files::Kind::Device)) = files::kind(path) {
         return Err(failed(files::FileError::Kind(kind)));
     }
@@ -218,7 +218,7 @@ fn comes_back(
     Err(format!("its format would lose {what}"))
 }
 
-/// The way to the first value that differs.
+/// The path of the first value that differs.
 fn difference(a: &serde_json::Value, b: &serde_json::Value, at: &ScenePath) -> Option<ScenePath> {
     use serde_json::Value::{Array, Object};
     match (a, b) {

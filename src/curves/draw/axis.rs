@@ -3,7 +3,7 @@
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Its quantity, with its unit.
+    /// Quantity, with its unit.
     pub label: String,
     /// Smallest value.
     pub from: f64,

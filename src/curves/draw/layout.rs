@@ -16,7 +16,7 @@ const SAMPLE: f64 = 36.0;
 /// The thickness of curves.
 pub(super) const THICK: f64 = 2.0;
 
-/// What stands around a figure.
+/// The parts around a figure.
 pub(super) struct Around<'a> {
     pub(super) size: [f64; 2],
     pub(super) heading: &'a str,

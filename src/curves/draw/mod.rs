@@ -37,7 +37,7 @@ pub enum Line {
     Dotted,
     /// By dashes and dots in turn.
     DashDot,
-    /// By long dashes.
+    /// Long dashes.
     LongDashed,
     /// By a dash and two dots in turn.
     DashDotDot,
@@ -98,11 +98,11 @@ pub enum Mark {
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
-    /// Its points. Where one is not finite the line has a gap, with crosses at the edge of the plot.
+    /// Points. A point that is not finite makes a gap in the line, with crosses at the edge of the plot.
     pub points: Vec<(f64, f64)>,
-    /// Its colour, counted from 0; 6 is the text colour.
+    /// Colour, counted from 0; 6 is the text colour.
     pub colour: usize,
     /// The line between them.
     pub line: Line,
@@ -113,7 +113,7 @@ pub struct Series {
 /// A plot with two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// Its content, for screen readers.
+    /// Content, for screen readers.
     pub title: String,
     /// The line above it; often empty, where a caption stands below.
     pub heading: String,
@@ -196,7 +196,7 @@ pub enum Ground {
 const SCALE: f64 = 2.0;
 
 impl Figure {
-    /// Draws it; returns where its values are.
+    /// Draws the figure, and returns the area of its values.
     pub fn draw(&self, pen: &mut impl Pen) -> Ground {
         match self {
             Self::Plot(plot) => cartesian::draw(plot, pen),

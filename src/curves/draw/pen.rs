@@ -1,4 +1,4 @@
-//! What figures are drawn with: lines, areas, text and pictures, on paper of either sort.
+//! The drawing operations for figures: lines, areas, text and pictures, on light or dark paper.
 
 /// A colour by its job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl Ink {
     }
 }
 
-/// The part of a line of text that stands at its place.
+/// The part of a line of text that is at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Its left end.

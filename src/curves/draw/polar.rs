@@ -10,7 +10,7 @@ use super::{
 /// A polar plot of the half plane above a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polar {
-    /// Its content, for screen readers.
+    /// Content, for screen readers.
     pub title: String,
     /// The line above it.
     pub heading: String,
@@ -90,7 +90,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
         let mut points = Vec::new();
         for (angle, value) in &series.points {
             let part = plot.radius.place(*value);
-            // What is below the scale lies at the centre.
+            // Values below the scale are at the centre.
             points.push(at(*angle, full * if part < 0.0 { 0.0 } else { part }));
             if !value.is_finite() && (angle - last).abs() > 2.0 {
                 last = *angle;

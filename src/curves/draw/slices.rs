@@ -9,7 +9,7 @@ use super::{
 /// One picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Its name, above it.
+    /// Name, above the picture.
     pub name: String,
     /// Pixels across and down.
     pub side: u32,
@@ -20,7 +20,7 @@ pub struct Tile {
 /// Pictures side by side, with axes from 0° to 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
-    /// Its content, for screen readers.
+    /// Content, for screen readers.
     pub title: String,
     /// The line above it.
     pub heading: String,

@@ -11,7 +11,7 @@ use crate::{
     text::xml,
 };
 
-/// Where the figure stands, which decides the colours of text and grid.
+/// The surroundings of the figure, which decide the colours of text and grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// In a page, whose style sheet replaces them: `#010203` for text, `#040506` for the grid.

@@ -31,7 +31,7 @@ fn lobe(surface: &dyn Surface, l: Vec3, frame: &Frame) -> Lobe {
     Lobe::new(surface, l, frame, TermSelection::All, &Progress::NONE).expect("not cancelled")
 }
 
-/// Where the lobe is highest.
+/// The direction in which the lobe is highest.
 fn peak(lobe: &Lobe) -> Vec3 {
     let highest = (0..lobe.ways.len()).max_by(|a, b| lobe.values[*a].total_cmp(&lobe.values[*b]));
     lobe.ways[highest.expect("not empty")]
@@ -171,7 +171,7 @@ fn a_term_alone_has_a_lobe_of_its_own() {
     assert_eq!(of(TermSelection::Ambient).largest(), 0.0);
 }
 
-/// A surface that is no number on one side of the plane x = 0 of the room, and infinite at the normal.
+/// A surface that returns NaN on one side of the plane x = 0 of the room, and infinity at the normal.
 struct Broken {
     everywhere: bool,
 }

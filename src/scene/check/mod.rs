@@ -32,7 +32,7 @@ impl fmt::Display for Written {
     }
 }
 
-/// Everything that is wrong with a scene; empty if it is valid. In the order of the scene.
+/// All problems of a scene, in order; empty if it is valid.
 #[must_use]
 pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let count = |n: usize, what: &str| match n {
@@ -53,19 +53,19 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with one light, including conflicts with other parts; empty if there is no such light.
+/// All problems of one light, including conflicts with other parts; empty if the light does not exist.
 #[must_use]
 pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).light(index)
 }
 
-/// Everything that is wrong with one object, including conflicts with other parts; empty if there is no such object.
+/// All problems of one object, including conflicts with other parts; empty if the object does not exist.
 #[must_use]
 pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).object(index)
 }
 
-/// Everything that is wrong with the observer, including conflicts with other parts.
+/// All problems of the observer, including conflicts with other parts.
 #[must_use]
 pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).observer()
@@ -75,13 +75,13 @@ pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
 pub struct Parts<'a>(Check<'a>);
 
 impl<'a> Parts<'a> {
-    /// Begins to check the parts of a scene.
+    /// Starts checking the parts of a scene.
     #[must_use]
     pub fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
         Self(Check::of(scene, registry))
     }
 
-    /// Everything that is wrong with one light.
+    /// All problems of one light.
     pub fn light(&mut self, index: usize) -> Vec<Problem> {
         let check = &mut self.0;
         check.light(index);
@@ -91,13 +91,13 @@ impl<'a> Parts<'a> {
         std::mem::take(&mut check.problems)
     }
 
-    /// Everything that is wrong with one object.
+    /// All problems of one object.
     pub fn object(&mut self, index: usize) -> Vec<Problem> {
         self.0.object(index);
         std::mem::take(&mut self.0.problems)
     }
 
-    /// Everything that is wrong with the observer.
+    /// All problems of the observer.
     pub fn observer(&mut self) -> Vec<Problem> {
         let check = &mut self.0;
         let p = check.scene.observer.position;
@@ -108,7 +108,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Everything that is wrong with the room, including parts outside it.
+/// All problems of the room, including parts outside it.
 #[must_use]
 pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| {
@@ -123,20 +123,20 @@ pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with the reflection model and the shading model of a scene. The scene's reflection model
-/// also judges the materials of objects without an override: see [`object`].
+/// All problems of the reflection model and the shading model of a scene. The scene's reflection model also
+/// judges the materials of objects without an override: see [`object`].
 #[must_use]
 pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.models())
 }
 
-/// Everything that is wrong with the variants and the comparison.
+/// All problems of the variants and the comparison.
 #[must_use]
 pub fn variants(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.variants())
 }
 
-/// Everything that is wrong with the display.
+/// All problems of the display.
 #[must_use]
 pub fn display(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.display())
@@ -153,8 +153,8 @@ pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     room
 }
 
-/// The identity of a place: two parts are in the same place if their coordinates are the same numbers in 32 bits, as in
-/// scene files. Non-finite positions have no place.
+/// The identity of a position: two parts have the same position if their coordinates are equal in 32 bits, as
+/// in scene files. `None` for non-finite positions.
 fn place(p: Vec3) -> Option<[u32; 3]> {
     // Adding 0 makes −0 and 0 the same bits.
     p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits))
@@ -454,7 +454,7 @@ fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
         let known = chain.contains(&name);
         chain.push(name);
         if known {
-            // A circle that others are in is theirs to report.
+            // A cycle of other variants is reported for those.
             if chain[0] == name {
                 return Err(format!("a variant must not be based on itself: {}", chain.join(" → ")));
             }

@@ -38,7 +38,7 @@ pub const MAX_SIZE: f32 = 1e9;
 /// `Ok`, or the rule that is broken.
 pub type Rule = Result<(), String>;
 
-/// `Ok` if a rule is kept.
+/// `Ok` if a rule is obeyed.
 fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
     if kept { Ok(()) } else { Err(rule()) }
 }
@@ -166,9 +166,10 @@ pub fn material_parameter(
 /// The declarations that a value in the material of an object is held against.
 #[derive(Clone, Debug)]
 pub enum Declared {
-    /// Those of its reflection model and its shading model: both must allow it.
+    /// Declarations of the object's reflection model and shading model: both must allow the value.
     Own(Vec<&'static Parameter>),
-    /// Those of others, since it uses none of that name: one must allow it. None for unknown names.
+    /// Declarations of others, since neither uses the name: one must allow the value. Empty for unknown
+    /// names.
     Others(Vec<&'static Parameter>),
 }
 
@@ -185,7 +186,7 @@ impl Declared {
         Self::Others(registry.material_users().flat_map(|(_, all)| all).filter(|p| p.name == name).collect())
     }
 
-    /// All of them.
+    /// All declarations.
     #[must_use]
     pub fn all(&self) -> &[&'static Parameter] {
         match self {
@@ -196,7 +197,7 @@ impl Declared {
     /// `Ok` for a value that is allowed.
     ///
     /// # Errors
-    /// The declaration whose rule the value breaks; `None` if there is none at all.
+    /// Returns the declaration whose rule the value breaks; `None` if there is none at all.
     pub fn refusing(&self, value: &Value) -> Result<(), Option<&'static Parameter>> {
         let refuses = |p: &&&'static Parameter| !p.allows(value);
         match self {
@@ -206,8 +207,8 @@ impl Declared {
         }
     }
 
-    /// The value itself if it is allowed, else the nearest one that is; none where the type is another one, or the
-    /// ranges exclude each other.
+    /// The value itself if it is allowed, or else the nearest allowed one; `None` if the type differs, or the
+    /// ranges do not overlap.
     #[must_use]
     pub fn nearest(&self, value: &Value) -> Option<Value> {
         if self.refusing(value).is_ok() {

@@ -39,7 +39,7 @@ impl SceneFormat for Json {
 /// The scene in a text that comes from a source, if there is anything in it.
 ///
 /// # Errors
-/// The position where the text ceases to be JSON, and what was expected there.
+/// Returns the position where the text stops being JSON, and what was expected there.
 pub(super) fn parse<'a>(
     text: &'a str,
     source: &'a Source<'_>,

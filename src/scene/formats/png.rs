@@ -1,8 +1,8 @@
 //! Pictures that hold the scene that they show: PNG files with a compressed text of a keyword of ours.
 //!
-//! The pieces of the file are walked through here, since a decoder of pictures passes over damaged texts in silence,
-//! and unpacks the picture to reach the texts behind it. Source: *Portable Network Graphics (PNG) Specification (Third
-//! Edition)*, W3C (2025), sections 5.2 to 5.5 and 11.3.3.
+//! The chunks of the file are read here, since a decoder of pictures silently skips damaged texts, and
+//! decompresses the picture to reach the texts after it. Source: *Portable Network Graphics (PNG)
+//! Specification (Third Edition)*, W3C (2025), sections 5.2 to 5.5 and 11.3.3.
 
 use std::io::Read as _;
 
@@ -59,7 +59,7 @@ impl SceneFormat for Png {
     }
 }
 
-/// A piece of a PNG file.
+/// A chunk of a PNG file.
 struct Chunk<'a> {
     kind: [u8; 4],
     content: &'a [u8],
@@ -109,7 +109,7 @@ fn without_scene(mut others: Vec<String>) -> String {
     format!("there is no scene in this picture{only}; {WRITERS}")
 }
 
-/// The first piece, and what follows it; `None` if the bytes end before it does.
+/// The first chunk, and what follows it; `None` if the bytes end before it does.
 fn next_chunk(bytes: &[u8]) -> Option<(Chunk<'_>, &[u8])> {
     let (length, rest) = bytes.split_first_chunk()?;
     let (kind, _) = rest.split_first_chunk::<4>()?;
@@ -121,12 +121,12 @@ fn next_chunk(bytes: &[u8]) -> Option<(Chunk<'_>, &[u8])> {
         crc.update(checked);
         crc.sum() == u32::from_be_bytes(*sum)
     };
-    // The sums of pictures are no business of ours, and take a while.
+    // The checksums of pictures do not matter here, and take a while.
     let whole = kind != b"iTXt" || whole();
     Some((Chunk { kind: *kind, content: &checked[4..], whole }, rest))
 }
 
-/// What stands before the first zero, and what behind it.
+/// The bytes before the first zero, and those after it.
 fn until_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let end = bytes.iter().position(|b| *b == 0)?;
     Some((&bytes[..end], &bytes[end + 1..]))
@@ -200,7 +200,7 @@ mod tests {
             vec![scene([0, 0], b"{}"), pixels()],
             vec![scene([1, 0], &packed(b"{}"))],
             vec![other(), pixels(), scene([1, 0], &packed(b"{}"))],
-            // Of two, the first counts.
+            // The first of two counts.
             vec![scene([0, 0], b"{}"), scene([0, 0], b"[]")],
         ] {
             assert_eq!(scene_text(&picture(&chunks), 2).as_deref(), Ok("{}"));

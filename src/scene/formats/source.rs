@@ -28,7 +28,8 @@ impl<'a> Source<'a> {
     /// The content as text, after the byte order mark with which some programs begin: places do not count it.
     ///
     /// # Errors
-    /// [`LoadError`] if it is not UTF-8, with a guess at what it is instead, or nothing but white space.
+    /// Returns a [`LoadError`] if the content is not UTF-8, with a guess at the encoding, or if it is only
+    /// white space.
     pub fn text(&self) -> Result<&str, LoadError> {
         let text = decode(after_mark(self.bytes), self.name)?;
         if text.trim().is_empty() {

@@ -24,12 +24,12 @@ mod values;
 /// The number of unknown keys with a suggestion; more would take long in a hostile file.
 pub(super) const MAX_SUGGESTIONS: usize = 200;
 
-/// The most problems listed. A scene within the limits of lights and objects with errors in every field has fewer; a
-/// hostile file could have millions.
+/// Maximum number of problems listed. A scene within the limits of lights and objects with errors in every
+/// field has fewer; a hostile file could have millions.
 pub(super) const MAX_PROBLEMS: usize = 200_000;
 
-/// The scene in a tree of values: that of JSON, or one that another format made of a text. `before` are problems that
-/// were found when the tree was made, each with its byte.
+/// The scene in a tree of values, from JSON or made by another format. `before` are problems that were found
+/// when the tree was made, each with its byte.
 pub(super) fn parsed<'a>(
     text: &'a str,
     root: Ast<'a>,

@@ -13,7 +13,7 @@ pub(super) struct Problems {
 }
 
 impl Problems {
-    /// Adds one. It is told if it should look for what was meant, which takes time.
+    /// Adds a problem. `problem` is told whether to look for suggestions, which takes time.
     pub(super) fn add(&mut self, at: usize, problem: impl FnOnce(bool) -> Problem) {
         match self.list.len() {
             MAX_PROBLEMS.. => self.unlisted += 1,
@@ -21,7 +21,7 @@ impl Problems {
         }
     }
 
-    /// Those that are listed, and the number of the rest.
+    /// The listed problems, and the number of the rest.
     pub(super) fn into_parts(self) -> (Vec<(usize, Problem)>, usize) {
         (self.list, self.unlisted)
     }

@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// The rows below the heading, with their parts; `None` for those of no part.
+/// The rows below the header, with their parts; `None` for rows without a part.
 fn parts<'g>(grid: &'g Grid, columns: &Columns) -> impl Iterator<Item = (&'g [Cell], Option<Part>)> {
     grid.rows[columns.heading + 1..].iter().filter_map(|row| match row {
         Row::Comment(_) => None,
@@ -32,7 +32,7 @@ fn parts<'g>(grid: &'g Grid, columns: &Columns) -> impl Iterator<Item = (&'g [Ce
     })
 }
 
-/// The bytes of the decimal commas. Where commas separate columns, they are none.
+/// The bytes of the decimal commas; none if commas separate columns.
 pub(super) fn decimal_commas(grid: &Grid, columns: &Columns) -> Vec<usize> {
     let mut commas = Vec::new();
     if grid.separator == b',' {
@@ -195,7 +195,7 @@ fn put<'a>(fields: &mut Vec<ObjectProp<'a>>, keys: &[&'static str], place: &Rang
     }
 }
 
-/// The value in a cell: a text where the field is one, and otherwise what it looks like.
+/// The value in a cell: a text if the field is one, and otherwise as it appears.
 fn value<'a>(text: &'a str, cell: &Cell, column: &Column, part: Part) -> Ast<'a> {
     let place = range(&cell.range);
     let string = || Ast::StringLit(StringLit { range: place, value: content(text, cell) });

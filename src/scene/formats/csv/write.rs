@@ -12,7 +12,7 @@ use crate::{
     text::json::{self, Ast, STRICT},
 };
 
-/// What a table that is written again keeps of the old one.
+/// The properties of an old table that are kept when it is written again.
 struct Manner {
     separator: char,
     line_end: &'static str,
@@ -45,7 +45,7 @@ impl Default for Manner {
 }
 
 impl Manner {
-    /// The manner of a table; that of new ones if it is none.
+    /// The properties of a table; the defaults if it is not a table.
     fn of(old: &str, registry: &Registry) -> Self {
         let text = old.trim_start_matches('\u{FEFF}');
         let text = &*with_line_feeds(text);
@@ -130,7 +130,7 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
         let cell = |name: &String| list.iter().find(|(n, _)| n == name).map_or("", |(_, cell)| cell.as_str());
         line([part.name()].into_iter().chain(names.iter().map(cell)), &manner, &mut out);
     }
-    // Remarks on rows that are gone stay, too.
+    // Comments on removed rows stay too.
     let gone = |place: Option<Place>| match place {
         None => true,
         Some(Place::Heading) => false,
