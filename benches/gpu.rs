@@ -132,7 +132,7 @@ const LIGHT: Vec3 = Vec3::new(6.5, 7.0, 8.0);
 const EYE: Vec3 = Vec3::new(5.0, 5.0, 6.7);
 
 /// The sphere, light and camera with Bevy's own material, light and light loop: no shadows, no ambient light.
-/// Its lights are clustered on the CPU, which is cheaper for a single light.
+/// The lights are clustered on the CPU, which is cheaper for a single light.
 fn standard_material() -> GpuRenderer {
     let empty = Scene { objects: Vec::new(), lights: Vec::new(), ..full_screen("lambert") };
     let mut renderer =

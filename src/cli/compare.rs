@@ -176,7 +176,7 @@ impl Input {
     }
 }
 
-/// How views are drawn.
+/// The way in which views are drawn.
 struct Drawing<'a> {
     /// Samples per pixel.
     samples: u32,

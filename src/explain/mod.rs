@@ -128,7 +128,7 @@ pub struct Explanation {
 pub struct Lamp {
     /// The light, or several lights at infinity.
     pub lights: Vec<Part>,
-    /// Their radiance, cd/m².
+    /// The radiance of the light or lights, cd/m².
     pub radiance: Vec3,
 }
 

@@ -1,8 +1,8 @@
 //! Matching: finds the parameters of one view that come closest to another.
 //!
-//! If view A shows Blinn's model and view B Phong's: which exponent of the one gives the highlight of the
-//! other? The search knows nothing about the models. It changes the free parameters of view B within their
-//! legal ranges, and minimises the sum of squared differences between
+//! Suppose view A shows Blinn's model and view B Phong's: which exponent of the one gives the highlight of
+//! the other? The search knows nothing about the models. It changes the free parameters of view B within
+//! their legal ranges, and minimises the sum of squared differences between
 //!
 //! - [the lobes](What::Lobe): the responses of both models for about a thousand pairs of directions,
 //! - [the pictures](What::Picture): the light of both views, drawn small by the CPU renderer, or

@@ -62,7 +62,7 @@ struct State {
     urgent: bool,
     /// The copy on disk.
     copy: Option<PathBuf>,
-    /// The reason why there is no copy.
+    /// The reason why there is no copy on disk.
     problem: Option<String>,
     /// True if the problem was reported to the window.
     told: bool,

@@ -410,7 +410,7 @@ mod tests {
         model.instantiate(&values, Encoding::Srgb)
     }
 
-    /// The same surface with other lobes.
+    /// A surface with its lobes replaced.
     struct With(std::sync::Arc<dyn Surface>, Lobes);
 
     impl Surface for With {

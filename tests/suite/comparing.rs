@@ -250,7 +250,7 @@ fn three() -> Bench {
     Bench::new(Session::new(scene))
 }
 
-/// What a view shows, except for names.
+/// The contents of a view, without names.
 fn seen(bench: &Bench, view: usize) -> (String, String, String) {
     let (scene, _) = bench.session.document.seen(view, &bench.registry).expect("there is such a view");
     let object = &scene.objects[0];

@@ -290,7 +290,7 @@ fn systems_of_others_run_before_and_after_the_sets_of_the_lab() {
 
 // ── programs ──
 
-/// What the child process does: one of [`programs`](stage). Another process starts it with [`STAGE`].
+/// The variable that tells a child process which of the [`programs`](stage) it runs.
 const STAGE: &str = "LCM_TEST_STAGE";
 
 /// The file written by a stage, and the arguments of a stage that is a command line.

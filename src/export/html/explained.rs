@@ -31,9 +31,9 @@ const ALL: usize = 4;
 pub struct Parts {
     /// HTML of the section in the panel.
     pub section: &'static str,
-    /// Its style sheet.
+    /// The style sheet of the section.
     pub style: &'static str,
-    /// Its script.
+    /// The script of the section.
     pub script: &'static str,
     /// The element with the texts.
     pub data: String,

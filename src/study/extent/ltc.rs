@@ -161,7 +161,7 @@ impl Fitted {
         Self { nodes: nodes.collect() }
     }
 
-    /// The same matrix for all views.
+    /// A table with the same matrix for all views.
     #[cfg(test)]
     pub(super) fn of(matrix: DMat3) -> Self {
         Self { nodes: vec![(matrix, 0.0); NODES] }
