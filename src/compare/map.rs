@@ -10,7 +10,7 @@ use super::{
 };
 use crate::scene::{Comparison, comparison::Sign};
 
-/// How much of an outline covers the colours below it.
+/// The opacity of an outline over the colours below it.
 const OUTLINE: f32 = 0.6;
 
 impl Differences {

@@ -53,7 +53,7 @@ impl Slice {
     }
 
     /// The slice as a picture of RGB bytes: π f, sRGB-encoded, white at 1; or log₁₀ π f from −2, black, to 2, white.
-    /// What is not finite is a pattern of magenta and black.
+    /// Non-finite values are drawn as a pattern of magenta and black.
     #[must_use]
     pub fn rgb8(&self, channel: Option<Channel>, log: bool) -> Vec<u8> {
         let side = self.side.max(1) as usize;

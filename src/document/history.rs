@@ -189,7 +189,8 @@ impl Patch {
         put(&self.objects, &mut scene.objects, &mut labels.objects, back);
     }
 
-    /// The part that it changes. Another type of one changes the numbers that a file gives to others.
+    /// The part that the step changes. A change of a part's type concerns all parts, because it changes the
+    /// numbers that a file gives to others.
     fn extent(&self) -> Extent {
         match (&self.rest, &self.lights[..], &self.objects[..]) {
             (Some(_), [], []) => Extent::Rest,

@@ -77,14 +77,15 @@ pub enum ParameterKind {
         /// The value if the scene gives none.
         default: [f32; 3],
     },
-    /// One of several named choices. A [flag](Self::flag) is one whose choices are `false` and `true`.
+    /// One of several named choices. A [flag](Self::flag) is a choice between `false` and `true`.
     Choice {
         /// The choices: name in files, name in the window.
         options: &'static [(&'static str, &'static str)],
         /// Index of the default.
         default: usize,
     },
-    /// A file of numbers, by its name relative to the folder of the scene file. Light types and object types may have such parameters.
+    /// A file of numbers, given by its name relative to the folder of the scene file. Light types and object
+    /// types may have such parameters.
     File {
         /// The files that are legal.
         format: &'static FileFormat,
@@ -103,7 +104,7 @@ impl ParameterKind {
     /// True if the choices are those of a [flag](Self::flag).
     #[must_use]
     pub fn is_flag(&self) -> bool {
-        // The names in the window may be others.
+        // The names in the window may differ.
         matches!(self, Self::Choice { options: [("false", _), ("true", _)], .. })
     }
 
@@ -129,8 +130,8 @@ impl Parameter {
         self.kind.is_flag()
     }
 
-    /// The difference that prevents two declarations from being one parameter of materials, in this one and
-    /// in the other: the type or the unit. Ranges and defaults may differ.
+    /// The difference in type or unit that prevents two declarations from being the same parameter of
+    /// materials, described for this declaration and for the other. Ranges and defaults may differ.
     #[must_use]
     pub fn clash(&self, other: &Self) -> Option<(String, String)> {
         if self.kind.name() != other.kind.name() {
@@ -161,8 +162,8 @@ impl Parameter {
         }
     }
 
-    /// The default and the ends of the range, each once; all options of a choice. For tests of code that uses
-    /// the parameter.
+    /// The default and the ends of the range, each once; for a choice, all options. Useful in tests of code
+    /// that uses the parameter.
     #[must_use]
     pub fn ends(&self) -> Vec<Value> {
         let mut ends = vec![self.default_value()];
@@ -260,7 +261,8 @@ impl Parameter {
         self.allows(&nearest).then_some(nearest)
     }
 
-    /// The nearest legal value to an angle in degrees, for which a whole turn more or less is the same.
+    /// The nearest legal value to an angle in degrees, where angles that differ by whole turns are
+    /// equivalent.
     #[must_use]
     pub fn nearest_angle(&self, degrees: f32) -> Option<Value> {
         let same = [0.0, -360.0, 360.0].map(|turn| Value::Number(degrees + turn));
@@ -268,7 +270,7 @@ impl Parameter {
         legal.or_else(|| self.nearest(&Value::Number(degrees)))
     }
 
-    /// The WGSL type of its field.
+    /// The WGSL type of the parameter's field.
     #[must_use]
     pub fn wgsl_type(&self) -> &'static str {
         match self.kind {

@@ -480,7 +480,7 @@ impl Serialize for NamedFile {
 pub struct Table {
     /// The file.
     pub file: Option<NamedFile>,
-    /// Its numbers when the table was taken.
+    /// The numbers of the file when the table was taken.
     pub numbers: Arc<[f32]>,
 }
 

@@ -21,9 +21,9 @@ use crate::{
 /// One problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Its position in the file, if the scene came from one.
+    /// The position in the file, if the scene came from one.
     pub place: Option<Place>,
-    /// Its path in the scene.
+    /// The path of the value in the scene.
     pub path: Path,
     /// The value as written, if a value breaks a rule.
     pub found: Option<String>,
@@ -153,10 +153,10 @@ pub enum LoadError {
         name: String,
         /// The position of the first wrong byte.
         place: Place,
-        /// Its probable cause.
+        /// The probable cause.
         what: String,
     },
-    /// Its extension belongs to no format.
+    /// The file name's extension belongs to no known format.
     #[error("{name}: {unknown}")]
     UnknownExtension {
         /// The file.

@@ -47,7 +47,7 @@ pub enum Defaults {
 /// A missing part with a default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// Its path: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
+    /// The path in the scene: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
     pub path: Path,
     /// The default as shown to people: `lambert`, `10 × 10 × 10 m`.
     pub default: String,

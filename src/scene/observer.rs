@@ -89,8 +89,8 @@ impl Scene {
 }
 
 impl Observer {
-    /// The same with an angle of view for a picture of this size, drawn by a renderer that takes the field of view as the
-    /// vertical one.
+    /// This observer with the angle of view of a picture of this size, for a renderer that takes the field of
+    /// view as the vertical one.
     #[must_use]
     pub fn fitting(self, [width, height]: [u32; 2], angle: ViewAngle) -> Self {
         Self { field_of_view: angle.vertical(width as f32 / height as f32).to_degrees(), ..self }

@@ -44,7 +44,7 @@ pub enum SaveError {
         /// At least one.
         problems: Vec<Problem>,
     },
-    /// Its extension belongs to no format.
+    /// The file name's extension belongs to no known format.
     #[error("{} was not written: {unknown}", .path.shown())]
     UnknownExtension {
         /// The file.
@@ -52,7 +52,7 @@ pub enum SaveError {
         /// The extension, and those that are known.
         unknown: UnknownExtension,
     },
-    /// Its format can only be read.
+    /// The format can only be read.
     #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     CannotWrite {
         /// The file.
@@ -60,7 +60,7 @@ pub enum SaveError {
         /// The name of the format.
         format: &'static str,
     },
-    /// Its format cannot hold all of the scene.
+    /// The format cannot hold the whole scene.
     #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     Lossy {
         /// The file.

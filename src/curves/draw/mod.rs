@@ -21,9 +21,9 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
-/// Text and axes of figures that stand alone.
+/// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
-/// Their thin lines behind the curves.
+/// The colour of grid lines behind the curves.
 const GRID: [u8; 3] = [222, 222, 218];
 
 /// The line between the points of a series.

@@ -26,28 +26,30 @@ impl Ink {
     }
 }
 
-/// The part of a line of text that is at its position.
+/// The part of a line of text that is placed at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its left end.
+    /// The left end.
     Start,
-    /// Its middle.
+    /// The middle.
     Middle,
-    /// Its right end.
+    /// The right end.
     End,
 }
 
-/// Places are in units of the figure, x to the right and y down from the upper left corner.
+/// Draws the curves of a figure. Positions are in the figure's units, x to the right and y down from the
+/// upper left corner.
 pub trait Pen {
-    /// A line through some points; `dash` has the lengths of dashes and gaps, none for a line without gaps.
+    /// Draws a line through points; `dash` holds the lengths of dashes and gaps, and is empty for a solid
+    /// line.
     fn stroke(&mut self, path: &[[f64; 2]], ink: Ink, width: f64, dash: &[f64]);
-    /// An area.
+    /// Fills an area.
     fn fill(&mut self, path: &[[f64; 2]], ink: Ink);
-    /// A line of text, whose letters stand at the height of `at`.
+    /// Draws a line of text with its baseline at `at`.
     fn text(&mut self, at: [f64; 2], anchor: Anchor, px: f64, text: &str);
-    /// A picture of RGB bytes in a rectangle: left, top, width, height.
+    /// Draws a picture of RGB bytes in a rectangle: left, top, width, height.
     fn picture(&mut self, to: [f64; 4], size: [u32; 2], rgb8: &[u8]);
-    /// What follows is drawn for a series, counted from 0, or for none. Most pens draw all alike.
+    /// Says which series the following calls belong to, counted from 0, or `None`. Most pens ignore it.
     fn series(&mut self, _series: Option<usize>) {}
     /// The room that a line of text takes at most.
     fn width(&self, px: f64, text: &str) -> f64;

@@ -94,7 +94,7 @@ pub trait SceneWriter {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Target<'a> {
-    /// Its folder.
+    /// The folder of the file.
     pub folder: &'a FilePath,
     /// Present content, if any, to preserve what a scene does not contain, such as comments.
     pub old: Option<&'a [u8]>,

@@ -13,7 +13,7 @@ use crate::{
 pub struct Source<'a> {
     /// The content.
     pub bytes: &'a [u8],
-    /// Its name in messages: the path of the file, or that of a stream.
+    /// The name in messages: the path of the file, or the name of a stream.
     pub name: &'a str,
     /// The folder of the files that a scene may name.
     pub folder: &'a FilePath,

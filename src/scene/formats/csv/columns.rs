@@ -55,7 +55,7 @@ const TEXTS: [&str; 7] =
 /// A column that a table may have.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
-    /// Its name.
+    /// The name in the first line of the table.
     pub(super) name: String,
     /// The way to the field, from the part on: `material`, `k_d`.
     pub(super) keys: Vec<&'static str>,
