@@ -86,7 +86,7 @@ pub enum PayloadError {
         /// The path of the file in it.
         file: String,
     },
-    /// The program contains no place.
+    /// The program contains no place for a scene.
     #[error("the file of this program was changed so that no scene can be put into it")]
     NoPlace,
 }
