@@ -1,7 +1,7 @@
 //! Debug channels: the values that lead to the colour of a pixel, drawn as colours instead of the picture.
 //!
 //! A channel belongs to a view, not to the scene. It is drawn without exposure and tone mapping, so that its legend
-//! holds; [`DebugChannel::Light`] alone is a picture like any other, under one light. The shaders have the channels in
+//! is valid; only [`DebugChannel::Light`] is a picture like any other, under one light. The shaders have the channels in
 //! `assets/shaders/channels.wgsl`, the CPU renderer in `src/reference/channel.rs`.
 //!
 //! ```
@@ -334,7 +334,7 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
 
 /// The radiance of a light with extent, summed over the directions from a point.
 fn from_all(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Vec3 {
-    /// Samples: brightness is compared, no more.
+    /// The number of samples, enough to compare brightness.
     const SAMPLES: u32 = 64;
     let sequence = Sequence::new(0, 0);
     let sum = (0..SAMPLES).map(|i| emitter.sample(record, p, sequence.point(i)));

@@ -55,7 +55,7 @@ impl Colours {
         self.0[(place.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as usize]
     }
 
-    /// The colour of a difference, where 1 is the largest that is told apart.
+    /// The colour of a difference, where 1 is the largest distinguishable one.
     pub(super) fn of_difference(&self, sign: Sign, difference: f32) -> [u8; 3] {
         self.at(match sign {
             Sign::Absolute => difference.abs(),

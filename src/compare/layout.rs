@@ -164,7 +164,8 @@ pub(super) struct Area {
     pub(super) corner: [bool; 2],
 }
 
-/// The parts of a picture in which so many views have their letters; none where one is alone, or all are one map.
+/// The areas of a picture in which the letters of this number of views are placed; none for a single view, or if
+/// all views form one map.
 pub(super) fn areas(comparison: &Comparison, size: [u32; 2], shown: usize) -> Vec<Area> {
     match comparison.layout {
         _ if shown < 2 => Vec::new(),

@@ -6,16 +6,16 @@ use rayon::prelude::*;
 use super::{Channel, CurveError, Detail, Kind, Setup, Subject};
 use crate::{optics::colour::srgb_encode8, progress::Progress};
 
-/// `f` over the half angle θ_h, from left to right, and the difference angle θ_d, from bottom to top, at φ_d = 90°:
-/// highlights stand at the left, the Fresnel effect at the top, retroreflection at the bottom.
+/// `f` over the half angle θ_h, from left to right, and the difference angle θ_d, from bottom to top, at φ_d
+/// = 90°: highlights are at the left, the Fresnel effect at the top, and retroreflection at the bottom.
 ///
 /// B. Burley (2012), *Physically-Based Shading at Disney*; S. Rusinkiewicz (1998), *A New Change of Variables for
 /// Efficient BRDF Representation*.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
-    /// Name of the subject.
+    /// The name of the subject.
     pub name: String,
-    /// Pixels across and down.
+    /// The number of pixels across and down.
     pub side: u32,
     /// The BRDF at the centre of each pixel, row by row from the top.
     pub values: Vec<Vec3>,
@@ -74,10 +74,10 @@ impl Slice {
     }
 }
 
-/// Powers of ten from grey to white and from grey to black.
+/// The number of powers of ten from grey to white, and from grey to black.
 pub(super) const LOG_RANGE: f32 = 2.0;
 
-/// π f in the channel that is shown.
+/// π f in the displayed channel.
 fn shown(f: Vec3, channel: Option<Channel>) -> Vec3 {
     let f = channel.map_or(f, |channel| Vec3::splat(channel.of(f) as f32));
     std::f32::consts::PI * f
@@ -96,7 +96,7 @@ pub fn slice(
     subject.has(Kind::Slice)?;
     subject.runs()?;
     let side = if detail == Detail::Fine { 256 } else { 48 };
-    // The rows between two looks at the wish to stop.
+    // The number of rows between two checks for cancellation.
     let step = side / 16;
     let mut slice = Slice { name: subject.name.clone(), side, values: Vec::new() };
     for row in (0..side).step_by(step as usize) {

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{Channel, Kind, Setup, Sheet, sample::viewer};
 
-/// A cell, in quotation marks where it must be.
+/// A cell, in quotation marks if necessary.
 fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

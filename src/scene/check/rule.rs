@@ -163,7 +163,7 @@ pub fn material_parameter(
     }
 }
 
-/// The declarations that a value in the material of an object is held against.
+/// The declarations against which a value in an object's material is checked.
 #[derive(Clone, Debug)]
 pub enum Declared {
     /// Declarations of the object's reflection model and shading model: both must allow the value.

@@ -52,7 +52,7 @@ pub(super) fn parsed<'a>(
     })
 }
 
-/// One part of a scene, alone, from JSON with checked syntax; only types and keys are checked.
+/// Reads a single part of a scene from JSON with checked syntax; only types and keys are checked.
 pub(super) fn alone<T>(
     text: &str,
     registry: &Registry,

@@ -177,12 +177,12 @@ fn trimmed(text: &str, range: Range<usize>) -> Range<usize> {
     start..start + all.trim().len()
 }
 
-/// The separator with which the first line that is no remark has the most columns.
+/// The separator that gives the most columns in the first line that is not a remark.
 fn separator(text: &str) -> u8 {
     let is_remark = |line: &str| line.trim_start_matches('"').starts_with('#');
     let first = text.lines().find(|line| !line.trim().is_empty() && !is_remark(line)).unwrap_or_default();
     let count = |separator: u8| first.bytes().filter(|b| *b == separator).count();
-    // Of equal ones, the last is the greatest.
+    // Among equal counts, `max_by_key` returns the last.
     SEPARATORS.into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 

@@ -43,9 +43,9 @@ impl Csv {
     /// scene may have. Reading stops after this number, so a longer table costs no more than the largest
     /// legal one.
     pub const MAX_ROWS: usize = 3 + MAX_LIGHTS + MAX_OBJECTS;
-    /// The most cells of a row. There are some hundred columns with a meaning.
+    /// Maximum number of cells in a row. Only some hundred columns have a meaning.
     pub const MAX_COLUMNS: usize = 1 << 15;
-    /// The most cells and remarks; a legal table with all columns has a third.
+    /// Maximum number of cells and remarks; a legal table with all columns has a third of it.
     pub const MAX_CELLS: usize = 4_000_000;
 }
 
@@ -58,7 +58,7 @@ impl SceneFormat for Csv {
         &["csv"]
     }
 
-    /// True if the first line that is no comment begins with the name of the first column.
+    /// True if the first line that is not a comment begins with the name of the first column.
     fn recognises(&self, content: &[u8]) -> bool {
         let mut lines = after_mark(content).split(|b| b"\r\n".contains(b)).map(<[u8]>::trim_ascii);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();

@@ -13,7 +13,7 @@ pub(super) struct Problems {
 }
 
 impl Problems {
-    /// Adds a problem. `problem` is told whether to look for suggestions, which takes time.
+    /// Adds a problem. The argument of `problem` is true if it should look for suggestions, which takes time.
     pub(super) fn add(&mut self, at: usize, problem: impl FnOnce(bool) -> Problem) {
         match self.list.len() {
             MAX_PROBLEMS.. => self.unlisted += 1,
