@@ -24,9 +24,9 @@ pub struct Shown {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a picture of {width} × {height} pixels has not {found} of them")]
 pub struct WrongSize {
-    /// Pixels across.
+    /// The width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// The height, pixels.
     pub height: u32,
     /// The number found.
     pub found: usize,
@@ -46,7 +46,7 @@ impl Shown {
         Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None })
     }
 
-    /// Adds the information which pixels objects cover.
+    /// Adds which pixels are covered by objects.
     ///
     /// # Errors
     /// Returns an error if the number of pixels is wrong.
@@ -102,7 +102,7 @@ impl Shown {
         self.outlines.as_deref()
     }
 
-    /// Pixels across and down.
+    /// The width and height, pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
@@ -120,7 +120,7 @@ impl Shown {
         self.rgb8
     }
 
-    /// The light, if it is known: linear, before exposure; that of the background is 0.
+    /// The light, if known: linear, before exposure; 0 for the background.
     #[must_use]
     pub fn light(&self) -> Option<&Picture> {
         self.light.as_ref()
