@@ -1,4 +1,4 @@
-//! Legends of channels: for the window and for pictures alike.
+//! Legends of channels, for the window and for pictures.
 
 use super::{
     DebugChannel, Setting,
@@ -6,10 +6,10 @@ use super::{
 };
 use crate::{registry::Registry, scene::Scene, shading::Stage};
 
-/// The meaning of the colours of a channel.
+/// The meaning of a channel's colours.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Legend {
-    /// The values that are shown, with their unit.
+    /// The quantity shown, with its unit.
     pub title: String,
     /// The numbers at the left, in the middle and at the right of a bar with the colours of
     /// [viridis](crate::optics::viridis).
@@ -97,7 +97,7 @@ impl Setting {
     }
 }
 
-/// A number with three digits.
+/// A number rounded to three digits.
 fn rounded(x: f32) -> f32 {
     let digits = 2 - x.abs().max(1e-9).log10().floor() as i32;
     ((f64::from(x) * 10f64.powi(digits)).round() / 10f64.powi(digits)) as f32

@@ -85,7 +85,7 @@ impl DebugChannel {
         Self::Light,
     ];
 
-    /// Name on the command line.
+    /// The name on the command line.
     #[must_use]
     pub const fn id(self) -> &'static str {
         match self {
@@ -106,7 +106,7 @@ impl DebugChannel {
         }
     }
 
-    /// Display name.
+    /// The display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -195,7 +195,7 @@ impl DebugChannel {
         }
     }
 
-    /// The channel with an id.
+    /// The channel with this id.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|channel| channel.id() == id)
@@ -220,31 +220,32 @@ impl DebugChannel {
         }
     }
 
-    /// True if it is a picture like any other, with exposure and tone mapping.
+    /// True if the channel is a picture like any other, with exposure and tone mapping.
     #[must_use]
     pub const fn is_picture(self) -> bool {
         matches!(self, Self::Light)
     }
 
-    /// True if it shows the light that leaves the surface, and not geometry; lines and dots lie over such a picture.
+    /// True if the channel shows the light that leaves the surface, not geometry; lines and dots are drawn
+    /// over such a picture.
     #[must_use]
     pub const fn is_of_light(self) -> bool {
         matches!(self, Self::Light | Self::Luminance | Self::Clipped | Self::NotANumber) || self.has_wires()
     }
 
-    /// True if lines or dots of the meshes are drawn over its picture.
+    /// True if lines or dots of the meshes are drawn over the channel's picture.
     #[must_use]
     pub const fn has_wires(self) -> bool {
         matches!(self, Self::VertexNormals | Self::Wireframe | Self::Vertices)
     }
 
-    /// True if it is about one light.
+    /// True if the channel is about one light.
     #[must_use]
     pub const fn has_light(self) -> bool {
         matches!(self, Self::Light | Self::NDotL | Self::NDotH)
     }
 
-    /// The channel after one, or after none: first all channels, then none.
+    /// The next channel after this one, or after `None`: cycles through all channels, then `None`.
     #[must_use]
     pub fn next(channel: Option<Self>) -> Option<Self> {
         let at = channel.and_then(|channel| Self::ALL.iter().position(|c| *c == channel));
@@ -259,7 +260,7 @@ pub struct Setting {
     pub channel: DebugChannel,
     /// The channel's light, as an index among the active lights; `None` if there is no suitable one.
     pub light: Option<usize>,
-    /// The values at the ends of the scale: for depth, metres.
+    /// The values at the ends of the scale; for depth in metres.
     pub range: [f32; 2],
     /// True if the light shines from its position, false if along its direction.
     pub from_position: bool,
@@ -267,7 +268,7 @@ pub struct Setting {
 
 impl Setting {
     /// A channel of a scene seen from an eye. It refers to the `chosen` light of the scene if that is active
-    /// and, where a direction is needed, has one; otherwise to the light that is brightest at the objects.
+    /// and has a direction where one is needed; otherwise to the light that is brightest at the objects.
     #[must_use]
     pub fn new(
         channel: DebugChannel,
@@ -342,7 +343,7 @@ fn from_all(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Vec3 {
     sum / SAMPLES as f32
 }
 
-/// A number with its two leading digits, rounded by a function.
+/// A number rounded by a function to its two leading digits.
 fn two_digits(x: f32, round: fn(f64) -> f64) -> f32 {
     if x <= 0.0 || !x.is_finite() {
         return 0.0;

@@ -79,18 +79,18 @@ impl<T: Clone + PartialEq> Splice<T> {
         self.old.len() + self.new.len()
     }
 
-    /// True if the list has another length after it.
+    /// True if the list has a different length afterwards.
     fn resizes(&self) -> bool {
         self.old.len() != self.new.len()
     }
 
-    /// True if it gives one part another value, but not another type.
+    /// True if only the value of one part changes, but not its type.
     fn is_of_one_by(&self, type_of: impl Fn(&T) -> &str) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if type_of(&old.1) == type_of(&new.1))
             && self.is_of_one()
     }
 
-    /// True if it gives one part another value.
+    /// True if only the value of one part changes.
     fn is_of_one(&self) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0.id == new.0.id)
     }
@@ -143,7 +143,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The difference between two versions that differ in the room, the display, the observer and the like.
+    /// The difference between two versions that differ in everything except lights and objects.
     pub(super) fn of_rest(old: Scene, new: Scene) -> Self {
         let rest = (old != new).then(|| Box::new([old, new]));
         Self { rest, ..Self::default() }
@@ -159,12 +159,12 @@ impl Patch {
         Self { objects: Splice::of_one(at, old, new).into_iter().collect(), ..Self::default() }
     }
 
-    /// The difference of a light that was added or removed: before, after.
+    /// The difference made by adding or removing lights: before, after.
     pub(super) fn of_lights(at: usize, old: Vec<(Label, Light)>, new: Vec<(Label, Light)>) -> Self {
         Self { lights: vec![Splice { at, old, new }], ..Self::default() }
     }
 
-    /// The difference of an object that was added or removed: before, after.
+    /// The difference made by adding or removing objects: before, after.
     pub(super) fn of_objects(at: usize, old: Vec<(Label, Object)>, new: Vec<(Label, Object)>) -> Self {
         Self { objects: vec![Splice { at, old, new }], ..Self::default() }
     }
@@ -342,7 +342,7 @@ struct Step {
     after: Selection,
 }
 
-/// The steps, and the number of those that are done.
+/// The steps, and the number of those that have not been undone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     steps: Vec<Step>,
@@ -373,7 +373,7 @@ impl History {
         self.done = self.steps.len();
     }
 
-    /// Adds a change to the last step that is done.
+    /// Adds a change to the last step that has not been undone.
     pub(super) fn go_on(&mut self, patch: Patch) {
         if let Some(Step { name, gesture, after, .. }) =
             self.done.checked_sub(1).and_then(|i| self.steps.get(i))
@@ -382,7 +382,7 @@ impl History {
         }
     }
 
-    /// Sets the selection after the last step: some steps select what they made.
+    /// Sets the selection after the last step: some steps select what they added.
     pub(super) fn selected(&mut self, selection: Selection) {
         if let Some(step) = self.done.checked_sub(1).and_then(|i| self.steps.get_mut(i)) {
             step.after = selection;

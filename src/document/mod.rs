@@ -33,7 +33,7 @@ const RECENT: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PartId(u64);
 
-/// A part of the scene, by its index.
+/// The selected part of the scene, by its index.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// The room and the display: the selection when no part is selected.
@@ -70,7 +70,7 @@ impl Extent {
         }
     }
 
-    /// Makes this part of a scene equal to that of another. Lists of other lengths stay as they are.
+    /// Makes this part of a scene equal to that of another. Lists of different lengths are left unchanged.
     pub(crate) fn copy(self, from: &Scene, to: &mut Scene) {
         match self {
             Self::Rest => history::copy_rest(from, to),
@@ -96,16 +96,16 @@ impl Extent {
 pub struct Document {
     scene: Scene,
     labels: Labels,
-    /// Not set until needed.
+    /// Set when needed.
     index: OnceLock<Index>,
     visits: Visits,
     /// The next id.
     next: u64,
     /// The scene as it is in the file.
     saved: Scene,
-    /// The names that only the file has.
+    /// The names that exist only in the file.
     saved_names: Vec<(Extent, String)>,
-    /// True if the two differ; not set until needed.
+    /// True if the scene and the file differ; set when needed.
     differs: OnceLock<bool>,
     history: History,
     gesture: u64,
@@ -235,7 +235,7 @@ impl Document {
         saved == *scene
     }
 
-    /// Records that the file contains another scene than was known.
+    /// Records that the content of the file is a different scene from the one known so far.
     pub fn set_saved(&mut self, scene: Scene) {
         self.saved = scene;
         self.saved_names.clear();
@@ -281,7 +281,7 @@ impl Document {
         self.visits.count()
     }
 
-    /// Changes the scene within an extent, as one step with this name. `selection` is the present selection.
+    /// Changes the scene within an extent, as one step with this name. `selection` is the current selection.
     /// Setting an equal value is not a change.
     pub fn change(
         &mut self,
@@ -355,7 +355,7 @@ impl Document {
         patch
     }
 
-    /// Gives every part a label, whatever a change did to the lists.
+    /// Gives every part a label after any change to the lists.
     fn label_parts(&mut self, registry: Option<&Registry>) {
         let (lights, objects) = (self.scene.lights.len(), self.scene.objects.len());
         self.labels.lights.truncate(lights);
@@ -371,7 +371,7 @@ impl Document {
         self.number_parts(registry);
     }
 
-    /// Changes a part as a consequence of the last step, which undoes it too.
+    /// Changes a part as a consequence of the last step; undoing the step undoes this too.
     pub fn go_on(&mut self, part: Extent, change: impl FnOnce(&mut Scene)) {
         let patch = self.patch(part, None, |document| change(&mut document.scene));
         self.history.go_on(patch);
@@ -423,7 +423,7 @@ impl Document {
         self.history.names()
     }
 
-    /// The number of steps that are done.
+    /// The number of steps that have not been undone.
     #[must_use]
     pub fn done(&self) -> usize {
         self.history.done()

@@ -1,5 +1,5 @@
-//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and edits, and for
-//! widgets, which show them while a value is typed.
+//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and
+//! edits, and for widgets, which check values while they are typed.
 
 use crate::{
     light,
@@ -12,16 +12,16 @@ use crate::{
     shape,
 };
 
-/// The legal values of a number, and how a slider walks through them.
+/// The legal values of a number, and the range of its slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
-    /// Smallest legal value.
+    /// The smallest legal value.
     pub min: f64,
-    /// Largest legal value; infinite when there is none.
+    /// The largest legal value; infinite if unlimited.
     pub max: f64,
-    /// Lower end of the slider.
+    /// The lower end of the slider.
     pub slider_min: f64,
-    /// Upper end of the slider.
+    /// The upper end of the slider.
     pub slider_max: f64,
     /// True if only whole numbers are legal.
     pub whole: bool,
@@ -30,7 +30,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Every number between two, both included.
+    /// All numbers between two limits, inclusive.
     #[must_use]
     pub fn between(min: f64, max: f64) -> Self {
         Self { min, max, slider_min: min, slider_max: max, whole: false, because: None }
@@ -42,7 +42,7 @@ impl Limits {
         Self { min: f64::from(ABOVE_ZERO), slider_min: 0.0, ..Self::between(0.0, max) }
     }
 
-    /// The limits with a slider over a part of them.
+    /// The limits with a slider over part of the range.
     #[must_use]
     pub fn slider(mut self, min: f64, max: f64) -> Self {
         (self.slider_min, self.slider_max) = (min, max);
@@ -64,7 +64,7 @@ impl Limits {
         value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
 
-    /// True if zero is excluded though everything above it is legal.
+    /// True if all positive numbers up to the maximum are legal, but zero is not.
     #[must_use]
     pub fn is_above_zero(&self) -> bool {
         self.min == f64::from(ABOVE_ZERO)
@@ -167,7 +167,7 @@ pub fn intensity(light: &light::Declaration) -> Limits {
     brightness().slider(0.0, f64::from(light.slider_max))
 }
 
-/// The luminous flux of a light, lumen. The slider reaches as far as that of the intensity does for a
+/// The luminous flux of a light, lumen. The end of the slider corresponds to that of the intensity, for a
 /// light that shines in every direction.
 #[must_use]
 pub fn luminous_flux(light: &light::Declaration) -> Limits {
@@ -175,7 +175,7 @@ pub fn luminous_flux(light: &light::Declaration) -> Limits {
     brightness().slider(0.0, significant(end, 1))
 }
 
-/// A number rounded to so many significant digits.
+/// A number rounded to this number of significant digits.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> f64 {
     // In decimal, so that the result is the number nearest to what people read.

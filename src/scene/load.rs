@@ -1,5 +1,5 @@
-//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can
-//! be wrong and a question about missing parts.
+//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can be
+//! wrong and a list of missing parts.
 
 use std::{
     collections::BTreeSet,
@@ -27,7 +27,7 @@ pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
 /// `tests/suite/hostile_text.rs`. The largest legal scene, with every parameter of 10 000 objects given, is
 /// less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
-/// The largest file of a picture that is opened: one of the largest size, not compressed.
+/// The maximum size of a picture file: that of the largest picture, uncompressed.
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
@@ -35,12 +35,12 @@ pub const STDIN: &str = "standard input";
 /// The treatment of a missing scene size, reflection model or shading model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Defaults {
-    /// The caller asks: [`Loaded::missing`] lists them, and the scene has the defaults already.
+    /// The caller decides: [`Loaded::missing`] lists them, and the scene already has the defaults.
     #[default]
     Ask,
-    /// They are used without asking. [`Loaded::missing`] still lists them.
+    /// Defaults are used without asking. [`Loaded::missing`] still lists the parts.
     Use,
-    /// They are an error, which names the flags that accept them.
+    /// Missing parts are an error, which names the flags that accept the defaults.
     Refuse,
 }
 
@@ -49,9 +49,9 @@ pub enum Defaults {
 pub struct Missing {
     /// The path in the scene: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
     pub path: Path,
-    /// The default as shown to people: `lambert`, `10 × 10 × 10 m`.
+    /// The default in readable form: `lambert`, `10 × 10 × 10 m`.
     pub default: String,
-    /// Position of the enclosing object, which lacks the field.
+    /// The position of the enclosing object, which lacks the field.
     pub place: Option<Place>,
 }
 
@@ -70,7 +70,7 @@ impl Missing {
     }
 }
 
-/// The state of a file, to notice changes by others: its length and a hash of its content.
+/// The state of a file, to detect changes by others: its length and a hash of its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Stamp {
     length: u64,
@@ -78,7 +78,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// The stamp of a content.
+    /// The stamp of this content.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut hasher = DefaultHasher::new();
@@ -87,7 +87,7 @@ impl Stamp {
     }
 }
 
-/// A scene that was read: valid, apart from the question about [`missing`](Self::missing) parts.
+/// A scene that was read: valid, apart from [missing](Self::missing) parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The scene, with defaults where parts are missing.
@@ -149,8 +149,8 @@ pub fn reader(
     from_bytes(&all_of(from, name)?, name, registry, defaults)
 }
 
-/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; none if the content is
-/// not in its format.
+/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; empty if the
+/// content does not follow the syntax of its format.
 #[must_use]
 pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<String> {
     let source = Source::new(bytes, (name, FilePath::new("")));
@@ -159,7 +159,7 @@ pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<S
     parsed.scene.models().into_iter().map(str::to_owned).collect()
 }
 
-/// Reads the content of a stream, which can be read once.
+/// Reads the content of a stream, which can be read only once.
 ///
 /// # Errors
 /// Returns a [`LoadError`] if it is too large for a scene, or cannot be read.
@@ -209,7 +209,7 @@ pub fn in_folder(
     Ok(Loaded { scene, missing, stamp: Stamp::of(bytes) })
 }
 
-/// Reads a scene from text: [`from_bytes`].
+/// Reads a scene from text, like [`from_bytes`].
 ///
 /// # Errors
 /// Returns a [`LoadError`] if the scene cannot be read.

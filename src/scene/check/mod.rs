@@ -23,7 +23,7 @@ use crate::{
 mod rule;
 pub use rule::*;
 
-/// A vector as in scene files.
+/// A vector as written in scene files.
 struct Written(Vec3);
 
 impl fmt::Display for Written {
@@ -71,7 +71,8 @@ pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).observer()
 }
 
-/// Checks part after part, as [`light`], [`object`] and [`observer`] do, without looking at all lights each time.
+/// Checks one part after another, as [`light`], [`object`] and [`observer`] do, without going through all
+/// lights each time.
 pub struct Parts<'a>(Check<'a>);
 
 impl<'a> Parts<'a> {
@@ -160,14 +161,14 @@ fn place(p: Vec3) -> Option<[u32; 3]> {
     p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits))
 }
 
-/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two objects may
-/// share a place.
+/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two
+/// objects may share a position.
 #[must_use]
 pub fn same_place(a: Vec3, b: Vec3) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// The first object in a place, for messages.
+/// The first object at a position, for messages.
 fn object_there(scene: &Scene, p: Vec3) -> Option<String> {
     scene.objects.iter().position(|o| same_place(o.position, p)).map(|i| format!("objects[{i}]"))
 }
@@ -184,17 +185,17 @@ fn observer_path() -> Path {
     Path::root().key("observer")
 }
 
-/// The problems found so far, and the data for judging the parts of a scene.
+/// The problems found so far, and the data for checking the parts of a scene.
 struct Check<'a> {
     scene: &'a Scene,
     registry: &'a Registry,
     room: SceneSize,
-    /// The first light in each place: with many objects, lookups replace pairwise comparison.
+    /// The first light at each position: with many objects, lookups replace pairwise comparison.
     lights: HashMap<[u32; 3], usize>,
     problems: Vec<Problem>,
 }
 
-/// The problems that some checks find.
+/// The problems found by these checks.
 fn found(scene: &Scene, registry: &Registry, checks: impl FnOnce(&mut Check)) -> Vec<Problem> {
     let mut check = Check::of(scene, registry);
     checks(&mut check);
@@ -214,7 +215,8 @@ impl<'a> Check<'a> {
 }
 
 impl Check<'_> {
-    /// Adds the broken rule; the path is built only then, since valid scenes are the rule and large.
+    /// Adds the broken rule, if any. The path is built only when needed, because most scenes are valid and
+    /// some are large.
     fn rule<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
         if let Err(rule) = rule {
             let (path, found) = at();
@@ -226,12 +228,12 @@ impl Check<'_> {
         self.problems.push(Problem::about(path, predicate));
     }
 
-    /// A position in the room.
+    /// Checks that a position is in the room.
     fn within(&mut self, p: Vec3, path: impl Fn() -> Path) {
         self.rule(position(self.room, p), || (path().key("position"), Written(p)));
     }
 
-    /// A part in the same place as another that excludes it.
+    /// Checks that a part is not at the position of another that excludes it.
     fn meets(&mut self, p: Vec3, there: Option<String>, one: &str, other: &str, path: impl Fn() -> Path) {
         if let Some(there) = there {
             let rule = format!("{there} is there; {one} must not be where {other} is");
@@ -239,12 +241,12 @@ impl Check<'_> {
         }
     }
 
-    /// The first light in a place, for messages.
+    /// The first light at a position, for messages.
     fn light_there(&self, p: Vec3) -> Option<String> {
         self.lights.get(&place(p)?).map(|i| format!("lights[{i}]"))
     }
 
-    /// The observer, if it is in a place, for messages.
+    /// The observer, if at this position, for messages.
     fn observer_there(&self, p: Vec3) -> Option<String> {
         same_place(p, self.scene.observer.position).then(|| "the observer".to_owned())
     }
@@ -420,7 +422,7 @@ impl Check<'_> {
         }
     }
 
-    /// The parameters of a variant, each judged by the objects of the scene as the variant shows them.
+    /// Checks the parameters of a variant, each against the objects of the scene as they are in the variant.
     fn variant_material(&mut self, index: usize, path: &dyn Fn(&'static str) -> Path) {
         let (scene, registry) = (self.scene, self.registry);
         let Some((seen, _)) = scene.seen(index + 1, registry) else { return };
@@ -437,7 +439,7 @@ impl Check<'_> {
     }
 }
 
-/// `Ok` if a variant may be based on the one with a name.
+/// Checks that a variant may be based on the one with this name.
 fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
     if scene.variant(base).is_none() {
         let names =
@@ -465,7 +467,7 @@ fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
     Ok(())
 }
 
-/// Reports a missing field that a light's type needs, or a field that the type does not have.
+/// The rule for a missing field that a light's type needs, or for a field that the type does not have.
 fn presence(type_id: &str, field: &str, needed: bool) -> String {
     let light = with_article(type_id);
     if needed {
@@ -475,7 +477,7 @@ fn presence(type_id: &str, field: &str, needed: bool) -> String {
     }
 }
 
-/// A parameter as in scene files.
+/// A parameter as written in scene files.
 fn written(value: &Value) -> String {
     match value {
         Value::Number(v) => v.to_string(),

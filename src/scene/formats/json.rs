@@ -1,4 +1,4 @@
-//! JSON, the format of scene files that holds everything and that editors check by a schema.
+//! JSON, the format that holds everything in a scene and that editors check with a schema.
 
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
@@ -36,7 +36,7 @@ impl SceneFormat for Json {
     }
 }
 
-/// The scene in a text that comes from a source, if there is anything in it.
+/// The syntax tree of the scene in a text from a source; `None` if the text is empty.
 ///
 /// # Errors
 /// Returns the position where the text stops being JSON, and what was expected there.

@@ -1,6 +1,7 @@
-//! The formats of scene files. Each reads a file into a [`Scene`], and perhaps writes one; the extension of the file
-//! decides which. The window, the command line and [`load`](super::load) ask here, so a new format is known everywhere:
-//! in the dialogs, on the command line, when a file is followed, saved or recovered.
+//! The formats of scene files. Each reads a file into a [`Scene`], and may write one; the extension of the
+//! file selects the format. The window, the command line and [`load`](super::load) use this list, so a new
+//! format is known everywhere: in the dialogs, on the command line, and when a file is followed, saved or
+//! recovered.
 //!
 //! Rules are checked for all formats alike, after reading.
 
@@ -61,7 +62,8 @@ pub trait SceneFormat: Send + Sync + 'static {
     /// The extensions of its files, in lower case, without the dot. Saving uses the first.
     fn extensions(&self) -> &'static [&'static str];
 
-    /// True if content without a name, from a pipe for example, is in this format. Otherwise it is read as JSON.
+    /// True if content without a name, for example from a pipe, is in this format. Content that no format
+    /// recognises is read as JSON.
     fn recognises(&self, content: &[u8]) -> bool {
         let _ = content;
         false
@@ -96,7 +98,8 @@ pub trait SceneWriter {
 pub struct Target<'a> {
     /// The folder of the file.
     pub folder: &'a FilePath,
-    /// Present content, if any, to preserve what a scene does not contain, such as comments.
+    /// The present content, if any, from which things that a scene does not contain can be kept, such as
+    /// comments.
     pub old: Option<&'a [u8]>,
 }
 
@@ -108,14 +111,14 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The reason why a format was refused.
+/// The reason why a format was rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("scene format “{name}”: {problem}")]
 #[non_exhaustive]
 pub struct FormatError {
     /// The name of the format.
     pub name: &'static str,
-    /// The mistake and the remedy.
+    /// The mistake and how to correct it.
     pub problem: String,
 }
 
@@ -203,7 +206,7 @@ fn by_extension<'r>(extension: &str, registry: &'r Registry) -> Option<&'r dyn S
     all(registry).find(|format| format.extensions().contains(&extension))
 }
 
-/// A file whose extension belongs to no format.
+/// The error for a file whose extension belongs to no format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(".{extension} is not the extension of a scene; scenes are {known}")]
 #[non_exhaustive]
@@ -224,7 +227,7 @@ pub fn of_path<'r>(path: &FilePath, registry: &'r Registry) -> Result<&'r dyn Sc
         .ok_or_else(|| UnknownExtension { extension, known: shown_extensions(registry) })
 }
 
-/// The format of content: by the extension of its name, and without one by what it looks like.
+/// The format of content: by the extension of its name, or without an extension by its appearance.
 pub(super) fn of_source<'r>(
     source: &Source,
     registry: &'r Registry,

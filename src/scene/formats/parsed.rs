@@ -1,4 +1,4 @@
-//! A scene as a format read it, and the checks that follow.
+//! A scene as read by a format, and the checks that follow.
 
 use std::collections::HashSet;
 
@@ -14,16 +14,16 @@ use crate::{
     text::place::Place,
 };
 
-/// A scene as it was read, before its values are checked.
+/// A scene before its values are checked.
 #[non_exhaustive]
 pub struct Parsed<'a> {
     /// The scene, with placeholders for values that could not be read.
     pub scene: Scene,
-    /// Parts that are missing and have defaults, which are in the scene already.
+    /// Missing parts that have defaults, which the scene already contains.
     pub missing: Vec<Missing>,
-    /// Problems found on reading.
+    /// Problems found while reading.
     pub(in crate::scene) problems: Vec<Problem>,
-    /// Paths of values that could not be read, and are not checked.
+    /// Paths of values that could not be read and are therefore not checked.
     pub(in crate::scene) unread: HashSet<Path>,
     /// The number of problems that are not listed.
     pub(in crate::scene) unlisted: usize,
@@ -35,7 +35,7 @@ pub struct Parsed<'a> {
 /// The position of a value, and the value as written.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Located {
-    /// Position of the value; if it is missing, that of the part that lacks it.
+    /// The position of the value; if it is missing, that of the part that lacks it.
     pub(in crate::scene) place: Option<Place>,
     /// The value as written.
     pub(in crate::scene) found: Option<String>,
@@ -66,7 +66,7 @@ impl<'a> Parsed<'a> {
         })
     }
 
-    /// Adds problems found on reading. Values at their paths are not checked again.
+    /// Adds problems found while reading. Values at their paths are not checked again.
     #[must_use]
     pub fn with_problems(mut self, problems: Vec<Problem>) -> Self {
         self.unread = problems.iter().map(|problem| problem.path.clone()).collect();
@@ -81,7 +81,7 @@ impl<'a> Parsed<'a> {
         self
     }
 
-    /// Removes the positions, which are useless where nobody sees the text.
+    /// Removes the positions, which are useless if nobody sees the text.
     pub(in crate::scene) fn without_places(self) -> Self {
         let Self { locate, mut problems, mut missing, .. } = self;
         problems.iter_mut().for_each(|problem| problem.place = None);

@@ -1,11 +1,12 @@
-//! The problems that are found before the values of a table are read: as many as are listed, and the number of the rest.
+//! The problems found before the values of a table are read: up to the maximum that is listed, and the number
+//! of the rest.
 
 use crate::scene::{
     error::Problem,
     read::{MAX_PROBLEMS, MAX_SUGGESTIONS},
 };
 
-/// Problems, each with its byte.
+/// Problems, each with its byte index.
 #[derive(Debug, Default)]
 pub(super) struct Problems {
     list: Vec<(usize, Problem)>,
