@@ -1,6 +1,6 @@
-//! The driver's own time for ten thousand spheres: a frame of the lab, in turn with a bare draw of the same triangles from
-//! the same place, whose vertex shader is one matrix and whose pixels are white. Medians of one run, a frame waited for,
-//! with one sample and with four.
+//! The driver's own time for ten thousand spheres: a frame of the lab, alternating with a bare draw of the
+//! same triangles from the same position, whose vertex shader is one matrix and whose pixels are white.
+//! Medians of one run, waiting for each frame, with one sample and with four.
 
 use std::{sync::Arc, time::Instant};
 
@@ -56,7 +56,7 @@ fn timed(work: impl FnOnce()) -> f64 {
     begin.elapsed().as_secs_f64() * 1e3
 }
 
-/// Spheres of the default tessellation side by side, all of them in the picture.
+/// Spheres with the default tessellation side by side, all in the picture.
 fn grid(lights: usize) -> Scene {
     let side = (COUNT as f32).sqrt();
     let object = |i: usize| {
@@ -86,7 +86,7 @@ const SHADER: &str = "
 @fragment fn fragment() -> @location(0) vec4<f32> { return vec4(1.0); }
 ";
 
-/// The same triangles without a program around them.
+/// The triangles drawn without the rest of the lab.
 struct Bare {
     device: RenderDevice,
     queue: RenderQueue,

@@ -11,7 +11,7 @@ use lights_camera_models::{
     scene::{Comparison, Scene, Variant, comparison::Layout},
 };
 
-/// Views A and B of the default scene, which differ by their reflection models.
+/// Views A and B of the default scene, which differ in their reflection models.
 fn views() -> [Shown; 2] {
     let phong = Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() };
     let scene = Scene { variants: vec![phong], ..Scene::default() };

@@ -1,4 +1,4 @@
-//! Times of explaining a pixel, as the window does under the pointer.
+//! Times of explaining a pixel, as the window does for the pointer.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::{cell::Cell, hint::black_box, path::Path};
@@ -34,7 +34,7 @@ fn crowd() -> Scene {
     Scene { objects: spheres.collect(), ..Scene::default() }
 }
 
-/// The pointer goes over the middle of a picture of 1280×720.
+/// The pointer moves over the middle of a picture of 1280×720.
 fn pixels(c: &mut Criterion) {
     let registry = Registry::builtin();
     // Under two directional lights and an ambient one.

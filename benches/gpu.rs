@@ -1,5 +1,5 @@
-//! Frames of the GPU renderer at 1280×720, one sample per pixel: against a frame of the same app with
-//! nothing in the room, over objects, lights and views, by model, and against Bevy's own material.
+//! Frames of the GPU renderer at 1280×720, one sample per pixel: compared with a frame of the same app with
+//! an empty room, over objects, lights and views, by model, and compared with Bevy's own material.
 
 use bevy::{
     app::Update,
@@ -38,7 +38,7 @@ fn renderer(scene: Scene) -> GpuRenderer {
     renderer
 }
 
-/// A frame, waited for: submitting alone would measure the queue.
+/// A frame, including the wait for it: submitting alone would measure the queue.
 fn frame(renderer: &mut GpuRenderer) {
     renderer.step();
     renderer.wait();
@@ -63,7 +63,7 @@ fn grid(count: usize) -> Scene {
     Scene { objects, observer, ..Scene::default() }
 }
 
-/// Eight spheres that have about as many triangles together, 2.1 million, as ten thousand of [`grid`].
+/// Eight spheres with about as many triangles together, 2.1 million, as ten thousand of [`grid`].
 fn fine() -> Scene {
     let mut scene = grid(8);
     for object in &mut scene.objects {
@@ -131,8 +131,8 @@ const TESSELLATION: u32 = 32;
 const LIGHT: Vec3 = Vec3::new(6.5, 7.0, 8.0);
 const EYE: Vec3 = Vec3::new(5.0, 5.0, 6.7);
 
-/// The same sphere, light and camera in Bevy's own material, light and light loop: no shadows, no ambient
-/// light. Its lights are clustered on the CPU, which for one light is the cheaper way.
+/// The sphere, light and camera with Bevy's own material, light and light loop: no shadows, no ambient light.
+/// The lights are clustered on the CPU, which is cheaper for a single light.
 fn standard_material() -> GpuRenderer {
     let empty = Scene { objects: Vec::new(), lights: Vec::new(), ..full_screen("lambert") };
     let mut renderer =
@@ -159,7 +159,7 @@ fn standard_material() -> GpuRenderer {
     renderer
 }
 
-/// Asserts that the picture is filled by something lit: the background has 46.
+/// Asserts that the picture is filled by something lit: the background has the code 46.
 fn assert_lit(renderer: &mut GpuRenderer, what: &str) {
     let rgb = renderer.read_rgb8().expect("the picture can be read");
     let middle = rgb[3 * (1280 * 360 + 640)];
@@ -178,7 +178,7 @@ fn models(criterion: &mut Criterion) {
         group.bench_function(id, |b| b.iter(|| frame(&mut renderer)));
     }
     drop(renderer);
-    // The comparison back to back, each in an app of its own.
+    // The comparison back to back, each in a separate app.
     for round in 1..=2 {
         let mut ours = self::renderer(full_screen("metallic_roughness"));
         assert_lit(&mut ours, "metallic_roughness");
@@ -195,7 +195,7 @@ fn models(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Turned by a system in every frame.
+/// Marks objects rotated by a system in every frame.
 #[derive(Component)]
 struct Turns;
 
@@ -203,7 +203,8 @@ fn turn(mut objects: Query<&mut Transform, With<Turns>>) {
     objects.iter_mut().for_each(|mut place| place.rotate_y(0.01));
 }
 
-/// Ten thousand objects at rest, and turned in every frame by a system: shown only, and stored in the scene.
+/// Ten thousand objects at rest, and rotated in every frame by a system: only displayed, and stored in the
+/// scene.
 fn moved(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("10 000 objects");
     group.sample_size(20);
@@ -211,7 +212,7 @@ fn moved(criterion: &mut Criterion) {
         app.add_systems(Update, turn);
     })
     .expect("a Vulkan driver, software will do");
-    // Simple ones, so that drawing them hides nothing.
+    // Simple ones, so that drawing them does not hide anything.
     let mut scene = grid(10_000);
     for object in &mut scene.objects {
         (object.object_type, object.tessellation) = ("cube".to_owned(), Some(1));
@@ -233,7 +234,7 @@ fn moved(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A frame of one view, and of two of the same size: the scene, and beside it under another reflection model.
+/// A frame of one view, and of two of the same size: the scene, and next to it with another reflection model.
 fn views(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("views");
     group.sample_size(50);

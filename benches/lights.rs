@@ -1,5 +1,5 @@
-//! Light with extent on the CPU renderer: the first picture after a change, and the samples after it. Beside them the same
-//! scenes under points, which no light with extent may slow down.
+//! Light with extent on the CPU renderer: the first picture after a change, and the samples after it. For
+//! comparison, the same scenes under point lights, which light with extent must not slow down.
 #![allow(missing_docs)]
 
 use std::{hint::black_box, sync::atomic::AtomicBool};
@@ -19,7 +19,7 @@ const SETTINGS: Settings = Settings {
     terms: lights_camera_models::optics::TermSelection::All,
 };
 
-/// The default scene by Phong shading under one light.
+/// The default scene with Phong shading under one light.
 fn lit_by(kind: &str, registry: &Registry) -> Scene {
     let mut scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
     let mut light = Light { position: Some(Vec3::new(7.0, 8.0, 7.0)), ..scene.lights[0].clone() };

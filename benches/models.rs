@@ -22,8 +22,8 @@ use lights_camera_models::{
     },
 };
 
-/// Directions, uniform over the hemisphere, that neither repeat soon nor fall into order: prediction of
-/// branches would make a single pair too cheap. By the golden ratio and its cubic relative.
+/// Directions, uniform over the hemisphere, that neither repeat soon nor are ordered: branch prediction would
+/// make a single pair too cheap. Based on the golden ratio and its cubic relative.
 fn pairs(frame: &Frame) -> Vec<(Vec3, Vec3)> {
     let direction = |i: usize, steps: [f64; 2]| {
         let [z, turn] = steps.map(|s| (0.5 + s * i as f64).fract() as f32);
@@ -43,7 +43,7 @@ fn models(c: &mut Criterion) {
     let registry = Registry::builtin();
     let mut all: Vec<_> =
         registry.models().iter().map(|m| (m.declaration.id.to_owned(), m, Values::default())).collect();
-    // Layers that are off cost nothing.
+    // Disabled layers cost nothing.
     for look in looks() {
         let model = registry.model(&look.model).expect("built in");
         all.push((format!("{}, {}", look.model, look.name), model, look.material.clone()));
@@ -61,7 +61,7 @@ fn models(c: &mut Criterion) {
     group.finish();
 }
 
-/// The same by the model's WGSL, interpreted.
+/// The model's WGSL, interpreted, for the same pairs.
 fn interpreted(c: &mut Criterion) {
     let frame = Frame::from_normal(Vec3::new(0.1, 0.2, 0.9).normalize());
     let pairs = pairs(&frame);
@@ -96,8 +96,8 @@ fn interpreted(c: &mut Criterion) {
     group.finish();
 }
 
-/// The cost of the limits in reading a model, apart from all other checks: the text and the module of a shader that
-/// draws, and one as long as a file may be.
+/// The cost of the limits in reading a model, separate from all other checks: for the text and the module of
+/// a drawing shader, and for a file of maximum size.
 fn limited(c: &mut Criterion) {
     let registry = Registry::builtin();
     let model = registry.model("disney").expect("built in");

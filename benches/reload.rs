@@ -1,7 +1,7 @@
-//! From saving a shader to the picture: median and 95th percentile for a model, a term used by all models, and the
-//! light loop, in the default scene at the size of a window. A file is written, the watcher reports it, the new version
-//! is tried, swapped in, compiled and drawn; frames follow each other as in a window that is awake. The trial runs in
-//! the same process, and in another one as for the window.
+//! From saving a shader to the picture: median and 95th percentile for a model, a term used by all models,
+//! and the light loop, in the default scene at the size of a window. A file is written, the watcher reports
+//! it, the new version is tried, swapped in, compiled and drawn; frames follow each other as in an active
+//! window. The trial runs in the same process, and in another one as for the window.
 //!
 //! Criterion reports means and medians; the 95th percentile is printed beside them.
 
@@ -29,7 +29,7 @@ use lights_camera_models::{
     watch::Watcher,
 };
 
-/// The laboratory with its shaders in a watched folder.
+/// The lab with its shaders in a watched folder.
 struct Lab {
     renderer: GpuRenderer,
     watcher: Watcher,
@@ -70,7 +70,7 @@ impl Lab {
 
     /// Saves a file and waits for the picture with the new version.
     fn save(&mut self, path: &str, text: &str) -> Duration {
-        // Nobody saves again before the picture has come to rest.
+        // Nobody saves again before the picture has settled.
         self.renderer.settle().expect("the GPU draws");
         self.renderer.wait();
         while self.news.try_recv().is_ok() {}
@@ -81,7 +81,7 @@ impl Lab {
             let changed = self.watcher.changed();
             let world = self.renderer.app().world_mut();
             world.resource_scope(|world, mut live: Mut<LiveShaders>| {
-                // As in the window: a look at a file is no news about the models.
+                // As in the window: looking at a file does not report news about the models.
                 let mut registry = world.resource_mut::<Registry>();
                 changed.iter().for_each(|f| live.look_at(f, registry.bypass_change_detection()));
             });

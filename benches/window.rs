@@ -1,5 +1,6 @@
-//! The window's frames with panels alone, beside those of an empty window of Bevy and egui, in one run: medians in
-//! milliseconds. Needs a display: `xvfb-run -s "-screen 0 1920x1080x24" cargo bench --bench window`.
+//! The window's frames with only panels, compared with those of an empty window of Bevy and egui, in one run:
+//! medians in milliseconds. Needs a display: `xvfb-run -s "-screen 0 1920x1080x24" cargo bench --bench
+//! window`.
 
 use std::{
     env,
@@ -63,7 +64,7 @@ fn number(text: &str, mark: &str) -> Option<f64> {
     after.split_whitespace().next()?.parse().ok()
 }
 
-/// A window with one camera and an empty panel, and the settings of the program otherwise.
+/// A window with one camera and an empty panel, with the same settings otherwise.
 fn empty(size: &str) {
     let (width, height) = size.split_once('x').expect("WxH");
     let resolution =

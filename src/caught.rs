@@ -1,4 +1,5 @@
-//! Panics that are caught, so that the rest goes on: of somebody's panel, of a shader that is tried, of work in a thread.
+//! Caught panics, so that the program can continue: in somebody's panel, in a shader that is tried, in work
+//! on a thread.
 
 use std::{
     any::Any,
@@ -8,7 +9,7 @@ use std::{
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
-/// The result of a call, or what it panicked with. Callers must leave nothing half done that others see.
+/// The result of a call, or its panic. Callers must leave no inconsistent state that others see.
 pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
     let result = catch_unwind(AssertUnwindSafe(call));
     if result.is_err() {
@@ -17,7 +18,7 @@ pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
     result
 }
 
-/// The number of panics caught so far. What ends the program came after them.
+/// The number of panics caught so far. The panic that ends the program comes after them.
 #[must_use]
 pub fn count() -> usize {
     COUNT.load(Ordering::SeqCst)

@@ -1,4 +1,4 @@
-//! The reason why a command failed, and its exit status.
+//! Failure of a command, with its exit status.
 
 use std::{fmt, io};
 
@@ -11,7 +11,7 @@ pub enum Failure {
     Invalid(String),
     /// The command line is wrong: exit status 2.
     Usage(String),
-    /// There is no renderer or no display: exit status 3.
+    /// No renderer or no display is available: exit status 3.
     NoRenderer(String),
     /// A result could not be written: exit status 4.
     Write(String),

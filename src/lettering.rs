@@ -12,7 +12,7 @@ use bevy_egui::egui::{
 
 use crate::text::mathematics::{is_variable, parse_symbol};
 
-/// The smallest and the largest size of text, pixels. Larger glyphs would fill the memory for them.
+/// Minimum and maximum text size, in pixels. Larger glyphs would exceed their memory.
 const SIZES: std::ops::RangeInclusive<f32> = 4.0..=200.0;
 
 /// The family of the semibold text font.
@@ -56,10 +56,10 @@ pub fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// The shapes of glyphs, made once.
+/// Glyph shapes, created once.
 static GLYPHS: LazyLock<Mutex<Fonts>> = LazyLock::new(|| Mutex::new(Fonts::new(OPTIONS, fonts())));
 
-/// The glyphs hold plain coverage, since the ground is not known until they are drawn.
+/// Glyphs contain plain coverage, since the background is not known until they are drawn.
 const OPTIONS: TextOptions = TextOptions {
     max_texture_side: 4096,
     color_transfer_function: FontColorTransferFunction::Off,
@@ -67,7 +67,7 @@ const OPTIONS: TextOptions = TextOptions {
     subpixel_binning: true,
 };
 
-/// A way to write text. Its size is that of its em in pixels, from 4 to 200.
+/// A style of lettering. Its size is the size of the em in pixels, from 4 to 200.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lettering {
     /// For text.
@@ -75,7 +75,7 @@ pub enum Lettering {
     Regular,
     /// For headings.
     Semibold,
-    /// For the symbol of a parameter, such as `k_d`: what follows `_` is its index.
+    /// For the symbol of a parameter, such as `k_d`: the part after `_` is a subscript.
     Symbol,
 }
 
@@ -83,13 +83,14 @@ pub enum Lettering {
 struct Run {
     text: String,
     font: FontId,
-    /// The distance by which its foot is lower than that of the line, pixels.
+    /// Offset of the baseline below that of the line, in pixels.
     lower: f32,
 }
 
 impl Lettering {
-    /// Draws a line of text into a picture of RGB bytes, row by row from the top; `size` is its width and height, `at`
-    /// the upper left corner of the line, `px` the size of the text. What lies outside the picture is not drawn.
+    /// Draws a line of text into a picture of RGB bytes, row by row from the top; `size` is its width and
+    /// height, `at` the upper left corner of the line, `px` the size of the text. Parts outside the picture
+    /// are clipped.
     pub fn draw(
         self,
         picture: &mut [u8],
@@ -111,20 +112,20 @@ impl Lettering {
         }
     }
 
-    /// The width of a line of text, pixels.
+    /// The width of a line of text, in pixels.
     #[must_use]
     pub fn width(self, px: f32, text: &str) -> u32 {
         let width = |run: Run| laid_out(run.job(), |galley, _| galley.size().x.ceil() as u32);
         self.runs(px, text).into_iter().map(width).sum()
     }
 
-    /// The height of a line of text, pixels. It is that of every way to write.
+    /// The height of a line of text, in pixels, which is the same in every style.
     #[must_use]
     pub fn height(self, px: f32) -> u32 {
         laid_out(Run::plain("x", px).job(), |galley, _| galley.size().y.ceil() as u32)
     }
 
-    /// The text in lines no wider than `width`, broken between words; what does not fit into so many lines is replaced
+    /// The text in lines no wider than `width`, broken between words; text beyond this many lines is replaced
     /// by "…".
     #[must_use]
     pub fn lines(self, px: f32, text: &str, width: u32, most: usize) -> Vec<String> {
@@ -133,7 +134,7 @@ impl Lettering {
             let lines: Vec<_> =
                 self.runs(px, text).into_iter().flat_map(|run| run.broken(room, most)).collect();
             let widest = lines.iter().map(|line| self.width(px, line)).max().unwrap_or(0);
-            // Letters that stand side by side no more, since some are left out, can be wider than they were.
+            // Letters that are no longer adjacent, since some were removed, can be wider than before.
             if widest <= width || room < 1.0 {
                 return lines;
             }
@@ -141,7 +142,7 @@ impl Lettering {
         }
     }
 
-    /// The distance of the foot of letters from the top of the line, pixels.
+    /// The distance of the baseline from the top of the line, in pixels.
     #[must_use]
     pub fn foot(self, px: f32) -> f32 {
         laid_out(Run::plain("x", px).job(), foot_of)
@@ -153,7 +154,7 @@ impl Lettering {
             Self::Regular => vec![plain],
             Self::Semibold => vec![Run { font: FontId::new(plain.font.size, semibold()), ..plain }],
             Self::Symbol => {
-                // As large as in the window; beside text, letters of this font look small.
+                // As large as in the window; next to text, letters of this font look small.
                 let size = 1.1 * plain.font.size;
                 let atom = parse_symbol(&plain.text);
                 let base = Run {
@@ -172,7 +173,8 @@ impl Lettering {
     }
 }
 
-/// The font of a variable, slanted, or of a word that is an index. Capital Greek letters are upright by custom.
+/// The font of an italic variable, or of a word as a subscript. Capital Greek letters are upright by
+/// convention.
 fn letter(text: &str) -> FontFamily {
     let greek = text.starts_with(|c| ('Α'..='Ω').contains(&c));
     if is_variable(text) && !greek { maths_italic() } else { maths() }
@@ -181,7 +183,7 @@ fn letter(text: &str) -> FontFamily {
 impl Run {
     fn plain(text: &str, px: f32) -> Self {
         let px = if px.is_nan() { *SIZES.start() } else { px.clamp(*SIZES.start(), *SIZES.end()) };
-        // A line has no line ends and no tabs.
+        // A line contains neither line ends nor tabs.
         let text = text.replace(char::is_control, " ");
         Self { text, font: FontId::new(px, FontFamily::Proportional), lower: 0.0 }
     }
@@ -192,7 +194,7 @@ impl Run {
         job.wrap.max_rows = most;
         job.wrap.break_anywhere = most == 1;
         let row = |row: &PlacedRow| row.row.glyphs.iter().map(|glyph| glyph.chr).collect::<String>();
-        // No space stands at the end, nor before the sign that something is missing.
+        // No space at the end, nor before the ellipsis.
         let tidy = |row: String| match row.strip_suffix('…') {
             Some(start) => format!("{}…", start.trim_end()),
             None => row.trim_end().to_owned(),
@@ -205,7 +207,7 @@ impl Run {
     }
 }
 
-/// The distance of the foot of letters from the top of a line.
+/// The distance of the baseline from the top of a line.
 fn foot_of(galley: &Galley, _: &Fonts) -> f32 {
     galley.rows.first().and_then(|row| row.row.glyphs.first()).map_or(0.0, |glyph| glyph.pos.y)
 }
@@ -231,13 +233,13 @@ fn ink(picture: &mut [u8], size: [u32; 2], at: [i64; 2], colour: [u8; 3], galley
 
 fn laid_out<T>(job: LayoutJob, then: impl FnOnce(&Galley, &Fonts) -> T) -> T {
     let mut glyphs = GLYPHS.lock().unwrap_or_else(PoisonError::into_inner);
-    // Forgets glyphs when there are too many.
+    // Clears the cache when it holds too many glyphs.
     glyphs.begin_pass(OPTIONS);
     let galley = glyphs.with_pixels_per_point(1.0).layout_job(job);
     then(&galley, &glyphs)
 }
 
-/// The pixel at a place, if that is in the picture.
+/// The pixel at a position, if it is in the picture.
 fn pixel(picture: &mut [u8], size: [u32; 2], at: [i64; 2]) -> Option<&mut [u8; 3]> {
     let [x, y] = [u32::try_from(at[0]).ok()?, u32::try_from(at[1]).ok()?];
     if x >= size[0] || y >= size[1] {
@@ -250,7 +252,7 @@ fn pixel(picture: &mut [u8], size: [u32; 2], at: [i64; 2]) -> Option<&mut [u8; 3
 /// Puts a pixel of a glyph over a pixel of the picture.
 fn blend(pixel: &mut [u8; 3], colour: [u8; 3], glyph: Color32) {
     let coverage = f32::from(glyph.a()) / 255.0;
-    // Display codes are no light: light text would look thin, as egui says of its dark mode.
+    // Display codes are not linear light: light text would look thin, as egui notes for its dark mode.
     let light = colour.iter().map(|c| u32::from(*c)).sum::<u32>() > 3 * 127;
     let alpha = if light { coverage * (2.0 - coverage) } else { coverage };
     for (under, over) in pixel.iter_mut().zip(colour) {
@@ -303,7 +305,7 @@ mod tests {
         let drawn = |with, text| drawn(with, [10, 2], 24.0, text);
         let (k, k_d) = (drawn(Lettering::Symbol, "k"), drawn(Lettering::Symbol, "k_d"));
         assert_ne!(k, drawn(Lettering::Regular, "k"));
-        // Letters stand on one line, and the index below it.
+        // Letters share a baseline, and the subscript is below it.
         let foot = rows(&drawn(Lettering::Regular, "k")).1;
         assert!(rows(&k).1.abs_diff(foot) <= 1, "{:?}, {foot}", rows(&k));
         assert!(rows(&k_d).1 >= foot + 3 && rows(&k_d).0 == rows(&k).0, "{:?}", rows(&k_d));
@@ -333,7 +335,7 @@ mod tests {
     fn what_lies_outside_is_not_drawn() {
         let whole = drawn(Lettering::Regular, [0, 5], 20.0, "Phong");
         let mut shifted = drawn(Lettering::Regular, [-20, 5], 20.0, "Phong");
-        // The rest stands where it would.
+        // The rest is drawn where it would be.
         for y in 0..SIZE[1] as usize {
             let row = y * SIZE[0] as usize * 3;
             shifted[row..row + SIZE[0] as usize * 3].rotate_right(60);
@@ -342,7 +344,7 @@ mod tests {
         for at in [[i32::MIN, 0], [i32::MAX, i32::MAX], [0, -100], [0, 100]] {
             assert_eq!(extent(&drawn(Lettering::Regular, at, 20.0, "Phong")), None, "{at:?}");
         }
-        // A picture that is shorter than it says.
+        // A picture with fewer bytes than its size requires.
         Lettering::Regular.draw(&mut [0; 10], SIZE, [0, 0], 20.0, [255; 3], "Phong");
         for px in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e9] {
             assert!(Lettering::Regular.width(px, "Phong") < 1000);

@@ -58,11 +58,11 @@
 //! - [`cli`]: the command line.
 //! - [`prelude`]: the names that extensions of the program need most.
 
-/// The version of Bevy that the window is made with.
+/// The version of Bevy used by the window.
 pub use bevy;
-/// The version of bevy_egui, and in it egui, that panels are drawn with.
+/// The version of bevy_egui, which contains that of egui, used by the panels.
 pub use bevy_egui;
-/// The version of glam whose vectors the equations take.
+/// The version of glam used by the equations.
 pub use glam;
 
 pub mod text;

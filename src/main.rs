@@ -1,4 +1,4 @@
-//! The command line of *Lights, Camera, Models!*; all of it is in [`lights_camera_models::cli`].
+//! The command line of *Lights, Camera, Models!*, implemented in [`lights_camera_models::cli`].
 
 fn main() -> std::process::ExitCode {
     lights_camera_models::cli::main()

@@ -1,5 +1,5 @@
-//! The names that extensions of the program need most, to be imported beside those of `bevy::prelude`. The declarations
-//! of models, lights and shapes, which share a name, stay in their modules.
+//! The most important names for extensions of the program, to be imported next to `bevy::prelude`. The
+//! declarations of models, lights and shapes, which share a name, stay in their modules.
 
 pub use crate::{
     document::{Edit, PartId, Selection},
@@ -37,7 +37,7 @@ mod tests {
 
     use super::super::prelude::*;
 
-    /// Compiles only while no name is Bevy's too.
+    /// Compiles only if no name is also Bevy's.
     #[test]
     fn both_preludes_can_be_imported() {
         fn known<T: ?Sized>() {}

@@ -1,19 +1,20 @@
-//! The name of the program, and folders by it: other programs are made with this library, and none touches what another
-//! one wrote.
+//! The name of the program, and folders named after it: other programs are made with this library, and none
+//! touches the files of another one.
 
 use std::{borrow::Cow, env, path::PathBuf, sync::OnceLock};
 
-/// The name of the laboratory itself, which is that of its folders.
+/// The name of the lab itself, and of its folders.
 pub const LAB: &str = "lights-camera-models";
-/// Its name on the command line.
+/// The lab's name on the command line.
 const COMMAND: &str = "lcm";
-/// The folder with those of other programs.
+/// The folder that contains the folders of other programs.
 const OTHERS: &str = "programs";
 
 static NAME: OnceLock<String> = OnceLock::new();
 
-/// Names this program, once, before anything else of this library is called. Without it, the name is that of the file that
-/// runs. Letters, digits, `-` and `_` stay, anything else becomes `_`. False if the program has a name already.
+/// Names this program, once, before anything else in this library is called. Without it, the name is that of
+/// the executable file. Letters, digits, `-` and `_` are kept, anything else becomes `_`. Returns false if
+/// the program already has a name.
 ///
 /// ```
 /// lights_camera_models::program::set_name("my-lab");
@@ -33,7 +34,7 @@ pub fn name() -> &'static str {
     })
 }
 
-/// A name as that of a folder.
+/// A name as a folder name.
 fn fit(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' };
     let name: String = name.chars().take(100).map(plain).collect();
@@ -46,14 +47,14 @@ pub fn command() -> &'static str {
     if name() == LAB { COMMAND } else { name() }
 }
 
-/// The folder of this program in one that all programs share, for what it alone writes: settings, copies of unsaved work,
-/// what was done of lessons.
+/// The folder of this program within one shared by all programs, for files that it alone writes: settings,
+/// copies of unsaved work, progress in lessons.
 #[must_use]
 pub fn own(shared: PathBuf) -> PathBuf {
     if name() == LAB { shared } else { shared.join(OTHERS).join(name()) }
 }
 
-/// A text in which the laboratory names its commands, with the name of this program.
+/// A text in which the lab names its commands, with the name of this program inserted.
 #[must_use]
 pub fn in_own_words(text: &str) -> Cow<'_, str> {
     replaced(text, command())
@@ -68,7 +69,8 @@ fn replaced<'a>(text: &'a str, name: &str) -> Cow<'a, str> {
     while let Some(at) = rest.find(COMMAND) {
         let (before, from) = rest.split_at(at);
         let after = &from[COMMAND.len()..];
-        // A command with its words or alone; not a part of a name, nor the comment of a custom model, `/* lcm {`.
+        // A command with arguments or alone; neither a part of a name, nor the comment of a custom model, `/*
+        // lcm {`.
         let mut next = after.chars();
         let begins =
             !before.ends_with(|c: char| c.is_alphanumeric() || "/_-.".contains(c)) && !before.ends_with("* ");
@@ -96,7 +98,7 @@ mod tests {
         assert_eq!(fit(""), "program");
         assert_eq!(fit("größe-2"), "größe-2");
         assert_eq!(fit(&"x".repeat(1000)).len(), 100);
-        // That of the tests is the file that runs them.
+        // The name of the tests is that of their executable.
         assert!(name().starts_with("lights_camera_models"), "{}", name());
         let own = own(PathBuf::from("/data"));
         assert!(own.starts_with("/data/programs/") && own.ends_with(name()), "{own:?}");

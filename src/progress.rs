@@ -1,23 +1,24 @@
-//! Progress of work that takes a while, and the wish to stop it.
+//! Progress of long work, and its cancellation.
 
-/// The user no longer wants the work.
+/// The user cancelled the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Tells the state of some work, and whether it should go on.
+/// Reports the progress of some work, and asks whether it should continue.
 pub struct Progress<'a> {
-    /// Receives the fraction that is done, and the current step.
+    /// Receives the completed fraction, and the current step.
     pub tell: &'a dyn Fn(f32, &str),
-    /// True if the user no longer wants it.
+    /// True if the user has cancelled the work.
     pub cancelled: &'a dyn Fn() -> bool,
 }
 
 impl Progress<'_> {
-    /// Nobody watches.
+    /// Reports nothing, and never cancels.
     pub const NONE: Progress<'static> = Progress { tell: &|_, _| (), cancelled: &|| false };
 
-    /// Does one of several equal parts of the work, which tells how far it is by itself; `name` makes its steps those of the whole.
+    /// Does one of several equal parts of the work, which reports its own progress; `name` makes its steps
+    /// those of the whole.
     pub fn part<T>(
         &self,
         (number, count): (usize, usize),
@@ -31,7 +32,7 @@ impl Progress<'_> {
     /// Begins a step, after this fraction of the work.
     ///
     /// # Errors
-    /// [`Cancelled`] if the user no longer wants it.
+    /// Returns [`Cancelled`] if the user has cancelled.
     pub fn step(&self, done: f32, what: &str) -> Result<(), Cancelled> {
         if (self.cancelled)() {
             return Err(Cancelled);

@@ -1,10 +1,10 @@
 //! Requests from outside to end the program: Ctrl+C in the terminal, and the signals of the operating system.
 //!
-//! A thread of its own handles them, so they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`) is a
-//! request: the window closes as with Ctrl+Q, with a question if there are unsaved changes. The second one, `SIGTERM`,
-//! `SIGHUP` and `SIGQUIT` end the program whatever the window does, after a last action given by the caller; then the
-//! process dies of the signal, as whoever waits for it expects. Whatever it ends leaves no temporary files, in commands
-//! without a window too.
+//! A separate thread handles them, so they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`)
+//! is a request: the window closes as with Ctrl+Q, asking for confirmation if there are unsaved changes. The
+//! second one, `SIGTERM`, `SIGHUP` and `SIGQUIT` end the program regardless of the window, after a last
+//! action given by the caller; then the process dies of the signal, as its parent expects. It leaves no
+//! temporary files; this also applies to commands without a window.
 
 use std::{
     io,
@@ -20,9 +20,9 @@ pub struct Interrupt(Arc<AtomicU8>);
 
 /// No request.
 const NONE: u8 = 0;
-/// The window does not know yet.
+/// The window has not received it yet.
 const HEARD: u8 = 1;
-/// The window closes, or asks for confirmation.
+/// The window is closing, or asks for confirmation.
 const TAKEN: u8 = 2;
 
 impl Interrupt {
@@ -30,7 +30,7 @@ impl Interrupt {
     /// program, both on the listening thread.
     ///
     /// # Errors
-    /// If the system refuses.
+    /// Returns an error if the operating system refuses.
     pub fn listen(
         wake: impl Fn() + Send + 'static,
         last_act: impl Fn(&str) + Send + 'static,
@@ -40,11 +40,11 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Lets every signal that ends this process remove its temporary files first. For commands without a window, in which
-    /// nobody waits for a request.
+    /// Makes every signal that ends this process remove its temporary files first. For commands without a
+    /// window, in which nobody waits for a request.
     ///
     /// # Errors
-    /// If the system refuses.
+    /// Returns an error if the operating system refuses.
     pub fn end_tidily() -> io::Result<()> {
         // As if the first request had not been answered.
         system::listen(Self(Arc::new(AtomicU8::new(HEARD))), || (), |_| ())
@@ -56,12 +56,12 @@ impl Interrupt {
         self.0.compare_exchange(HEARD, TAKEN, Ordering::SeqCst, Ordering::SeqCst).is_ok()
     }
 
-    /// The user decided to stay: the next Ctrl+C is a request again.
+    /// Records that the user decided to stay: the next Ctrl+C is a request again.
     pub fn stay(&self) {
         let _ = self.0.compare_exchange(TAKEN, NONE, Ordering::SeqCst, Ordering::SeqCst);
     }
 
-    /// Ends the process as Ctrl+C does, if that is why the window was closed.
+    /// Ends the process as Ctrl+C does, if Ctrl+C closed the window.
     pub fn end_if_asked(&self) {
         if self.0.load(Ordering::SeqCst) != NONE {
             system::end_by_interrupt();
@@ -131,7 +131,7 @@ mod system {
 
     use super::Interrupt;
 
-    /// The exit status that shells give a program ended by Ctrl+C.
+    /// Exit status that shells report for a program ended by Ctrl+C.
     const INTERRUPTED: i32 = 130;
 
     pub(super) fn listen(

@@ -1,12 +1,12 @@
-//! Watching files on disk, so that edits by other programs show at once.
+//! Watches files on disk, so that edits by other programs appear at once.
 //!
-//! Editors save in different ways: some write into the file, some empty it first, some write another file and rename it
-//! over the old one. [`Watcher`] looks at names, not at files, and reports a name once it has been quiet for [`QUIET`].
-//! It does not report what changed: its user reads the file and compares.
+//! Editors save in different ways: some write into the file, some empty it first, some write another file and
+//! rename it over the old one. [`Watcher`] watches names, not files, and reports a name once it has been
+//! quiet for [`QUIET`]. It does not report what changed: its user reads the file and compares.
 //!
-//! A thread of its own receives the operating system's events for folders. Each folder is watched separately and
-//! remembered with the state of its files, so that nothing is lost in folders that appear, vanish and come back, behind
-//! links that lead elsewhere, or when the system drops events.
+//! A separate thread receives the operating system's events for folders. Each folder is watched separately
+//! and remembered with the state of its files, so that nothing is lost if folders appear, vanish and return,
+//! if links lead elsewhere, or if the system drops events.
 
 use crate::files::Shown as _;
 use std::{
@@ -33,16 +33,16 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-/// A file is reported once it has been unchanged for this long.
+/// Time without changes after which a file is reported.
 pub const QUIET: Duration = Duration::from_millis(10);
-/// A file that keeps changing is reported after this long, and again each time it has passed.
+/// Interval at which a file that keeps changing is reported.
 pub const PATIENCE: Duration = Duration::from_millis(100);
-/// The interval between looks at files on systems that do not report changes.
+/// Interval between checks on systems that do not report changes.
 const POLL: Duration = Duration::from_millis(500);
-/// After a folder vanished or appeared, it is looked at once more: events that were under way then may concern the
-/// folder that had its name before.
+/// Delay of an additional check after a folder vanished or appeared: pending events may refer to the folder
+/// that had its name before.
 const AFTERSHOCK: Duration = Duration::from_millis(100);
-/// The most events that are read before they are acted upon.
+/// Maximum number of events read before they are handled.
 const BATCH: usize = 4096;
 
 /// Reports files that change on disk.
@@ -64,13 +64,13 @@ struct Reported {
 
 /// Messages to the thread.
 enum Order {
-    /// Watch this; reply when done.
+    /// Watch this path; reply when done.
     Add(PathBuf, Kind, Sender<()>),
-    /// Stop watching this; reply when done.
+    /// Stop watching this path; reply when done.
     Forget(PathBuf, Sender<()>),
     /// Report this file after this time.
     Remind(PathBuf, Duration),
-    /// An event from the system.
+    /// An event from the operating system.
     Heard(notify::Result<Event>),
     Stop,
 }
@@ -84,14 +84,14 @@ enum Kind {
 type Backend = Box<dyn notify::Watcher + Send>;
 
 impl Watcher {
-    /// A watcher of nothing yet. `wake` is called from another thread whenever there is something new: files that
-    /// [`changed`](Self::changed), or another [`complaint`](Self::complaint).
+    /// A watcher of nothing yet. `wake` is called from another thread whenever there is something new: files
+    /// that [`changed`](Self::changed), or another [`complaint`](Self::complaint).
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self::with_backend(wake, |news| {
             let hear = move |event: notify::Result<Event>| {
                 // Reading changes nothing.
                 if !matches!(&event, Ok(e) if is_reading(e.kind)) {
-                    // Nobody listens any more when the window closes.
+                    // Nobody listens any more after the window has closed.
                     let _ = news.send(Order::Heard(event));
                 }
             };
@@ -131,14 +131,14 @@ impl Watcher {
         Self { orders, reported }
     }
 
-    /// Watches a folder and everything below it, links included, but not hidden folders. It may not exist yet, and may
-    /// be deleted and come back.
+    /// Watches a folder and everything below it, including links, but not hidden folders. It may not exist
+    /// yet, and may be deleted and return.
     pub fn watch_folder(&mut self, folder: &Path) {
         self.order(|done| Order::Add(folder.to_owned(), Kind::Folder, done));
     }
 
-    /// Watches one file through its folder, so atomic renames, deletion and re-creation are noticed. It may be a link,
-    /// and may not exist yet.
+    /// Watches a file through its folder, so that atomic renames, deletion and re-creation are noticed. It
+    /// may be a link, and may not exist yet.
     pub fn watch_file(&mut self, file: &Path) {
         self.order(|done| Order::Add(file.to_owned(), Kind::File, done));
     }
@@ -148,22 +148,23 @@ impl Watcher {
         self.order(|done| Order::Forget(path.to_owned(), done));
     }
 
-    /// Reports a file after a while, whether it changes or not.
+    /// Reports a file after a delay, whether it changes or not.
     pub fn report_later(&self, file: &Path, after: Duration) {
         // An error: the thread has ended.
         let _ = self.orders.send(Order::Remind(file.to_owned(), after));
     }
 
     /// Files that may have changed since the last call, each once, after being quiet for [`QUIET`], or after
-    /// [`PATIENCE`], the oldest change first. They include deleted and renamed files, but not temporary files and
-    /// backups of editors in watched folders. Paths begin with the name under which the folder is watched.
+    /// [`PATIENCE`], the oldest change first. They include deleted and renamed files, but not temporary files
+    /// and backups of editors in watched folders. Paths begin with the name under which the folder is
+    /// watched.
     pub fn changed(&self) -> Vec<PathBuf> {
         let mut changed = std::mem::take(&mut lock(&self.reported).changed);
         changed.sort_by_key(|(first, _)| *first);
         changed.into_iter().map(|(_, file)| file).collect()
     }
 
-    /// The time until a change is due for reporting, if there is one. The thread calls `wake` then.
+    /// The time until the next change is due, if any. The thread then calls `wake`.
     pub fn pending(&self) -> Option<Duration> {
         lock(&self.reported).next.map(|at| at.saturating_duration_since(Instant::now()))
     }
@@ -189,7 +190,7 @@ impl Drop for Watcher {
     }
 }
 
-/// A thread that panicked leaves nothing half done here.
+/// Locks the reports: a thread that panicked leaves them consistent.
 fn lock(reported: &Mutex<Reported>) -> MutexGuard<'_, Reported> {
     reported.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -198,7 +199,7 @@ fn lock(reported: &Mutex<Reported>) -> MutexGuard<'_, Reported> {
 struct Root {
     path: PathBuf,
     kind: Kind,
-    /// The files as they were when they were last reported, or found at the beginning.
+    /// The files as last reported, or as found at the beginning.
     known: HashMap<PathBuf, Print>,
     /// The places where changes matter.
     places: Vec<Place>,
@@ -212,7 +213,7 @@ impl Root {
         }
     }
 
-    /// True if a file belongs to it.
+    /// True if the root covers a file.
     fn holds(&self, file: &Path) -> bool {
         match self.kind {
             Kind::Folder => file.starts_with(&self.path),
@@ -237,7 +238,7 @@ impl Change {
 /// The thread.
 struct Worker {
     backend: Option<Backend>,
-    /// The reason why there is no backend.
+    /// The reason why no backend is available.
     refusal: Option<String>,
     roots: Vec<Root>,
     watched: BTreeSet<PathBuf>,
@@ -245,7 +246,7 @@ struct Worker {
     refused: bool,
     /// The changes to report, the oldest first.
     waiting: Vec<Change>,
-    /// Paths to be reported anyway, and when.
+    /// Paths to report anyway, and when.
     reminders: Vec<(Instant, PathBuf)>,
     aftershock: Option<Instant>,
     next_poll: Option<Instant>,
@@ -299,7 +300,7 @@ impl Worker {
             return;
         }
         let mut root = Root { path, kind, known: HashMap::new(), places: Vec::new() };
-        // Existing files are no news.
+        // Existing files are not reported.
         root.known = root.look().files;
         self.roots.push(root);
     }
@@ -313,7 +314,7 @@ impl Worker {
         lock(&self.reported).changed.retain(|(_, file)| held(file));
     }
 
-    /// Handles an event from the system. True if folders must be looked at.
+    /// Handles an event from the system. True if folders must be checked.
     fn hear(&mut self, event: &Event) -> bool {
         let now = Instant::now();
         let mut look = event.need_rescan();
@@ -321,7 +322,7 @@ impl Worker {
         let mut changed = Vec::new();
         for path in &event.paths {
             if self.watched.contains(path) && !only_data {
-                // A folder itself came, went or was renamed.
+                // A folder itself appeared, vanished or was renamed.
                 look = true;
                 self.aftershock = Some(now + AFTERSHOCK);
                 continue;
@@ -351,7 +352,7 @@ impl Worker {
         }
     }
 
-    /// Looks at folders when an event or the clock calls for it.
+    /// Checks folders when an event or the clock requires it.
     fn catch_up(&mut self, look: bool) {
         let now = Instant::now();
         let over = |at: Option<Instant>| at.is_some_and(|at| at <= now);
@@ -366,15 +367,15 @@ impl Worker {
         }
     }
 
-    /// Looks at everything watched, notes differences, and watches the folders that exist. With `anew`, folders that
-    /// seem to be watched are watched again.
+    /// Checks everything watched, records differences, and watches the folders that exist. With `anew`,
+    /// folders that seem to be watched are watched again.
     fn look(&mut self, anew: bool) {
         if anew {
             for folder in std::mem::take(&mut self.watched) {
                 self.unwatch(&folder);
             }
         }
-        // The next look sees what appears between looking and watching.
+        // The next check sees anything that appears between checking and watching.
         for _ in 0..4 {
             self.compare();
             if !self.watch_places() {
@@ -434,7 +435,7 @@ impl Worker {
 
     fn unwatch(&mut self, folder: &Path) {
         if let Some(backend) = &mut self.backend {
-            // The system forgets a deleted folder by itself.
+            // The system drops a deleted folder by itself.
             let _ = backend.unwatch(folder);
         }
     }
@@ -482,8 +483,8 @@ impl Worker {
         }
     }
 
-    /// Remembers the present state of a file. True if it is worth a report: folders are not, nor are files that came
-    /// and went in the meantime.
+    /// Records the present state of a file. True if it should be reported: folders should not, nor files that
+    /// appeared and vanished in the meantime.
     fn take_note(&mut self, path: &Path) -> bool {
         let print = Print::of(path);
         let mut tell = false;

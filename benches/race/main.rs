@@ -1,6 +1,6 @@
-//! The lab against other programs, in one run on the same machine: the default scene against a program written in OpenGL, and
-//! light with extent against Mitsuba 3. `scripts/race` builds what it takes. `cargo bench --bench race -- opengl` or
-//! `-- mitsuba` races against one alone.
+//! The lab compared with other programs, in one run on the same machine: the default scene with a program
+//! written in OpenGL, and light with extent with Mitsuba 3. `scripts/race` builds everything needed. `cargo
+//! bench --bench race -- opengl` or `-- mitsuba` runs one of them.
 #![allow(missing_docs)]
 
 mod mitsuba;

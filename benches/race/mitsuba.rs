@@ -1,6 +1,7 @@
-//! Light with extent on the CPU renderer and in Mitsuba 3 (`llvm_ad_rgb`, its `direct` integrator): the time to an equal
-//! relative error at 1280×720, for a sphere in dim surroundings with two small bright softboxes. `$LCM_PYTHON` names the
-//! Python that has Mitsuba (`pip install mitsuba`); without it the race is left out, and says so.
+//! Light with extent in the CPU renderer and in Mitsuba 3 (`llvm_ad_rgb`, its `direct` integrator): the time
+//! to an equal relative error at 1280×720, for a sphere in dim surroundings with two small bright softboxes.
+//! `$LCM_PYTHON` names the Python that has Mitsuba (`pip install mitsuba`); without it the race is skipped,
+//! with a message.
 
 use std::{env, fs, path::Path, process::Command, sync::atomic::AtomicBool, time::Instant};
 
@@ -17,13 +18,13 @@ use lights_camera_models::{
 
 use super::opengl::{median, milliseconds};
 
-/// Relative errors that both take time to.
+/// Relative errors to which both are timed.
 const ERRORS: [f64; 2] = [0.044, 0.016];
-/// The most samples per pixel.
+/// Maximum number of samples per pixel.
 const LAST: u32 = 256;
-/// The samples that the lab's errors are measured against.
+/// Samples of the reference for the lab's errors.
 const EXACT: LightSamples = LightSamples { first: 1 << 16, count: 1024 };
-/// Pixels nearer to the silhouette are left out, as the other program smooths edges.
+/// Distance from the silhouette within which pixels are excluded, as the other program smooths edges.
 const EDGE: usize = 3;
 
 pub(super) fn race() {
@@ -64,7 +65,7 @@ pub(super) fn race() {
     }
 }
 
-/// Disney's model there, whose roughness is √α too.
+/// Disney's model in Mitsuba, whose roughness is also √α.
 const PRINCIPLED: &str = r#"<bsdf type="principled"><rgb name="base_color" value="0.57758,0.18782,0.04519"/>
 <float name="roughness" value="0.5477226"/><float name="specular" value="0.5"/></bsdf>"#;
 
@@ -158,7 +159,7 @@ fn ours(scene: &Scene, registry: &Registry) -> (Vec<[f64; 2]>, Vec<bool>, f64) {
     (runs.collect(), inner, mean)
 }
 
-/// The pixels that an object covers, and their neighbours too.
+/// The pixels covered by an object, as are their neighbours.
 fn inner(picture: &Picture) -> Vec<bool> {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let covered = |x: usize, y: usize| x < width && y < height && picture.pixels[y * width + x].w == 1.0;
@@ -169,7 +170,7 @@ fn inner(picture: &Picture) -> Vec<bool> {
     (0..width * height).map(|i| all(i % width, i / width)).collect()
 }
 
-/// The same of Mitsuba.
+/// Milliseconds and relative errors of Mitsuba.
 fn theirs(
     python: &str,
     scene: &Scene,
@@ -213,8 +214,8 @@ fn theirs(
     (runs, mean[0])
 }
 
-/// The time to an error, between those of the nearest runs, both by their logarithms; errors before the first run take the
-/// first's time.
+/// The time to an error, interpolated between the nearest runs in logarithms; for larger errors than that of
+/// the first run, its time.
 fn time_to(error: f64, runs: &[[f64; 2]]) -> Option<f64> {
     let first = runs.first().filter(|[_, first]| *first <= error).map(|[time, _]| *time);
     first.or_else(|| {

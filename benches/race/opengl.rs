@@ -1,6 +1,6 @@
-//! The default scene in the lab and in an OpenGL program written by hand (`benches/opengl`), in turn, in one run:
-//! medians of the whole process, from its start to a PNG file, and of a frame off screen; and the lines that a user
-//! writes in each.
+//! The default scene in the lab and in a handwritten OpenGL program (`benches/opengl`), alternating in one
+//! run: medians of the whole process, from its start to a PNG file, and of a frame off screen; and the lines
+//! that a user writes in each.
 
 use std::{
     fs,
@@ -15,9 +15,9 @@ use lights_camera_models::{
 };
 
 const SIZE: (u32, u32) = (1280, 720);
-/// Runs of each whole process.
+/// Number of runs of each whole process.
 const RUNS: usize = 31;
-/// Rounds of frames in turn, frames that are counted in each, and frames before them.
+/// Number of alternating rounds of frames; frames counted in each, and frames before them.
 const ROUNDS: usize = 12;
 const FRAMES: usize = 100;
 const FIRST: usize = 10;
@@ -95,7 +95,7 @@ fn frames_of(program: &Path, picture: &Path, size: &str) -> Vec<f64> {
     times[FIRST..].to_vec()
 }
 
-/// Lines of some files that are neither empty nor comments alone.
+/// The number of lines in files that are neither empty nor only comments.
 fn lines(files: &[PathBuf], comment: &str) -> usize {
     let of = |file: &PathBuf| {
         let text = fs::read_to_string(file).expect("it is there");

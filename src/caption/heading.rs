@@ -12,14 +12,15 @@ use crate::{
     scene::{Scene, variant::LETTERS},
 };
 
-/// A view in one line: "B · Phong, α 27". It says what any of the views overrides, so that the headings of all say the same
-/// things, and "as A" of a view that overrides nothing. Empty if there is no such view.
+/// The heading of a view in one line: "B · Phong, α 27". It gives every value that any view overrides, so
+/// that all headings give the same ones, and "as A" for a view that overrides nothing. Empty if the view does
+/// not exist.
 #[must_use]
 pub fn header(scene: &Scene, view: usize, registry: &Registry) -> String {
     line(&header_parts(scene, view, registry))
 }
 
-/// The same in parts.
+/// The heading of a view, in parts.
 #[must_use]
 pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
     let letter = LETTERS.get(view).copied().unwrap_or_default();
@@ -28,13 +29,13 @@ pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part
     letter.into_iter().chain(parts).collect()
 }
 
-/// The same without the letter.
+/// The heading of a view without its letter.
 #[must_use]
 pub fn view_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
     parts_of(scene, view, &Said::in_heading(scene, view), registry)
 }
 
-/// What of a view is to be said, in parts.
+/// The parts of a view's caption, as selected by `said`.
 pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Registry) -> Vec<Part> {
     let Some((seen, terms)) = scene.seen(view, registry) else { return Vec::new() };
     let mut parts = Vec::new();
@@ -81,13 +82,13 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
     }
     parts[0].continues = false;
     let name = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.clone());
-    // A name that says the same as the first words is no name of its own.
+    // A name that repeats the first words adds nothing.
     let said = line(&parts).to_lowercase();
     let name = name.filter(|name| !said.starts_with(&name.to_lowercase()));
     name.map(|name| Part::new(0, name)).into_iter().chain(parts).collect()
 }
 
-/// The values that a heading says.
+/// The values in a heading.
 fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for (id, objects) in groups(seen) {
@@ -149,7 +150,7 @@ mod tests {
         scene.variants = vec![other, Variant::default()];
         assert_eq!(headers(&scene), ["A · Phong, α 20", "B · Blinn–Phong, α 27", "C · as A"]);
         assert_eq!(header(&scene, 3, &Registry::builtin()), "");
-        // A name stands first, unless it says nothing more.
+        // A name comes first, unless it adds nothing.
         scene.variants[0].name = Some("Matched".to_owned());
         assert_eq!(headers(&scene)[1], "B · Matched · Blinn–Phong, α 27");
         scene.variants[0].name = Some("Blinn–Phong".to_owned());

@@ -25,14 +25,14 @@ use said::Said;
 pub struct Caption {
     /// The name of the scene, and of the view if there are several; often empty.
     pub title: String,
-    /// The reflection models, the shading models, the values that are not the defaults, terms and display.
+    /// Reflection models, shading models, non-default values, terms and display.
     pub facts: Vec<Part>,
     /// The name and the version of the program.
     pub program: &'static str,
 }
 
 impl Caption {
-    /// The same with what the light of the views rests on, before what each view has of its own.
+    /// Adds how the light of the views was sampled, before the facts of single views.
     #[must_use]
     pub fn resting_on(mut self, views: &[Sampled]) -> Self {
         let own = self.facts.iter().position(Part::leads).unwrap_or(self.facts.len());
@@ -41,7 +41,7 @@ impl Caption {
     }
 }
 
-/// The caption of a scene as it is, of whose equations these terms are shown.
+/// The caption of a scene as it is, with these terms of its equations shown.
 #[must_use]
 pub fn of_scene(scene: &Scene, terms: TermSelection, registry: &Registry) -> Caption {
     let mut facts = words::surfaces(scene, &Said::default(), registry);
@@ -51,14 +51,14 @@ pub fn of_scene(scene: &Scene, terms: TermSelection, registry: &Registry) -> Cap
     Caption { title: scene.name.clone().unwrap_or_default(), facts, program }
 }
 
-/// The caption of a view of a scene; `None` if there is no such view.
+/// The caption of a view of a scene; `None` if the view does not exist.
 #[must_use]
 pub fn of_view(scene: &Scene, view: usize, registry: &Registry) -> Option<Caption> {
     let (seen, terms) = scene.seen(view, registry)?;
     Some(of_seen(scene, (view, &seen, terms), registry))
 }
 
-/// The caption of a view that shows a scene and terms.
+/// The caption of a view, from its scene and terms.
 fn of_seen(
     scene: &Scene,
     (view, seen, terms): (usize, &Scene, TermSelection),
@@ -70,8 +70,8 @@ fn of_seen(
     Caption { title: title(scene, view), ..caption }
 }
 
-/// The caption of a picture with several views: what is the same in all, and then what each has of its own. `terms` are
-/// those that are shown in every view, unless each has its own.
+/// The caption of a picture with several views: first what they share, then what differs in each. `terms` are
+/// the terms shown in every view that does not set others.
 #[must_use]
 pub fn of_views(
     scene: &Scene,
@@ -92,7 +92,7 @@ pub fn of_views(
     for view in views {
         let mut of_view = Said::of(scene, *view);
         of_view.terms &= terms.is_none();
-        // The values are said nowhere else.
+        // The values are given nowhere else.
         (of_view.values, of_view.colours) = (said.model, true);
         let parts = heading::parts_of(scene, *view, &of_view, registry);
         let letter = LETTERS.get(*view).copied().unwrap_or_default();
@@ -102,7 +102,7 @@ pub fn of_views(
     Caption { facts, ..of_scene(scene, TermSelection::All, registry) }
 }
 
-/// The caption of a picture of a scene: of the view alone, or of several, each with what it shows and its terms.
+/// The caption of a picture of a scene: of a single view, or of several, each with its scene and terms.
 #[must_use]
 pub fn of_picture(scene: &Scene, shown: &[(usize, &Scene, TermSelection)], registry: &Registry) -> Caption {
     match shown {
@@ -158,7 +158,7 @@ mod tests {
         scene.objects[0].material.set("alpha", Value::Integer(27));
         scene.objects[0].material.set("k_s", Value::Number(0.25));
         scene.objects[0].material.set("base_colour", Value::Colour([200, 100, 50]));
-        // What the model does not use is no fact of the picture.
+        // A setting that the model ignores is not part of the picture.
         scene.objects[0].material.set("roughness", Value::Number(0.9));
         scene.display.tone_mapping = ToneMapping::AgX;
         scene.display.exposure = -1.5;
@@ -188,21 +188,21 @@ mod tests {
             facts(&scene, 0),
             "Phong (Ball, Cube), α = 20 to 80 · Oren–Nayar (Floor, Wall), σ = 0 to 20° · Gouraud shading"
         );
-        // What holds for all is said once.
+        // Facts shared by all views are given once.
         let mut red = scene.clone();
         red.objects
             .iter_mut()
             .for_each(|object| object.material.set("base_colour", Value::Colour([200, 0, 0])));
         let end = "Oren–Nayar (Floor, Wall), σ = 0 to 20° · Gouraud shading · C_b = (200, 0, 0)";
         assert_eq!(facts(&red, 0), format!("Phong (Ball, Cube), α = 20 to 80 · {end}"));
-        // Names that repeat the model's say nothing more.
+        // Names that repeat the model's add nothing.
         scene.objects[0].name = Some("Phong 1".to_owned());
         assert!(
             facts(&scene, 0).starts_with("Phong, α = 20 to 80 · Oren–Nayar (Floor"),
             "{}",
             facts(&scene, 0)
         );
-        // Long names, and parts without one, would make it a list.
+        // Long names, or parts without a name, would make this a list.
         scene.objects[0].name = Some("The first of the balls on the table".to_owned());
         scene.objects[1].name = None;
         scene.objects[1].shading_model = Some("flat".to_owned());
@@ -235,12 +235,12 @@ mod tests {
             said(&scene, &[0, 1, 2], None),
             format!("{common} · +1 EV · {a} · {b} · C: Highlight, specular term alone")
         );
-        // The terms of all views are said once.
+        // Terms shared by all views are given once.
         assert_eq!(
             said(&scene, &[0, 1], Some(TermSelection::Diffuse)),
             format!("{common} · diffuse term alone · +1 EV · A: α 20, no tone mapping · B: α 80, AgX")
         );
-        // Under other models there is nothing in common but the display and the shading.
+        // Different models have only the display and the shading in common.
         scene.variants[1].reflection_model = Some("blinn_phong".to_owned());
         let all = said(&scene, &[0, 2], None);
         assert!(all.starts_with("Gouraud shading · +1 EV · A: Phong, k_s 0.25, α 20, "), "{all}");

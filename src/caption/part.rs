@@ -7,14 +7,14 @@ pub struct Part {
     pub symbol: &'static str,
     /// The words or the number.
     pub text: String,
-    /// True if it belongs to the part before it: a comma stands between them, else a dot.
+    /// True if the part belongs to the one before it: a comma separates them instead of a dot.
     pub continues: bool,
-    /// The highest goes first where there is little room; 0 stays.
+    /// Parts of the highest rank are dropped first where space is short; 0 is never dropped.
     pub rank: u8,
 }
 
 impl Part {
-    /// Words that leave a caption in this order.
+    /// A part with this rank, which decides when it is dropped.
     #[must_use]
     pub fn new(rank: u8, text: impl Into<String>) -> Self {
         Self { text: text.into(), rank, ..Self::default() }
@@ -24,7 +24,7 @@ impl Part {
         Self { continues: true, ..self }
     }
 
-    /// The same as text.
+    /// The part as text.
     #[must_use]
     pub fn words(&self) -> String {
         format!("{} {}", self.symbol, self.text).trim().to_owned()
@@ -35,7 +35,7 @@ impl Part {
         self.text.ends_with(':')
     }
 
-    /// The sign between another part and this one.
+    /// The separator between the previous part and this one.
     pub(crate) fn joint(&self, before: &Self) -> &'static str {
         if before.leads() {
             " "

@@ -1,10 +1,10 @@
-//! What differs between the views of a scene.
+//! The differences between the views of a scene.
 
 use std::collections::BTreeSet;
 
 use crate::scene::{Scene, Variant};
 
-/// The things that the heading of a view says, and the caption around it does not.
+/// The facts that the heading of a view gives instead of the caption around it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Said {
     pub(super) model: bool,
@@ -15,14 +15,14 @@ pub(super) struct Said {
     pub(super) exposure: bool,
     pub(super) encoding: bool,
     pub(super) tessellation: bool,
-    /// Also the values that are not the defaults, colours apart: they make a model what it is where others have another.
+    /// Also the non-default values, except colours: where models differ, they are part of what defines one.
     pub(super) values: bool,
-    /// The colours among them too.
+    /// Also the non-default colours.
     pub(super) colours: bool,
 }
 
 impl Said {
-    /// What a view overrides; of view A, the scene itself, what the others do.
+    /// The facts that a view overrides; for view A, the scene itself, the facts that other views override.
     pub(super) fn of(scene: &Scene, view: usize) -> Self {
         let mut said = Self::default();
         let views = if view == 0 { 1..=scene.variants.len() } else { view..=view };
@@ -31,7 +31,8 @@ impl Said {
         said
     }
 
-    /// What the heading of a view says: what any of them overrides, unless this one overrides nothing.
+    /// The facts in the heading of a view: everything that any view overrides, unless this one overrides
+    /// nothing.
     pub(super) fn in_heading(scene: &Scene, view: usize) -> Self {
         let own = scene.overrides(view).unwrap_or_default();
         let nothing =

@@ -1,21 +1,22 @@
-//! What the light of a picture rests on, in words: the samples of lights with extent, and their noise.
+//! The sampling of a picture in words: samples of lights with extent, and their noise.
 
 use super::Part;
 use crate::scene::limits::{number, significant};
 
-/// The rank of these parts: as those of the display.
+/// The rank of these parts, equal to that of the display.
 const RANK: u8 = 1;
 
-/// What the light of a view rests on that is lit by lights with extent.
+/// The sampling of a view that is lit by lights with extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// The samples of each light, as many as were taken.
+    /// Number of samples taken of each light.
     pub samples: u32,
-    /// The noise that was reached, as a fraction of the mean luminance, if it is known.
+    /// Noise reached, as a fraction of the mean luminance, if known.
     pub noise: Option<f32>,
 }
 
-/// "256 samples of each light", and "noise 0.41 %" if that of all views is known; nothing without views that rest on samples.
+/// "256 samples of each light", followed by "noise 0.41 %" if the noise of all views is known; empty if no
+/// view was sampled.
 #[must_use]
 pub fn sampled(views: &[Sampled]) -> Vec<Part> {
     let samples = || views.iter().map(|view| view.samples);
@@ -39,7 +40,7 @@ fn range([least, most]: [String; 2]) -> String {
     if least == most { least } else { format!("{least} to {most}") }
 }
 
-/// A fraction in per cent with two digits that count: noise is itself an estimate.
+/// A fraction in per cent with two significant digits: noise is itself an estimate.
 fn per_cent(fraction: f32) -> String {
     let percent = 100.0 * f64::from(fraction);
     if percent < 0.01 {
@@ -69,7 +70,7 @@ mod tests {
             said(&[(96, Some(0.0095)), (1024, Some(0.01))]),
             "96 to 1024 samples of each light, noise 0.95 to 1 %"
         );
-        // That of one view alone would be taken for that of all.
+        // The noise of one view alone would be mistaken for that of all.
         assert_eq!(said(&[(16, None), (64, Some(0.1))]), "16 to 64 samples of each light");
         assert_eq!(said(&[(256, Some(0.0))]), "256 samples of each light, noise below 0.01 %");
     }

@@ -5,42 +5,43 @@ use std::collections::BTreeMap;
 use super::{Caption, Part};
 use crate::lettering::Lettering;
 
-/// The ground of the strip: neutral, since the colours above it are judged.
+/// Background of the strip: neutral, since the colours above it are judged.
 const GROUND: [u8; 3] = [24; 3];
 /// The line between the picture and the strip.
 const EDGE: [u8; 3] = [72; 3];
 const TITLE: [u8; 3] = [244; 3];
 const TEXT: [u8; 3] = [208; 3];
-/// The name of the program. Its contrast is 5.9:1.
+/// Colour of the program's name. Its contrast is 5.9:1.
 const PROGRAM: [u8; 3] = [146; 3];
 
-/// The most lines for the facts.
+/// Maximum number of lines for the facts.
 const LINES: usize = 3;
-/// The smallest text that is legible, pixels.
+/// Smallest legible text, in pixels.
 const SMALLEST: f32 = 12.0;
 
-/// The size of text that goes with a picture of this size, pixels.
+/// Text size for a picture of this size, in pixels.
 #[must_use]
 pub fn type_size([width, height]: [u32; 2]) -> f32 {
-    // As in a picture of 16:9: the strip of a narrow one shall not be all lines, that of a flat one not all strip.
+    // As in a 16:9 picture: the strip must not consist of many lines under a narrow picture, nor be taller
+    // than a flat one.
     let height = height.min(width / 16 * 9);
     (height as f32 / 48.0).round().clamp(SMALLEST, 96.0)
 }
 
-/// Parts of a caption in one line, from `at` on.
+/// Draws parts of a caption in one line, starting at `at`.
 pub fn draw_line(parts: &[Part], picture: &mut [u8], size: [u32; 2], at: [i32; 2], px: f32, colour: [u8; 3]) {
     let line = Line::of(parts, px);
     line.runs.iter().for_each(|run| run.draw(picture, size, at, px, colour));
 }
 
-/// The width of parts in one line, pixels.
+/// Width of parts in one line, in pixels.
 #[must_use]
 pub fn line_width(parts: &[Part], px: f32) -> u32 {
     Line::of(parts, px).width
 }
 
-/// The picture with its caption in a strip below it, and the size of both. `size` is that of the picture; the height of
-/// the strip is added to it.
+/// The picture with its caption in a strip below it, and the size of the whole. `size` is the size of the
+/// picture; the height of the strip is added to it.
 #[must_use]
 pub fn draw(caption: &Caption, mut picture: Vec<u8>, size: [u32; 2]) -> (Vec<u8>, [u32; 2]) {
     let strip = Strip::of(caption, size);
@@ -130,7 +131,8 @@ impl Strip {
             rows.push((title_px, TITLE, elided(Lettering::Semibold, &caption.title, title_px, room)));
         }
         rows.extend(facts(&caption.facts, px, room).into_iter().map(|line| (px, TEXT, line)));
-        // Lines of several sizes stand on one foot, the program's beside the first where there is room.
+        // Lines of different sizes share a baseline; the program's name is beside the first where there is
+        // room.
         let program = elided(Lettering::Regular, caption.program, px, room);
         let beside = |(_, _, line): &(f32, [u8; 3], Line)| line.width + 2 * px as u32 + program.width <= room;
         let last = rows.len().saturating_sub(1);
@@ -157,19 +159,19 @@ impl Strip {
     }
 }
 
-/// A text in one line that is no wider than the room.
+/// A text in one line that fits into the room, shortened if necessary.
 fn elided(lettering: Lettering, text: &str, px: f32, room: u32) -> Line {
     let text = lettering.lines(px, text, room, 1).into_iter().next().unwrap_or_default();
     let line = Line::text(lettering, &text, px);
-    // Less than the mark that something is missing says nothing.
+    // A line with less than the ellipsis means nothing.
     if line.width <= room { line } else { Line::default() }
 }
 
-/// The facts in lines. What does not fit is left out, the highest rank first, and of one rank the last; "…" stands in the
-/// place of each rank.
+/// The facts in lines. Facts that do not fit are dropped, highest rank first, and last first within a rank;
+/// "…" replaces those of each rank.
 fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
     let mut left: Vec<_> = parts.iter().enumerate().collect();
-    // The first that is left out of each rank, by its place among all.
+    // The first dropped part of each rank, by its position among all parts.
     let mut gaps: BTreeMap<u8, usize> = BTreeMap::new();
     loop {
         let gap = |i: usize| Part { continues: parts[i].continues, ..Part::new(0, "…") };
@@ -178,7 +180,7 @@ fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
         shown.sort_by_key(|(i, _)| *i);
         let shown: Vec<_> = shown.into_iter().map(|(_, part)| part).collect();
         let lines = broken(&shown, px, room);
-        // The first stays, whatever happens.
+        // The first part always stays.
         let least = left.iter().skip(1).map(|(_, part)| part.rank).max();
         match left.iter().rposition(|(i, part)| *i > 0 && Some(part.rank) == least) {
             Some(at) if lines.len() > LINES => {
@@ -190,12 +192,12 @@ fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
     }
 }
 
-/// The parts in lines that are no wider than the room, broken between parts.
+/// The parts in lines that fit into the room, broken between parts.
 fn broken(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for (i, part) in parts.iter().enumerate() {
         let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
-        // A line that goes on ends with the sign between parts.
+        // A continued line ends with the separator between parts.
         let open = |next: &Part| Lettering::Regular.width(px, next.joint(part).trim_end());
         let more = parts.get(i + 1).map_or(0, open);
         let mut own = Line::default();
@@ -252,12 +254,12 @@ mod tests {
                 let all = text(&lines).join("");
                 let shown = all.matches("k_d").count();
                 assert!(shown == n || all.contains('…'), "{room}, {n}: {all}");
-                // Values go before the display does, and the model stays.
+                // Values are dropped before the display, and the model stays.
                 assert!(all.contains("AgX") || shown == 0, "{room}, {n}: {all}");
                 assert!(all.starts_with("Cook") || room == 60, "{room}, {n}: {all}");
             }
         }
-        // Models that are left out are marked in their place, and so are values.
+        // Dropped models are marked in their place, and so are values.
         let models = (0..20).flat_map(|i| {
             let value = Part { symbol: "α", continues: true, ..Part::new(3, format!("= {i}")) };
             [Part::new(if i == 0 { 0 } else { 2 }, format!("Model {i}")), value]
@@ -284,7 +286,7 @@ mod tests {
             assert!(width == size[0] && height > size[1], "{size:?}");
             assert_eq!(whole.len(), (width * height * 3) as usize);
             assert_eq!(whole[..picture.len()], picture);
-            // Nothing touches the right and the lower edge.
+            // The right and lower edges keep a margin.
             let strip = &whole[picture.len() + 3 * width as usize..];
             let free = |row: &[u8]| width < 60 || row[row.len() - 3..] == GROUND && row[..3] == GROUND;
             assert!(strip.chunks(3 * width as usize).all(free), "{size:?}");

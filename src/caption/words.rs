@@ -12,17 +12,17 @@ use crate::{
     text::listed,
 };
 
-/// More characters of objects' names would be a list, not a caption.
+/// Longest list of object names, in characters; longer ones do not suit a caption.
 const NAMES: usize = 30;
 
-/// The ranks of parts: what is not said first where there is little room.
+/// The rank of parts, which decides what is dropped first where space is short.
 pub(super) const VALUES: u8 = 3;
 const FURTHER_MODELS: u8 = 2;
 
-/// The reflection models and shading models of the visible objects, and the values that are not the defaults. What holds
-/// for every model is said once, at the end, and what is `said` elsewhere not at all.
+/// The reflection and shading models of the visible objects, and the non-default values. Facts shared by all
+/// models are given once, at the end; facts `said` elsewhere are omitted.
 pub(super) fn surfaces(scene: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
-    // Under other models, values are others.
+    // Other models have other values.
     let groups = if said.model { Vec::new() } else { groups(scene) };
     let values = |(id, objects): &(&str, Vec<&Object>)| -> Vec<Part> {
         let Some(model) = registry.model(id) else { return Vec::new() };
@@ -36,7 +36,7 @@ pub(super) fn surfaces(scene: &Scene, said: &Said, registry: &Registry) -> Vec<P
     let mut parts = Vec::new();
     for (i, ((id, objects), values)) in groups.iter().zip(&mut values).enumerate() {
         let name = registry.model(id).map_or(*id, |m| m.declaration.name);
-        // Objects that are called as their model say nothing more.
+        // Object names that repeat their model's name add nothing.
         let names = names(objects).filter(|names| groups.len() > 1 && !names.contains(name));
         let text = names.map_or_else(|| name.to_owned(), |names| format!("{name} ({names})"));
         parts.push(Part::new(if i == 0 { 0 } else { FURTHER_MODELS }, text));
@@ -70,7 +70,7 @@ pub(super) fn groups(scene: &Scene) -> Vec<(&str, Vec<&Object>)> {
 pub(super) fn shadings(scene: &Scene, registry: &Registry) -> Option<String> {
     let ids: BTreeSet<_> = scene.shown().map(|object| scene.shading_model_of(object)).collect();
     let mut ids: Vec<_> = ids.into_iter().collect();
-    // That of the scene comes first.
+    // The scene's own shading model comes first.
     ids.sort_by_key(|id| *id != scene.shading_model);
     let name = |id: &&'_ str| {
         registry.shading_model(id).map_or_else(|| (*id).to_owned(), |m| m.declaration.name.to_owned())
@@ -100,14 +100,15 @@ fn names(objects: &[&Object]) -> Option<String> {
 pub(super) enum Spread {
     /// All have one value.
     One(Value),
-    /// They have numbers from the first to the second.
+    /// All have numbers from the first to the second.
     Range(Value, Value),
-    /// They have other values.
+    /// Values differ otherwise.
     Several,
 }
 
 impl Spread {
-    /// The values as a part, with this before a number: "= 27", "= 20 to 80"; `None` if there is no word for them.
+    /// The values as a part, with a prefix for numbers: "= 27", "= 20 to 80"; `None` if the value has no
+    /// name.
     pub(super) fn part(&self, parameter: &'static Parameter, before: &str) -> Option<Part> {
         let (symbol, text) = match self {
             Self::Several => return None,
@@ -133,7 +134,7 @@ impl Spread {
     }
 }
 
-/// The values of a parameter on those objects that use it; `None` if none does.
+/// The values of a parameter on the objects that use it; `None` if none does.
 pub(super) fn spread(model: &ModelEntry, parameter: &Parameter, objects: &[&Object]) -> Option<Spread> {
     let used = |object: &&&Object| usage::unused(model.parameters, parameter, &object.material).is_none();
     let size = |value: &Value| match value {
@@ -159,7 +160,7 @@ pub(super) fn spread(model: &ModelEntry, parameter: &Parameter, objects: &[&Obje
     })
 }
 
-/// The values that are not the defaults, in the order of their declaration.
+/// The non-default values, in the order of their declaration.
 pub(super) fn differing<'a>(
     model: &'a ModelEntry,
     objects: &'a [&Object],
@@ -181,7 +182,7 @@ pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'s
         (Value::Integer(v), _) => (parameter.symbol, v.to_string()),
         (Value::Colour(rgb), _) => (parameter.symbol, format!("({}, {}, {})", rgb[0], rgb[1], rgb[2])),
         (Value::Triple(v), _) => (parameter.symbol, numbers(v.map(|v| number(f64::from(v))))),
-        // The name of a distribution needs no letter; “None” and “yes” alone say nothing.
+        // A distribution's name needs no symbol; “None” and “yes” alone mean nothing.
         (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
             let name = options.iter().find(|(o, _)| **o == **id).map_or(&**id, |(_, name)| *name);
             let name = name.split(" (").next().unwrap_or(name);
@@ -197,12 +198,12 @@ pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'s
     })
 }
 
-/// The term that is shown alone, if one is.
+/// The term, if a single one is shown.
 pub(crate) fn terms_alone(terms: TermSelection) -> Option<Part> {
     (terms != TermSelection::All).then(|| Part::new(1, format!("{} term alone", terms.id())))
 }
 
-/// Tone mapping, exposure and encoding, as far as they are not the usual ones.
+/// Tone mapping, exposure and encoding where they differ from the defaults.
 pub(crate) fn display(display: Display) -> Vec<Part> {
     let mut parts = Vec::new();
     if display.tone_mapping != ToneMapping::None {

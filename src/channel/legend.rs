@@ -1,4 +1,4 @@
-//! Legends of channels: for the window and for pictures alike.
+//! Legends of channels, for the window and for pictures.
 
 use super::{
     DebugChannel, Setting,
@@ -6,15 +6,15 @@ use super::{
 };
 use crate::{registry::Registry, scene::Scene, shading::Stage};
 
-/// The meaning of the colours of a channel.
+/// The meaning of a channel's colours.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Legend {
-    /// The values that are shown, with their unit.
+    /// The quantity shown, with its unit.
     pub title: String,
     /// The numbers at the left, in the middle and at the right of a bar with the colours of
     /// [viridis](crate::optics::viridis).
     pub scale: Option<[String; 3]>,
-    /// Further colours, and what has them.
+    /// Additional colours, with their meanings.
     pub colours: Vec<([u8; 3], String)>,
 }
 
@@ -22,7 +22,7 @@ impl Setting {
     /// The legend of the channel in a picture of a scene.
     #[must_use]
     pub fn legend(&self, scene: &Scene, registry: &Registry) -> Legend {
-        // Vertices with a colour of their own, and those of which the normal is shown.
+        // Vertices with separate colours, and those whose normals are shown.
         let mut vertices = [false; 2];
         for object in scene.shown().filter(|_| self.channel == DebugChannel::Vertices) {
             let shading = registry.shading_model(scene.shading_model_of(object));
@@ -86,7 +86,7 @@ impl Setting {
         Legend { title, scale, colours }
     }
 
-    /// Its light for people: its name, or its type and its place among the lights of the scene.
+    /// The name of the channel's light, or its type and its index among the lights of the scene.
     fn light_name(&self, scene: &Scene, registry: &Registry) -> Option<String> {
         let mut shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
         let (index, light) = shining.nth(self.light?)?;
@@ -97,7 +97,7 @@ impl Setting {
     }
 }
 
-/// A number with three digits.
+/// A number rounded to three digits.
 fn rounded(x: f32) -> f32 {
     let digits = 2 - x.abs().max(1e-9).log10().floor() as i32;
     ((f64::from(x) * 10f64.powi(digits)).round() / 10f64.powi(digits)) as f32

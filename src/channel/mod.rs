@@ -1,7 +1,7 @@
 //! Debug channels: the values that lead to the colour of a pixel, drawn as colours instead of the picture.
 //!
 //! A channel belongs to a view, not to the scene. It is drawn without exposure and tone mapping, so that its legend
-//! holds; [`DebugChannel::Light`] alone is a picture like any other, under one light. The shaders have the channels in
+//! is valid; only [`DebugChannel::Light`] is a picture like any other, under one light. The shaders have the channels in
 //! `assets/shaders/channels.wgsl`, the CPU renderer in `src/reference/channel.rs`.
 //!
 //! ```
@@ -106,7 +106,7 @@ impl DebugChannel {
         }
     }
 
-    /// The name for people.
+    /// The display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -127,7 +127,7 @@ impl DebugChannel {
         }
     }
 
-    /// Its values, and what to look for.
+    /// The values of the channel, and what to look for.
     #[must_use]
     pub const fn explanation(self) -> &'static str {
         match self {
@@ -195,14 +195,14 @@ impl DebugChannel {
         }
     }
 
-    /// The channel with an id.
+    /// The channel with this id.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture. Lines and dots are drawn over the dim
-    /// grey surface of [`NotANumber`](Self::NotANumber).
+    /// The number in shaders (`CHANNEL_…` in `channels.wgsl`); 0 draws the picture. Lines and dots are drawn
+    /// over the dim grey surface of [`NotANumber`](Self::NotANumber).
     #[must_use]
     pub const fn code(self) -> u32 {
         match self {
@@ -220,31 +220,32 @@ impl DebugChannel {
         }
     }
 
-    /// True if it is a picture like any other, with exposure and tone mapping.
+    /// True if the channel is a picture like any other, with exposure and tone mapping.
     #[must_use]
     pub const fn is_picture(self) -> bool {
         matches!(self, Self::Light)
     }
 
-    /// True if it shows the light that leaves the surface, and not geometry; lines and dots lie over such a picture.
+    /// True if the channel shows the light that leaves the surface, not geometry; lines and dots are drawn
+    /// over such a picture.
     #[must_use]
     pub const fn is_of_light(self) -> bool {
         matches!(self, Self::Light | Self::Luminance | Self::Clipped | Self::NotANumber) || self.has_wires()
     }
 
-    /// True if lines or dots of the meshes are drawn over its picture.
+    /// True if lines or dots of the meshes are drawn over the channel's picture.
     #[must_use]
     pub const fn has_wires(self) -> bool {
         matches!(self, Self::VertexNormals | Self::Wireframe | Self::Vertices)
     }
 
-    /// True if it is about one light.
+    /// True if the channel is about one light.
     #[must_use]
     pub const fn has_light(self) -> bool {
         matches!(self, Self::Light | Self::NDotL | Self::NDotH)
     }
 
-    /// The channel after one, or after none: first all channels, then none.
+    /// The next channel after this one, or after `None`: cycles through all channels, then `None`.
     #[must_use]
     pub fn next(channel: Option<Self>) -> Option<Self> {
         let at = channel.and_then(|channel| Self::ALL.iter().position(|c| *c == channel));
@@ -252,22 +253,22 @@ impl DebugChannel {
     }
 }
 
-/// A channel with what its picture depends on.
+/// A channel with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// The channel.
     pub channel: DebugChannel,
-    /// Its light, by its place among the lights that shine; `None` if there is none of the kind it needs.
+    /// The channel's light, as an index among the active lights; `None` if there is no suitable one.
     pub light: Option<usize>,
-    /// The values at the ends of the scale: for depth, metres.
+    /// The values at the ends of the scale; for depth in metres.
     pub range: [f32; 2],
     /// True if the light shines from its position, false if along its direction.
     pub from_position: bool,
 }
 
 impl Setting {
-    /// A channel of a scene seen from an eye. It is about the `chosen` light of the scene if that shines and, where a
-    /// direction is asked for, has one; otherwise about the one that is brightest at the objects.
+    /// A channel of a scene seen from an eye. It refers to the `chosen` light of the scene if that is active
+    /// and has a direction where one is needed; otherwise to the light that is brightest at the objects.
     #[must_use]
     pub fn new(
         channel: DebugChannel,
@@ -284,7 +285,7 @@ impl Setting {
         Self { channel, light, range, from_position: declared.is_some_and(|l| l.declaration.has_position) }
     }
 
-    /// True if the light with that place among those that shine takes part in the picture.
+    /// True if the light with this index among the active ones takes part in the picture.
     #[must_use]
     pub fn shines(&self, light: usize) -> bool {
         !self.channel.is_picture() || self.light.is_none_or(|alone| alone == light)
@@ -311,7 +312,7 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
     let arriving = |light: &Light| {
         let (entry, emitter, record) = emitter(light, registry, encoding)?;
         if entry.declaration.extent {
-            // It shines from no one direction.
+            // It has no single direction.
             return channel
                 .is_picture()
                 .then(|| luminance(from_all(&*emitter, &record, middle) * record.colour));
@@ -334,7 +335,7 @@ fn light(channel: DebugChannel, scene: &Scene, registry: &Registry, chosen: Opti
 
 /// The radiance of a light with extent, summed over the directions from a point.
 fn from_all(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Vec3 {
-    /// Samples: brightness is compared, no more.
+    /// The number of samples, enough to compare brightness.
     const SAMPLES: u32 = 64;
     let sequence = Sequence::new(0, 0);
     let sum = (0..SAMPLES).map(|i| emitter.sample(record, p, sequence.point(i)));
@@ -342,7 +343,7 @@ fn from_all(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Vec3 {
     sum / SAMPLES as f32
 }
 
-/// A number with its two leading digits, rounded by a function.
+/// A number rounded by a function to its two leading digits.
 fn two_digits(x: f32, round: fn(f64) -> f64) -> f32 {
     if x <= 0.0 || !x.is_finite() {
         return 0.0;

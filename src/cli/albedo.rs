@@ -16,8 +16,8 @@ use crate::{
     parameter::ABOVE_ZERO,
 };
 
-/// The input column. At μ = 0 the viewer is in the surface, where a response is 0 by definition and no limit of the
-/// albedo.
+/// The input column. At μ = 0 the viewer is in the surface, where a response is 0 by definition instead of
+/// the limit of the albedo.
 const COLUMNS: [Column; 1] = [Column { name: "mu", range: Some((ABOVE_ZERO as f64, 1.0)) }];
 
 pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {

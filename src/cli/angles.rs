@@ -1,45 +1,45 @@
-//! Tables of numbers on standard input: CSV with a header line, every problem with its line. Input may be endless: rows
-//! are answered as they come, and neither lines nor problems grow without bound.
+//! Tables of numbers on standard input: CSV with a header line; every problem is reported with its line.
+//! Input may be endless: rows are answered as they arrive, and neither lines nor problems grow without bound.
 
 use std::io::{BufRead, Read as _};
 
 use super::Outcome;
 use crate::{failure::Failure, files::words, parameter::ABOVE_ZERO, scene::load::STDIN, text::quoted};
 
-/// The longest line, in bytes: four numbers, each written out in full, take a fraction of it.
+/// Maximum length of a line, in bytes: four numbers, each written out in full, take a fraction of it.
 const MAX_LINE: usize = 4096;
-/// The rows answered at a time; fewer if their text is long.
+/// Number of rows answered at a time; fewer if their text is long.
 const BATCH_ROWS: usize = 16_384;
-/// The approximate limit of the text in a batch, in bytes.
+/// Approximate size of the text in a batch, in bytes.
 const BATCH_BYTES: usize = 1 << 20;
-/// The most problems listed; the rest are only counted.
+/// Maximum number of problems listed; the rest are only counted.
 const MAX_LISTED: usize = 20;
-/// After this many problems reading stops.
+/// Number of problems after which reading stops.
 const MAX_PROBLEMS: usize = 1_000_000;
 
 /// One line of a table: its text and its numbers.
 pub(super) struct Row<const N: usize> {
-    /// The columns as written, without white space around them.
+    /// The columns as written, trimmed.
     pub text: [String; N],
-    /// The same as numbers.
+    /// The columns as numbers.
     pub numbers: [f64; N],
 }
 
-/// One column: its name and its legal values.
+/// A column: its name and its legal values.
 pub(super) struct Column {
-    /// The name required in the header.
+    /// Name required in the header.
     pub name: &'static str,
-    /// Smallest and largest legal value; any finite number if there are none. [`ABOVE_ZERO`] is the
-    /// smallest number that is greater than zero.
+    /// Minimum and maximum; `None` for any finite number. [`ABOVE_ZERO`] is the smallest number that is
+    /// greater than zero.
     pub range: Option<(f64, f64)>,
 }
 
-/// Reads a table and answers its rows in batches, in order; the last one may be empty. After the first problem nothing
-/// more is answered, but the rest is read to find other problems. A table with a problem in its first batch gives no
-/// answer.
+/// Reads a table and answers its rows in batches, in order; the last batch may be empty. After the first
+/// problem nothing more is answered, but the rest is read to find other problems. A table with a problem in
+/// its first batch gets no answers.
 ///
 /// # Errors
-/// Everything that is wrong with the table, or the failure of an answer.
+/// Returns all problems of the table, or the failure of an answer.
 pub(super) fn stream<const N: usize>(
     input: impl BufRead,
     columns: &[Column; N],
@@ -88,7 +88,7 @@ impl Problems {
         }
     }
 
-    /// All in one, a line each.
+    /// All problems in one failure, a line each.
     fn failure(&self) -> Failure {
         let mut lines = self.listed.clone();
         match self.count - lines.len() {
@@ -107,9 +107,9 @@ impl Problems {
 struct Table<'a, R, const N: usize> {
     input: R,
     columns: &'a [Column; N],
-    /// The number of lines read.
+    /// Number of lines read.
     lines: usize,
-    /// Their size in bytes.
+    /// Number of bytes read.
     bytes: usize,
     problems: Problems,
 }
@@ -119,7 +119,7 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
         Self { input, columns, lines: 0, bytes: 0, problems: Problems::default() }
     }
 
-    /// A problem that ends reading, after those before it.
+    /// Ends reading with a problem, reported after those before it.
     fn give_up(&mut self, problem: String) -> Failure {
         self.problems.add(problem);
         self.problems.failure()
@@ -162,7 +162,7 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
                 self.give_up(format!("{STDIN} is empty, but the first line must be the header {header}"))
             );
         };
-        // Spreadsheets put a byte order mark before CSV.
+        // Spreadsheets write a byte order mark before CSV.
         let first = first.trim_start_matches('\u{FEFF}').trim();
         if first.split(',').map(str::trim).eq(names) {
             return Ok(());
@@ -219,7 +219,7 @@ mod tests {
     const COLUMNS: [Column; 2] =
         [Column { name: "a", range: Some((0.0, 90.0)) }, Column { name: "b", range: None }];
 
-    /// The rows of a table, or everything that is wrong with it.
+    /// The rows of a table, or all its problems.
     fn parse<const N: usize>(text: &str, columns: &[Column; N]) -> Result<Vec<Row<N>>, Vec<String>> {
         let mut rows = Vec::new();
         let copy = |row: &Row<N>| Row { text: row.text.clone(), numbers: row.numbers };
@@ -277,7 +277,7 @@ mod tests {
         });
         assert!(read.is_ok());
         assert_eq!(sizes, [BATCH_ROWS, BATCH_ROWS, 7]);
-        // Long lines make small batches.
+        // Long lines make batches smaller.
         let row = format!("1,2{}\n", " ".repeat(4000));
         let mut sizes = Vec::new();
         let read = stream(format!("a,b\n{}", row.repeat(1000)).as_bytes(), &COLUMNS, |batch| {

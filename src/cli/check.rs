@@ -23,12 +23,12 @@ use crate::{
     shader::{check::ShaderProblem, report::annotated},
 };
 
-/// The problems of a legal scene that show when it is drawn, for people and for programs: shaders that are wrong,
+/// The problems of a legal scene that appear when it is drawn, for people and for programs: invalid shaders,
 /// models that run too long, and light that is not finite, in any of its views.
 fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem>) {
     let (mut said, mut problems) = (Vec::new(), Vec::new());
     let mut tried = Tried::default();
-    // With the parameters of the scene before, a model may have run too long.
+    // With the parameters of the previous scene, a model may have run too long.
     registry.models().iter().for_each(ModelEntry::run_again);
     for view in 0..=scene.variants.len() {
         let Some((seen, _)) = scene.seen(view, registry) else { continue };
@@ -50,7 +50,8 @@ fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem
     (said.join("\n"), problems)
 }
 
-/// A line for each model of a legal scene that only a GPU runs, with the first object that has it in any of its views.
+/// A line for each model of a legal scene that only a GPU can run, with the first object that uses it in any
+/// of its views.
 fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     let (mut said, mut met) = (Vec::new(), BTreeSet::new());
     for (seen, _) in (0..=scene.variants.len()).filter_map(|view| scene.seen(view, registry)) {
@@ -70,7 +71,7 @@ fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     said
 }
 
-/// Adds what is not there yet.
+/// Adds a problem unless it is known.
 fn put(problems: &mut Vec<Problem>, problem: Problem, say: impl FnOnce()) {
     if !problems.contains(&problem) {
         say();
@@ -88,7 +89,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The result for one scene, for programs.
+/// The result for one scene, as JSON.
 #[derive(Serialize)]
 struct Report {
     file: String,
@@ -97,7 +98,7 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
-    // A check asks no questions: missing parts are problems, unless `--use-defaults` is given.
+    // Checking does not ask questions: missing parts are problems, unless `--use-defaults` is given.
     let defaults = match options.defaults() {
         Defaults::Ask => Defaults::Refuse,
         answered => answered,

@@ -89,13 +89,13 @@ impl Metric {
         }
     }
 
-    /// True for metrics that are larger where pictures are more alike.
+    /// True for metrics that are larger for more similar pictures.
     fn of_likeness(self) -> bool {
         matches!(self, Self::Psnr | Self::Ssim)
     }
 }
 
-/// A limit that the numbers must keep.
+/// A limit on a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Limit {
     metric: Metric,
@@ -177,17 +177,17 @@ impl Input {
     }
 }
 
-/// How views are drawn.
+/// The way in which views are drawn.
 struct Drawing<'a> {
     /// Samples per pixel.
     samples: u32,
     sampling: Sampling,
     registry: &'a Registry,
-    /// The number of pictures.
+    /// Number of pictures.
     count: usize,
 }
 
-/// A view that is compared: one of a scene, or a picture.
+/// A view to compare: one of a scene, or a picture.
 #[derive(Clone, Copy)]
 struct View<'a> {
     input: &'a Input,
@@ -203,8 +203,8 @@ impl View<'_> {
         }
     }
 
-    /// The picture of the view, and what was reached for lights with extent. Pictures keep their size. Of those that are drawn,
-    /// it has a number.
+    /// The picture of the view, and the convergence of lights with extent. Pictures keep their size. `number`
+    /// counts the pictures that are drawn.
     fn shown(
         &self,
         [width, height]: [u32; 2],
@@ -225,12 +225,12 @@ impl View<'_> {
             reference::render_until(&seen, registry, &settings, until, &odd, progress)
         });
         let (light, reached) = drawn.map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
-        // An endless function of a custom model shows only when it runs.
+        // An endless function of a custom model is detected only when it runs.
         self.check(registry)?;
         Ok((Shown::of_light(light, &seen.display), Some(reached).filter(|reached| reached.samples > 0)))
     }
 
-    /// The picture of the view with the outlines of its objects, if it is one of a scene.
+    /// The picture of the view, with the outlines of its objects if it is a view of a scene.
     fn outlined(&self, shown: Shown, registry: &Registry) -> Shown {
         match self.input.scene().and_then(|scene| scene.seen(self.view, registry)) {
             Some((seen, _)) => shown.outlined(&seen, registry),
@@ -259,7 +259,7 @@ impl View<'_> {
     }
 }
 
-/// The result, for programs.
+/// The result, as JSON.
 #[derive(Serialize)]
 struct Report {
     a: Side,
@@ -273,13 +273,13 @@ struct Report {
     largest: Option<Place>,
 }
 
-/// One of the two that are compared.
+/// One side of the comparison.
 #[derive(Serialize)]
 struct Side {
     file: String,
     view: Option<&'static str>,
     name: Option<String>,
-    /// The samples of each light with extent, and the noise of the picture; none without such lights.
+    /// The samples of each light with extent, and the noise of the picture; `None` without such lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     light_samples: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -290,7 +290,7 @@ struct Side {
 struct Numbers {
     pixels: u64,
     rmse: f64,
-    /// Null where it is infinite.
+    /// Null if infinite.
     psnr: Option<f64>,
     ssim: f64,
     flip: f64,
@@ -430,7 +430,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if broken.is_empty() { printed } else { Err(Failure::Invalid(broken.join("\n"))) }
 }
 
-/// What the picture says of itself: also its scene, if it shows one.
+/// The metadata of the picture, including its scene if it shows one.
 fn about(read: &[Input], comparison: Comparison, registry: &Registry) -> About {
     let about = match read {
         [Input::Scene(_, scene)] => About::scene(&Scene { comparison, ..(**scene).clone() }, registry),
@@ -486,10 +486,10 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
     Ok((comparison, views))
 }
 
-/// The view that A is compared with.
+/// The view with which A is compared.
 fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
     match views {
-        // Of a layout with one view, or with views A of two files.
+        // For a layout with a single view, or for view A of two files.
         [a] => View { input: a.input, view: comparison.with },
         [_, b] => *b,
         [a, ..] => View { input: a.input, view: comparison.with },
@@ -497,7 +497,7 @@ fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
     }
 }
 
-/// The size of the pictures that are compared.
+/// The size of the compared pictures.
 fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
     let asked = asked.map(|size| [size.width, size.height]);
     let mut found: Option<(String, [u32; 2])> = asked.map(|size| ("--size".to_owned(), size));
@@ -521,8 +521,8 @@ fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
     Ok(found.map_or([usual.width, usual.height], |(_, size)| size))
 }
 
-/// The picture of views beside each other. Scenes are drawn at the size of their places; pictures keep theirs, so that
-/// the whole is larger.
+/// The picture of views side by side. Scenes are drawn at the size of their areas; pictures keep theirs, so
+/// that the whole is larger.
 fn side_by_side(
     comparison: &Comparison,
     size: [u32; 2],
@@ -549,7 +549,7 @@ fn side_by_side(
     Ok((whole, rgb8))
 }
 
-/// The limits that the numbers break, in words.
+/// The limits exceeded by the numbers, in words.
 fn broken(
     arguments: &Arguments,
     measured: &Measured,
@@ -576,7 +576,7 @@ fn broken(
             }
         };
         let likeness = metric.of_likeness();
-        // Numbers that are none keep no limit.
+        // NaN satisfies no limit.
         let kept = if likeness { found >= value } else { found <= value };
         if !kept {
             let side = if likeness { "below" } else { "above" };

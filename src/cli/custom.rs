@@ -51,7 +51,7 @@ pub(super) fn duplicate(
     write(&copy, &text, options, places, known)
 }
 
-/// The id of a model with a given name.
+/// The model id for a given name.
 fn id_of(name: &str) -> Result<String, Failure> {
     custom::id_of_name(name).map_err(|bad| Failure::Usage(format!("NAME is {}, but {bad}", quoted(name))))
 }
@@ -85,7 +85,7 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     workshop.need(id);
     let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
-        // Its problems are printed already.
+        // Its problems have been printed already.
         return Err(Failure::Invalid(format!("{id} was not checked: its file has errors")));
     }
     let model = find(registry, id)?;

@@ -63,7 +63,7 @@ pub(super) enum Machine {
 }
 
 impl Machine {
-    /// True if it can run a model, or could at the last attempt.
+    /// Fails if the device cannot run a model, or could not at the last attempt.
     pub(super) fn can_run(self, model: &ModelEntry) -> Outcome {
         match (self, model.not_on_cpu()) {
             (Self::Cpu, Some(why)) => Err(not_on_cpu(model, &why, "--on gpu")),
@@ -72,15 +72,15 @@ impl Machine {
     }
 }
 
-/// A machine ready to evaluate a model with its parameters.
+/// A device ready to evaluate a model with its parameters.
 pub(super) enum Started<'a> {
-    /// With the surface to evaluate.
+    /// The CPU, with the surface to evaluate.
     Cpu(Arc<dyn Surface>),
-    /// With everything it needs to start.
+    /// The GPU, with everything needed to start it.
     Gpu(Box<Gpu<'a>>),
 }
 
-/// A GPU that starts at the first question.
+/// A GPU that starts at the first evaluation.
 pub(super) struct Gpu<'a> {
     registry: &'a Registry,
     model: &'a ModelEntry,
@@ -103,7 +103,7 @@ impl Gpu<'_> {
 }
 
 impl Machine {
-    /// Prepares it.
+    /// Prepares the device.
     pub(super) fn start<'a>(
         self,
         registry: &'a Registry,
@@ -175,7 +175,7 @@ pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
     answers.finish()
 }
 
-/// The answers as CSV on standard output, with a header before the first.
+/// The results as CSV on standard output, with a header before the first.
 pub(super) struct Answers {
     out: BufWriter<io::StdoutLock<'static>>,
     header: Option<&'static str>,
@@ -186,7 +186,7 @@ impl Answers {
         Self { out: BufWriter::new(io::stdout().lock()), header: Some(header) }
     }
 
-    /// Adds rows: input and answer.
+    /// Adds rows: input and result.
     pub(super) fn write(&mut self, rows: impl Iterator<Item = (String, Vec3)>) -> Outcome {
         if let Some(header) = self.header.take() {
             writeln!(self.out, "{header}")?;
@@ -204,14 +204,15 @@ impl Answers {
     }
 }
 
-/// The model with a given id.
+/// The model with this id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
     check::reflection_model(registry, id)
         .map_err(|rule| unknown(registry, id, format!("MODEL is {}, but {rule}", quoted(id))))?;
     registry.model(id).ok_or_else(|| Failure::Usage(format!("there is no model {}", quoted(id))))
 }
 
-/// The failure of a command that names a model which is not known: a mistake in its file is none of the command line.
+/// The failure of a command that names an unknown model: an error in the model's file is not an error of the
+/// command line.
 pub(super) fn unknown(registry: &Registry, id: &str, what: String) -> Failure {
     match registry.broken_model(id) {
         Some(_) => Failure::Invalid(format!("error: {what}")),
@@ -234,7 +235,7 @@ impl Settings {
     }
 }
 
-/// One parameter of a model, checked.
+/// A parameter of a model, checked.
 pub(super) fn setting(
     model: &ModelEntry,
     name: &str,

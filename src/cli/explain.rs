@@ -158,7 +158,7 @@ fn explained(
     let settings = Settings { width, height, samples: 1, terms: part.terms };
     let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at.0)
         .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
-    // An endless function shows only when it runs.
+    // An endless function is detected only when it runs.
     cpu_can_draw(&part.scene, registry)?;
     Ok(Explained { view, scene: part.scene, settings, explanation })
 }
@@ -173,7 +173,7 @@ fn influences(
     found.map_err(|error| Failure::Usage(format!("--at: {error}")))
 }
 
-/// Writes the hemisphere above the point that counts most in the pixel.
+/// Writes the hemisphere above the point with the greatest weight in the pixel.
 fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcome {
     /// Pixels per disc.
     const SIDE: usize = 320;

@@ -1,4 +1,4 @@
-//! `lcm export`: a scene as code, a page, a program, a scene for another renderer.
+//! `lcm export`: a scene as code, a web page, a program, or a scene for another renderer.
 
 use std::path::PathBuf;
 
@@ -133,7 +133,7 @@ fn refused(error: &ExportError, form: &Form, source: &Source) -> Failure {
     Failure::Invalid(lines.into_iter().map(line).collect::<Vec<_>>().join("\n"))
 }
 
-/// The index of the object with a name, or at a place in the list.
+/// The index of the object with a name, or of a number in the list.
 fn find(scene: &Scene, name: &str) -> Result<usize, String> {
     let called = |(_, object): &(usize, &Object)| object.name.as_deref() == Some(name);
     let named: Vec<_> = scene.objects.iter().enumerate().filter(called).map(|(i, _)| i).collect();

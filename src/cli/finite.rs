@@ -9,12 +9,12 @@ use crate::{
     scene::Scene,
 };
 
-/// The setting of the channel that shows them.
+/// The setting of the debug channel that shows such pixels.
 pub(super) fn channel(scene: &Scene, registry: &Registry) -> Setting {
     Setting::new(DebugChannel::NotANumber, scene, registry, scene.observer.position, None)
 }
 
-/// The remark on a view, from its picture in that channel; none if all its light is finite.
+/// The remark on a view, from its picture in that channel; `None` if all its light is finite.
 pub(super) fn remark(part: &Part, registry: &Registry, rgb8: &[u8]) -> Option<String> {
     let settings = settings(part);
     let pixels = marked(rgb8, settings.width);
@@ -32,8 +32,8 @@ pub(super) fn remark(part: &Part, registry: &Registry, rgb8: &[u8]) -> Option<St
     ))
 }
 
-/// The same of a picture of the GPU. Drivers may calculate as if no number were infinite, and draw 1/0 as black: where
-/// they do, the CPU tries what no test of this crate has tried.
+/// The remark on a picture from the GPU. Drivers may assume that no number is infinite, and draw 1/0 as
+/// black: in that case, the CPU tries everything that this crate's tests do not cover.
 pub(super) fn remark_on_gpu(
     part: &Part,
     registry: &Registry,
@@ -51,7 +51,7 @@ pub(super) fn remark_on_gpu(
     })
 }
 
-/// The same of a picture of the CPU renderer.
+/// The remark on a picture from the CPU renderer.
 pub(super) fn remark_on_cpu(part: &Part, registry: &Registry) -> Option<String> {
     let setting = channel(&part.scene, registry);
     remark(part, registry, &reference::render_channel(&part.scene, registry, &settings(part), &setting))

@@ -1,4 +1,4 @@
-//! `lcm lesson`: lists the shipped lessons, and checks and prints those of teachers.
+//! `lcm lesson`: lists the shipped lessons, and checks and prints teachers' own lessons.
 
 use std::{
     fmt::Write as _,
@@ -42,7 +42,7 @@ pub(super) enum Command {
 }
 
 impl Command {
-    /// The files that scenes of lessons may name; none if no lesson is read.
+    /// The files that scenes of lessons may name; `None` if no lesson is read.
     pub(super) fn reach(&self) -> Option<Reach> {
         match self {
             Self::List => None,
@@ -51,7 +51,7 @@ impl Command {
     }
 }
 
-/// The result for one lesson, for programs.
+/// The result for one lesson, as JSON.
 #[derive(Serialize)]
 struct Report {
     file: String,
@@ -59,7 +59,7 @@ struct Report {
     problems: Vec<Problem>,
 }
 
-/// The file in which the problems of a path are.
+/// The file to which the problems of a path belong.
 fn file_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("lesson.md") } else { path.to_owned() }
 }

@@ -1,4 +1,4 @@
-//! The options of commands that take samples of lights with extent.
+//! The options of commands that sample lights with extent.
 
 use clap::Args;
 
@@ -8,10 +8,10 @@ use crate::{
     scene::{Scene, has_extent},
 };
 
-/// The most samples of lights with extent.
+/// Maximum number of samples of lights with extent.
 const MOST: u32 = 1 << 20;
 
-/// The most samples where noise decides, unless others are asked for.
+/// Default maximum number of samples if the noise decides.
 const MOST_FOR_NOISE: u32 = 1 << 16;
 
 /// What is said of the samples of lights with extent, which the CPU renderer counts.
@@ -28,13 +28,13 @@ pub(super) struct Sampling {
 }
 
 impl Sampling {
-    /// The end of the samples.
+    /// The termination conditions of sampling.
     pub(super) fn until(self) -> Until {
         let default = if self.noise.is_some() { MOST_FOR_NOISE } else { Until::default().samples };
         Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
     }
 
-    /// The options that are given, for messages.
+    /// The given options, for messages.
     pub(super) fn given(self) -> Option<&'static str> {
         match (self.light_samples, self.noise) {
             (None, None) => None,
@@ -61,7 +61,7 @@ impl Sampling {
         self.nothing().map(|nothing| format!("both files are pictures, already rendered: {nothing}"))
     }
 
-    /// A remark on a picture that is noisier than was asked for, or may be.
+    /// A remark on a picture that is, or may be, noisier than requested.
     pub(super) fn remark(self, Reached { samples, noise }: Reached) -> Option<String> {
         let wanted = self.noise?;
         match noise {

@@ -1,4 +1,4 @@
-//! `lcm match`: the parameters of a view that come nearest to view A.
+//! `lcm match`: the parameters of a view that come closest to view A.
 
 use std::path::{Path, PathBuf};
 
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let source = Source::named(&arguments.scene);
     let mut scene = source.open(workshop, options)?;
     let expected = if arguments.overwrite { Expected::Anything } else { Expected::Nothing };
-    // Known now rather than after the search.
+    // Better detected now than after the search.
     if let Some(file) = &arguments.output {
         outputs::spare(file, &inputs(source.path(), [&scene], &workshop.registry))?;
     }
@@ -142,7 +142,7 @@ fn unwritten(error: &save::SaveError) -> Failure {
     Failure::Write(format!("{error}{advice}"))
 }
 
-/// The view with a letter or a name, which is not A.
+/// The view with a letter or a name, other than A.
 fn view(scene: &Scene, wanted: &str) -> Result<usize, Failure> {
     if scene.variants.is_empty() {
         let why = "the scene has no variants, so there is no view to be matched to view A";

@@ -1,7 +1,8 @@
 //! The command line: parsing, and the commands themselves.
 //!
-//! Results go to standard output, errors to standard error, one line each. The exit status gives the kind of error: see
-//! [`Failure`]. Nothing heavy happens here: a command starts the renderer or window that it needs.
+//! Results go to standard output, errors to standard error, one line each. The exit status indicates the kind
+//! of error: see [`Failure`]. No heavy work happens here: a command starts the renderer or window that it
+//! needs.
 
 use crate::{
     export::payload,
@@ -91,7 +92,7 @@ impl Cli {
     }
 }
 
-/// With or without a command.
+/// Usage with or without a command.
 const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
 /// Printed below the help.
 const EXIT_STATUS: &str = "Exit status: 0 success; 1 a scene or an input is invalid; 2 wrong usage; \
@@ -146,7 +147,7 @@ struct OfScenes<T: Args> {
 }
 
 impl SceneOptions {
-    /// The first that is given, for messages.
+    /// The first option that is given, for messages.
     fn given(self) -> Option<&'static str> {
         let all = [
             (self.use_defaults, "--use-defaults"),
@@ -158,7 +159,7 @@ impl SceneOptions {
 }
 
 impl Cli {
-    /// The options of scenes that stand before the command or behind it.
+    /// The options of scenes before or after the command.
     fn scene_options(&self) -> Result<SceneOptions, Failure> {
         use Command::{Check, Compare, Explain, Export, Lesson, Match, Render, View};
         let before = self.scenes;
@@ -195,13 +196,13 @@ impl Cli {
 }
 
 impl Options {
-    /// The program that tries shaders in a process of its own: this one. None where the arguments are not those of the
-    /// process, since such a program may not read them when it is started again.
+    /// The program that tries shaders in a separate process: this one. `None` if the arguments are not those
+    /// of the process, since such a program may not parse them when it is started again.
     fn trial_program(self) -> Option<PathBuf> {
         files::program().filter(|_| self.restarts)
     }
 
-    /// The answer of the flags to missing parts, if they give one.
+    /// The answer given by flags to questions about missing parts, if any.
     fn defaults(self) -> Defaults {
         match (self.scenes.use_defaults, self.scenes.no_defaults) {
             (true, _) => Defaults::Use,
@@ -287,7 +288,7 @@ enum Command {
     TryShaders,
 }
 
-/// The parser of numbers of things.
+/// Parser of positive counts.
 fn above_zero(text: &str) -> Result<u32, String> {
     let parsed = text.trim().parse::<u32>().ok().filter(|number| *number > 0);
     parsed.ok_or_else(|| format!("it must be a whole number from 1 to {}", u32::MAX))
@@ -302,12 +303,12 @@ pub fn main() -> ExitCode {
     run_as(Some(program::LAB), std::env::args_os(), |_| (), |_| ())
 }
 
-/// Runs the command line of this process with more types than are built in, known to every command, and with more in the
-/// window: panels, systems, plugins. Types belong in the first function: what the second one registers is known to the
-/// window alone, its scene included, and replaces nothing of an id that is known already.
+/// Runs the command line of this process with additional types, known to every command, and with additions to
+/// the window: panels, systems, plugins. Types belong in the first function: those registered by the second
+/// one are known only to the window, including its scene, and do not replace known types with the same id.
 ///
-/// The program has the name of its file, or that of [`program::set_name`], in its help and its messages, and
-/// settings and copies of unsaved work [by that name](program::own).
+/// In its help and messages, the program has the name of its file, or that of [`program::set_name`], and
+/// stores settings and copies of unsaved work [under that name](program::own).
 ///
 /// ```no_run
 /// use lights_camera_models::{bevy::prelude::*, cli, prelude::*};
@@ -329,7 +330,7 @@ pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App
     run_with(std::env::args_os(), types, window)
 }
 
-/// [`clap`]'s command under the name of the program.
+/// [`clap`]'s command with the name of the program.
 fn named() -> clap::Command {
     Cli::command()
         .name(program::command())
@@ -337,7 +338,7 @@ fn named() -> clap::Command {
         .override_usage(in_own_words(USAGE).into_owned())
 }
 
-/// As [`main_with`], with these arguments, of which the first is the name of the program.
+/// Like [`main_with`], with these arguments, of which the first is the name of the program.
 #[must_use]
 pub fn run_with(
     arguments: impl IntoIterator<Item = OsString>,
@@ -354,7 +355,7 @@ fn run_as(
     window: impl FnOnce(&mut App),
 ) -> ExitCode {
     let inside = payload::inside();
-    // A program that was exported is one of its own.
+    // An exported program is independent.
     if let (Some(name), Ok(None)) = (name, &inside) {
         program::set_name(name);
     }
@@ -394,9 +395,9 @@ fn run_as(
     if cli.options.scenes.reach.allow_outside {
         outside::allow_all();
     }
-    // The window has its own way to end.
+    // The window handles signals itself.
     if !matches!(cli.command, None | Some(Command::View(_) | Command::TryShaders)) {
-        // Without it, a signal may leave temporary files to the next tidying.
+        // Without it, temporary files may remain until the next tidying after a signal.
         let _ = Interrupt::end_tidily();
     }
     let mut registry = Registry::builtin();
@@ -410,7 +411,7 @@ fn ended(outcome: Outcome) -> ExitCode {
     match &failure {
         Failure::Closed => {}
         Failure::Usage(what) => complain(format_args!("error: {what}")),
-        // The problems are already printed as a result.
+        // The problems have already been printed as a result.
         Failure::Invalid(what) if what.is_empty() => {}
         Failure::Invalid(what) | Failure::NoRenderer(what) | Failure::Write(what) => complain(what),
     }
@@ -428,7 +429,7 @@ fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
     }
 }
 
-/// Runs a command with everything that is known but for custom models.
+/// Runs a command with all known types except custom models.
 fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
@@ -469,7 +470,7 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     }
 }
 
-/// Prints a result for people to standard output, control characters escaped.
+/// Prints a result for people to standard output, with control characters escaped.
 fn print_text(text: &str) -> Outcome {
     print(&printable(&in_own_words(text)))
 }
@@ -492,12 +493,12 @@ fn print(text: &str) -> Outcome {
     Ok(out.flush()?)
 }
 
-/// Prints a line to standard error, control characters escaped. A missing reader is no reason to panic.
+/// Prints a line to standard error, with control characters escaped. A missing reader must not cause a panic.
 fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&in_own_words(&what.to_string())));
 }
 
-/// The steps of a bar for one piece of work.
+/// Number of steps of a progress bar for a single piece of work.
 const FINE: u64 = 1_000_000;
 
 /// A progress bar if it helps: several steps, a terminal, and no `--quiet`.
@@ -510,11 +511,11 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
     bar
 }
 
-/// The style of a bar; `{left}` is the time that is left, if that can be told.
+/// The style of a progress bar; `{left}` is the remaining time, if known.
 fn style(template: &str) -> ProgressStyle {
     let left = |state: &ProgressState, text: &mut dyn fmt::Write| {
         if state.pos() > 0 {
-            // Writing to a line cannot fail.
+            // Writing to a String cannot fail.
             let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
         }
     };
@@ -522,8 +523,8 @@ fn style(template: &str) -> ProgressStyle {
     style.with_key("left", left)
 }
 
-/// Works, and if that takes longer than some time and there is a terminal, calls `watch` beside it, with a function that
-/// waits a moment and is true as long as the work goes on.
+/// Runs some work and, if it takes longer than a given time and there is a terminal, calls `watch` in
+/// parallel, with a function that waits a moment and returns true as long as the work continues.
 fn attended<T>(
     options: Options,
     patience: Duration,
@@ -548,7 +549,8 @@ fn attended<T>(
     })
 }
 
-/// Works, and says on a terminal what takes so long, if it does, with a bar if the work tells how far it is.
+/// Runs some work and, if it takes long, shows its name on a terminal, with a progress bar if the work
+/// reports its progress.
 fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) -> T {
     let bar = ProgressBar::with_draw_target(Some(FINE), ProgressDrawTarget::hidden());
     let what = printable(what);
@@ -574,7 +576,7 @@ fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) ->
     attended(options, Duration::from_secs(1), watch, || work(&progress))
 }
 
-/// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything but y or yes is a no.
+/// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything except y or yes is a no.
 fn ask(question: &str) -> Option<bool> {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return None;

@@ -70,7 +70,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known
             let mut workshop = places.open(options, known)?;
             let undeclared = workshop.declare_all();
             list(arguments.json, &workshop.registry)?;
-            // A model whose declaration is right is listed, and its other problems come behind the list.
+            // A model with a valid declaration is listed, and its other problems follow the list.
             let broken = workshop.read_all();
             if undeclared || broken { Err(Failure::Invalid(String::new())) } else { Ok(()) }
         }
@@ -86,16 +86,16 @@ fn list(as_json: bool, registry: &Registry) -> Outcome {
     print_text(&table(registry))
 }
 
-/// What is no reflection model.
+/// A type other than a reflection model.
 struct Other {
     kind: &'static str,
-    /// The heading in lists.
+    /// Heading in lists.
     heading: &'static str,
     id: &'static str,
     name: &'static str,
     summary: &'static str,
     parameters: &'static [Parameter],
-    /// What only this kind has, for people and for programs.
+    /// Additional information specific to this kind, for people and for programs.
     note: String,
     more: Vec<(&'static str, Json)>,
 }
@@ -172,7 +172,7 @@ fn others(registry: &Registry) -> impl Iterator<Item = Other> {
     shading.chain(lights).chain(shapes)
 }
 
-/// A model as shown to programs.
+/// A model as JSON.
 fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     let d = entry.declaration;
     let laws = |kept: bool| -> Vec<_> {
@@ -204,7 +204,7 @@ fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     json
 }
 
-/// A parameter as shown to programs.
+/// A parameter as JSON.
 fn parameter(p: &Parameter) -> Json {
     let mut json = json!({
         "name": p.name,
@@ -249,7 +249,7 @@ fn parameter(p: &Parameter) -> Json {
     json
 }
 
-/// All of them as shown to people.
+/// All types as text.
 fn table(registry: &Registry) -> String {
     let mut text = String::new();
     let longest = |of: fn(&ModelEntry) -> &str| {
@@ -262,7 +262,7 @@ fn table(registry: &Registry) -> String {
         let d = m.declaration;
         if family.replace(d.family) != Some(d.family) {
             let gap = if text.is_empty() { "" } else { "\n" };
-            // Writing to a String cannot fail; here and below.
+            // Writing to a String cannot fail, here and below.
             let _ = writeln!(text, "{gap}{}", d.family.name());
         }
         let _ = writeln!(text, "  {:ids$}  {:names$}  {}", d.id, d.name, d.author);
@@ -286,7 +286,7 @@ fn table(registry: &Registry) -> String {
     text
 }
 
-/// Parameters below the line of what has them, whose id takes so many columns.
+/// Writes parameters below the line of their type; `ids` is the width of the id column.
 fn parameters(text: &mut String, ids: usize, all: &[Parameter]) {
     for p in all {
         let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };

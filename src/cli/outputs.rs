@@ -1,4 +1,4 @@
-//! Results must not replace inputs, nor files of another kind.
+//! Results must replace neither inputs nor files of another kind.
 
 use std::{
     ffi::OsString,
@@ -15,7 +15,8 @@ use crate::{
     render::capture::png::{self, About},
 };
 
-/// The parser of all files and folders that commands write. `-` is none: where standard output is meant, it has a name.
+/// Parser of all files and folders that commands write. `-` is refused: where standard output is allowed, it
+/// has a name.
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
@@ -33,12 +34,13 @@ pub(super) fn spare(output: &Path, inputs: &[PathBuf]) -> Outcome {
     files::spare(output, inputs.iter().map(PathBuf::as_path)).map_err(refused)
 }
 
-/// Refuses a picture that would replace an input, or a file that is no picture. Called before anything is drawn.
+/// Refuses a picture that would replace an input, or a file that is not a picture. Called before anything is
+/// drawn.
 pub(super) fn picture(output: &Path, inputs: &[PathBuf]) -> Outcome {
     of_format(output, files::PNG, inputs)
 }
 
-/// The same for a file of some format.
+/// Refuses a file of some format that would replace an input, or a file of another format.
 pub(super) fn of_format(output: &Path, format: files::Signature, inputs: &[PathBuf]) -> Outcome {
     files::may_overwrite(output, format, inputs.iter().map(PathBuf::as_path)).map_err(refused)
 }
@@ -47,7 +49,7 @@ fn refused(refused: files::Refused) -> Failure {
     Failure::Write(refused.to_string())
 }
 
-/// Writes a picture whose place was allowed before.
+/// Writes a picture to a path that was checked before.
 pub(super) fn write_picture(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
     png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
         io::ErrorKind::BrokenPipe => Failure::Closed,
@@ -55,7 +57,7 @@ pub(super) fn write_picture(output: &Path, [width, height]: [u32; 2], rgb8: &[u8
     })
 }
 
-/// Tidies the folder of a file to be written, and reports problems that need a person.
+/// Tidies the folder of a file to be written, and reports problems that need the user's attention.
 pub(super) fn tidy_beside(file: &Path) {
     files::tidy(files::folder_of(file)).iter().for_each(complain);
 }

@@ -11,13 +11,13 @@ use super::render::MAX_SIDE;
 use crate::files::Shown as _;
 use crate::{compare::Shown, failure::Failure, files, scene::load::MAX_PICTURE_BYTES};
 
-/// True if a path leads to a picture: its content begins as one, or its name says so.
+/// True if a path leads to a picture, judging by its content or its name.
 pub(super) fn is_picture(path: &Path) -> bool {
     let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     named || files::PNG.begins(path)
 }
 
-/// Reads a PNG file: its colours with eight bits, as they are.
+/// Reads a PNG file: its 8-bit colours, unchanged.
 pub(super) fn read(path: &Path) -> Result<Shown, Failure> {
     let name = path.shown();
     let bytes = files::read_input(path, MAX_PICTURE_BYTES)
@@ -57,9 +57,9 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     Shown::of_codes(width, height, rgb8).map_err(|error| error.to_string())
 }
 
-/// The damage of a picture in words of our own: the decoder's are written for its authors.
+/// The damage of a picture in our own words: the decoder's are written for its authors.
 fn damage(error: &DecodingError) -> &'static str {
-    /// Words of the decoder, which tells the kind of an error by nothing else, and ours.
+    /// The decoder's messages, which are all that identifies the kind of an error, and ours.
     const KINDS: &[(&str, &str)] = &[
         ("CRC error", "a checksum is wrong, so some of its bytes were changed"),
         ("before IHDR", "its first part is not a header"),
@@ -85,7 +85,7 @@ fn damage(error: &DecodingError) -> &'static str {
     }
 }
 
-/// The pixels of a picture whose last channel, opacity, is full.
+/// The pixels of a picture whose last channel, opacity, must be full.
 fn opaque<const N: usize>(codes: &[u8]) -> Result<impl Iterator<Item = [u8; N]>, String> {
     let pixels = codes.as_chunks::<N>().0;
     match pixels.iter().all(|pixel| pixel[N - 1] == 255) {

@@ -26,7 +26,7 @@ use crate::{
     text::{listed, quoted},
 };
 
-/// The parser of kinds, which lists them in the help.
+/// Parser of kinds, which lists them in the help.
 fn kind() -> impl clap::builder::TypedValueParser<Value = Kind> {
     PossibleValuesParser::new(Kind::ALL.map(Kind::id)).map(|id| Kind::from_id(&id).unwrap_or(Kind::Brdf))
 }
@@ -36,7 +36,7 @@ fn channel() -> impl clap::builder::TypedValueParser<Value = Channel> {
         .map(|id| Channel::from_id(&id).unwrap_or(Channel::Luminance))
 }
 
-/// The range depends on the kind of plot.
+/// Parser of angles; their range depends on the kind of plot.
 fn angle(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "it must be a number of degrees, e.g. 22.5".to_owned())
 }
@@ -81,7 +81,7 @@ struct Wanted<'a> {
     written: &'a str,
 }
 
-/// The curves in one word. A comma before a number is one within a value, such as that of a colour.
+/// The curves in one word. A comma before a number belongs to a value, such as that of a colour.
 fn wanted(word: &str) -> Vec<Wanted<'_>> {
     let starts_number = |text: &str| text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
     let (mut all, mut start) = (Vec::new(), 0);
@@ -152,14 +152,14 @@ fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Ve
             let (name, value) = text.split_once('=').unwrap_or((text, ""));
             (name.trim(), value.trim(), wanted.written.to_owned(), text.contains('='))
         });
-        // What stands with the model goes before what is said of all.
+        // Values given with the model take precedence over those given for all.
         let common = set
             .settings
             .iter()
             .map(|s| (s.name.as_str(), s.value.as_str(), format!("--set {}={}", s.name, s.value), true));
         let alone = wanted.settings.len();
         for (i, (name, value, place, is_setting)) in written.chain(common).enumerate() {
-            // A parameter that another of the models has is no mistake.
+            // A parameter of one of the other models is not an error.
             let elsewhere = i >= alone && entries.iter().any(|(_, m)| m.parameter(name).is_some());
             let given = wanted.settings.iter().any(|text| text.split('=').next() == Some(name));
             if i >= alone && (given || elsewhere && model.parameter(name).is_none()) {
@@ -183,7 +183,7 @@ fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Ve
     if problems.is_empty() { Ok(subjects) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
 }
 
-/// Everything calculated.
+/// Calculates everything.
 fn sheet(
     subjects: &[Subject],
     setup: Setup,
@@ -200,7 +200,7 @@ fn sheet(
         CurveError::OtherLight { .. } => Failure::Usage(format!("--theta-i: {error}")),
         error => Failure::Invalid(error.to_string()),
     };
-    // Before any is calculated.
+    // Before any curve is calculated.
     subjects.iter().try_for_each(|subject| subject.has(setup.kind)).map_err(failed)?;
     let mut sheet = Sheet { channel: arguments.channel, log: arguments.log, ..Sheet::new(setup) };
     let bar = progress(100 * subjects.len() as u64, options);

@@ -49,13 +49,13 @@ use crate::{
     text::quoted,
 };
 
-/// From this many objects on, the model is tried on the CPU before the GPU draws it.
+/// Maximum number of objects whose models are tried on the CPU before the GPU draws them.
 const MOST_TRIED: usize = 64;
-/// More lights are not listed one by one.
+/// Maximum number of lights listed one by one.
 const MOST_LISTED: usize = 16;
-/// The time between two drawings of the bar of several pictures.
+/// Interval between updates of the progress bar for several pictures.
 const TICK: Duration = Duration::from_millis(200);
-/// The default folder for pictures (CA `RENDERS_DIR`).
+/// Default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
 
 #[derive(Args, Debug)]
@@ -120,7 +120,7 @@ pub(super) struct Arguments {
 
 #[cfg(target_os = "linux")]
 impl Arguments {
-    /// True if the command loads a graphics driver: to draw with it, or to learn what it drives.
+    /// True if the command loads a graphics driver, to draw with it or to query it.
     pub(super) fn loads_driver(&self) -> bool {
         match self.renderer {
             Renderer::Auto => may_have_hardware(),
@@ -148,7 +148,7 @@ pub(super) struct Size {
     pub(super) height: u32,
 }
 
-/// The longest side of a picture in pixels: the usual limit of GPUs.
+/// Maximum width and height of a picture, in pixels: the usual limit of GPUs.
 pub(super) const MAX_SIDE: u32 = 16_384;
 
 impl FromStr for Size {
@@ -164,7 +164,7 @@ impl FromStr for Size {
     }
 }
 
-/// Its range is checked where those of all changes are.
+/// Parser of the exposure; its range is checked with those of all changes.
 fn exposure(text: &str) -> Result<f32, String> {
     text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
 }
@@ -195,7 +195,7 @@ fn channel(text: &str) -> Result<DebugChannel, String> {
     })
 }
 
-/// The place of a light in a scene, by its name or its number there.
+/// The index of a light in a scene, from its name or number.
 fn light(scene: &Scene, name: &str) -> Result<usize, String> {
     let named = scene.lights.iter().position(|light| light.name.as_deref() == Some(name));
     let numbered =
@@ -221,26 +221,26 @@ fn light(scene: &Scene, name: &str) -> Result<usize, String> {
 
 /// One picture to render.
 struct Job<'a> {
-    /// The scene that the picture is of.
+    /// The scene in the picture.
     scene: &'a Scene,
     plan: &'a Plan,
     source: &'a Source,
     file: &'a Path,
     size: [u32; 2],
     samples: u32,
-    /// What is said of the samples of lights with extent.
+    /// A description of the sampling of lights with extent.
     sampling: Sampling,
     with_scene: bool,
     with_caption: bool,
-    /// One view was asked for.
+    /// True if one view was requested.
     alone: bool,
-    /// The channel that is shown instead of the picture.
+    /// The debug channel shown instead of the picture.
     channel: Option<Setting>,
     with_legend: bool,
 }
 
 impl Job<'_> {
-    /// True if what is shown of a scene rests on samples of lights with extent.
+    /// True if what is shown of a scene depends on samples of lights with extent.
     fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
         self.channel.is_none_or(|setting| rests_on_samples(setting.channel))
             && has_extent(scene.shining(), registry)
@@ -262,7 +262,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let files = files(&sources, arguments.output.as_deref())?;
     let renderer = renderer(arguments)?;
 
-    // All scenes are read before the first is rendered, so errors in the last one show at once.
+    // All scenes are read before the first is rendered, so that errors in the last one appear at once.
     let mut scenes = Vec::with_capacity(sources.len());
     let mut problems = Vec::new();
     for source in &sources {
@@ -301,7 +301,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     for part in plans.iter().flat_map(|plan| &plan.parts) {
         drawable(registry, &part.scene)?;
     }
-    // All files are in one folder.
+    // All files are in a single folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     if arguments.sampling.given().is_some() {
         for (source, plan) in sources.iter().zip(&plans) {
@@ -317,7 +317,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         bar.enable_steady_tick(TICK);
     }
     let mut painter = Painter::new(renderer, options.trial_program())?;
-    // A model that only a GPU can draw needs a driver after all. A scene from standard input cannot be read twice.
+    // A model that only a GPU can draw needs a driver after all. A scene from standard input cannot be read
+    // twice.
     #[cfg(target_os = "linux")]
     if !sources.contains(&Source::Stdin) && plans.iter().any(|plan| painter.takes_gpu(plan, registry)) {
         super::runtime_folder::provide();
@@ -386,7 +387,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     Ok(())
 }
 
-/// The renderer that is asked for. The samples of lights with extent are counted on the CPU.
+/// The requested renderer. Samples of lights with extent are counted on the CPU.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
     if let Some(channel) = arguments.channel.filter(|channel| !rests_on_samples(*channel)) {
@@ -407,23 +408,23 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     }
 }
 
-/// True for channels whose values come from the light that leaves the surface.
+/// True for channels whose values derive from the light that leaves the surface.
 fn rests_on_samples(channel: DebugChannel) -> bool {
     channel.is_of_light() && !channel.has_wires()
 }
 
-/// What came of a picture.
+/// The result of drawing a picture.
 struct Painted {
-    /// Remarks on light that is not finite, or noisier than was asked for.
+    /// Remarks on light that is not finite, or noisier than requested.
     remarks: Vec<String>,
-    /// What the light of lights with extent rests on, in words; often empty.
+    /// A description of the sampling of lights with extent; often empty.
     light: String,
 }
 
-/// A view as it was drawn.
+/// A view as drawn.
 struct Drawn {
     shown: Shown,
-    /// What was reached for lights with extent; none without them.
+    /// The convergence of lights with extent; `None` without them.
     reached: Option<Reached>,
     /// Remarks on light that is not finite, or noisier than was asked for.
     remarks: Vec<String>,
@@ -433,11 +434,11 @@ struct Drawn {
 struct Painter {
     renderer: Renderer,
     gpu: bool,
-    /// The program that tries shaders in a process of its own.
+    /// The program that tries shaders in a separate process.
     trial_program: Option<PathBuf>,
     /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
     last: Option<((u32, u32, u32), GpuRenderer)>,
-    /// What the models that no test has tried gave on the CPU.
+    /// The results on the CPU of models that tests do not cover.
     tried: Tried,
 }
 
@@ -449,8 +450,8 @@ impl Painter {
                 find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
                 true
             }
-            // Querying the driver takes longer than rendering a picture; the device nodes show at once that there is no
-            // GPU.
+            // Querying the driver takes longer than rendering a picture; the device nodes reveal at once that
+            // there is no GPU.
             Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
         };
         Ok(Self { renderer, gpu, trial_program, last: None, tried: Tried::default() })
@@ -531,7 +532,7 @@ impl Painter {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.shown())),
         };
-        // Nothing stops an endless loop on a GPU.
+        // An endless loop on a GPU cannot be stopped.
         for object in part.scene.objects.iter().take(MOST_TRIED) {
             if let Some(model) = registry.model(part.scene.model_of(object)) {
                 check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
@@ -562,7 +563,7 @@ impl Painter {
         let reached = job
             .converges(&part.scene, registry)
             .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
-        // What ships with the program is always finite.
+        // Everything shipped with the program is finite.
         if !has_untested(registry) {
             return Ok(Drawn { shown, reached, remarks: Vec::new() });
         }
@@ -574,7 +575,7 @@ impl Painter {
     }
 }
 
-/// The legends of a channel in the views of a picture; several have the letters of their views.
+/// The legends of a channel in the views of a picture; if there are several, with the letters of their views.
 fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
     let several = plan.parts.len() > 1;
     let of_part = |part: &Part| {
@@ -587,7 +588,7 @@ fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
     plan.parts.iter().map(of_part).collect()
 }
 
-/// The picture and its size, with a caption if there shall be one.
+/// The picture and its size, with a caption if requested.
 fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>, rests_on: &[Sampled]) -> (Vec<u8>, [u32; 2]) {
     if !job.with_caption {
         return (rgb8, job.size);
@@ -597,12 +598,12 @@ fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>, rests_on: &[Sampled]
     caption::draw(&caption, rgb8, job.size)
 }
 
-/// True if something is drawn that no test of this crate has tried.
+/// True if something is drawn that this crate's tests do not cover.
 fn has_untested(registry: &Registry) -> bool {
     registry.sources().edited().next().is_some() || registry.has_foreign()
 }
 
-/// Tries the shaders of users and of other crates in another process, since a driver may not survive them.
+/// Tries the shaders of users and of other crates in another process, since they may crash a driver.
 fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
     if has_untested(registry)
         && let Some(program) = program
@@ -620,7 +621,7 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
     can_draw()?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
-    // A channel does not note what it shows.
+    // A channel does not record non-finite light.
     let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
     let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()));
     let alone = job.channel.filter(|setting| setting.channel.is_picture());
@@ -634,7 +635,8 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
     let mut reached = None;
     let shown = if let Some(setting) = job.channel.filter(|_| alone.is_none()) {
         if job.converges(&lit, registry) {
-            // A channel is no mean of others, so it takes all samples at once: as many as the picture takes.
+            // A channel is not a mean of others, so it takes all samples at once: as many as the picture
+            // takes.
             reached = Some(match until {
                 Until { noise: Some(_), .. } => converged()?.1,
                 Until { samples, noise: None } => Reached { samples, noise: None },
@@ -651,14 +653,14 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
     } else {
         of_codes(reference::render_rgb8_noting(&lit, registry, &settings, &odd))?
     };
-    // An endless function shows only when it runs.
+    // An endless function is detected only when it runs.
     can_draw()?;
     let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
     let noisy = reached.and_then(|reached| job.sampling.remark(reached));
     Ok(Drawn { shown, reached, remarks: odd.into_iter().chain(noisy).collect() })
 }
 
-/// The views that the picture of a scene shows.
+/// The views shown in the picture of a scene.
 fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registry) -> Result<Plan, Failure> {
     if let Some(name) = &arguments.view {
         let view = views::find(scene, name).map_err(Failure::Invalid)?;
@@ -674,7 +676,7 @@ fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registr
     Plan::new(scene, comparison, size, arguments.term, registry)
 }
 
-/// The scene that a picture holds: what the command line says of its views is also said by it.
+/// The scene stored in a picture: command-line options for views are included.
 fn pictured(job: &Job) -> Scene {
     match job.plan.parts.as_slice() {
         [part] if job.alone => part.scene.clone().alone(),
@@ -682,7 +684,7 @@ fn pictured(job: &Job) -> Scene {
     }
 }
 
-/// The channel that is shown instead of the picture of a scene.
+/// The debug channel shown instead of the picture of a scene.
 fn setting(
     scene: &Scene,
     plan: &Plan,
@@ -718,7 +720,7 @@ pub(super) fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     cpu_can_draw_or(scene, registry, "--renderer gpu")
 }
 
-/// The same with what to use instead.
+/// Like [`cpu_can_draw`], with a suggestion of an alternative.
 fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {
@@ -728,7 +730,7 @@ fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome
     Ok(())
 }
 
-/// Changes from the command line to every scene.
+/// Changes from the command line, applied to every scene.
 struct Changes {
     reflection: Option<String>,
     shading: Option<String>,
@@ -767,8 +769,8 @@ impl Changes {
         })
     }
 
-    /// The scene with the changes. A model from the command line replaces the overrides of objects and views too: the
-    /// point is to see the whole scene with it.
+    /// The scene with the changes. A model from the command line also replaces the overrides of objects and
+    /// views: the purpose is to see the whole scene with it.
     fn apply(&self, mut scene: Scene) -> Scene {
         if let Some(id) = &self.reflection {
             scene.reflection_model.clone_from(id);
@@ -822,7 +824,7 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
     Ok(files)
 }
 
-/// Fails unless `-o` is one picture beside the numbers on standard output.
+/// Fails unless `-o` is a single picture, next to the numbers on standard output.
 pub(super) fn one_picture(path: &Path) -> Outcome {
     let usage = |why: &str| Failure::Usage(format!("-o {}: {why}", path.shown()));
     let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
@@ -842,8 +844,8 @@ enum Output {
     Folder,
 }
 
-/// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other picture
-/// formats are refused; anything else is a folder.
+/// Classifies a path: one that ends in `.png` is a file, unless it is an existing folder; so is a device or a
+/// pipe. Other picture formats are refused; anything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
     match kind_on_disk(path) {
         Ok(Kind::Folder) => return Ok(Output::Folder),

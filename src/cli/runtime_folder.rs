@@ -1,9 +1,9 @@
 //! The folder that graphics drivers expect in the environment.
 //!
-//! Without `XDG_RUNTIME_DIR`, as after `su` or on a bare server, Mesa still looks for a Wayland display, and the
-//! library that it calls prints a line for each attempt. Nothing that can be set within a process keeps it quiet, so
-//! the program replaces itself by a new start (the same process, with the same streams) with this user's folder in the
-//! variable. The folder need not exist.
+//! Without `XDG_RUNTIME_DIR`, as after `su` or on a bare server, Mesa still looks for a Wayland display, and
+//! the library that it calls prints a line for each attempt. Nothing that can be set within a process
+//! silences it, so the program restarts itself (the same process, with the same streams) with this user's
+//! folder in the variable. The folder need not exist.
 
 use std::{
     env,
@@ -12,11 +12,11 @@ use std::{
     process::Command,
 };
 
-/// The variable that names the folder.
+/// Variable with the folder.
 const VARIABLE: &str = "XDG_RUNTIME_DIR";
 
-/// Restarts the program with the folder in its environment, unless it is there already. Returns if it is, or if
-/// restarting fails, which costs only a few lines on the terminal.
+/// Restarts the program with the folder in its environment, unless it is already there. Returns if it is, or
+/// if restarting fails, which costs only a few lines on the terminal.
 pub(super) fn provide() {
     // Relative paths count as unset.
     let usable = |folder: &OsStr| folder.as_bytes().starts_with(b"/");

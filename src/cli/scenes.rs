@@ -1,5 +1,5 @@
-//! The sources of scenes: a file, standard input, or none for the default scene; and the questions that reading may
-//! raise.
+//! The sources of scenes: a file, standard input, or the default scene if none is given; and questions that
+//! reading may raise.
 
 use std::{
     io,
@@ -25,7 +25,7 @@ use crate::{
     text::listed,
 };
 
-/// The name of the scene inside this program, in messages.
+/// Name of the scene inside this program, in messages.
 const INSIDE: &str = "the scene inside this program";
 
 /// The source of a scene.
@@ -33,7 +33,7 @@ const INSIDE: &str = "the scene inside this program";
 pub(super) enum Source {
     /// No scene on the command line.
     Default,
-    /// The same, in a program that carries a scene.
+    /// No scene on the command line of a program that carries one.
     Inside(Arc<Payload>),
     /// `-`.
     Stdin,
@@ -42,7 +42,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The source named by an argument; without one, the scene inside this program, or the default scene.
+    /// The source given by an argument; without one, the scene inside this program, or the default scene.
     pub(super) fn of(argument: Option<&Path>, workshop: &Workshop) -> Self {
         match (argument, &workshop.inside) {
             (Some(path), _) => Self::named(path),
@@ -51,16 +51,16 @@ impl Source {
         }
     }
 
-    /// The source of that name.
+    /// The source with this name.
     pub(super) fn named(path: &Path) -> Self {
         if path == Path::new("-") { Self::Stdin } else { Self::File(path.to_owned()) }
     }
 
-    /// The path that is read, which no result may replace.
+    /// The path of the source, which no result may replace.
     pub(super) fn path(&self) -> Option<&Path> {
         match self {
             Self::Default | Self::Inside(_) => None,
-            // A shell may have connected it with a file.
+            // A shell may have connected it to a file.
             Self::Stdin => Some(Path::new("/dev/stdin")),
             Self::File(path) => Some(path),
         }
@@ -88,7 +88,7 @@ impl Source {
         }
     }
 
-    /// The name for programs.
+    /// The name in JSON.
     pub(super) fn plain_name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
@@ -96,14 +96,14 @@ impl Source {
         }
     }
 
-    /// Reads it without questions.
+    /// Reads the scene without questions.
     pub(super) fn read(&self, workshop: &mut Workshop, defaults: Defaults) -> Result<Loaded, LoadError> {
         match self {
             Self::Default => {
                 Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
             }
             Self::Inside(inside) => {
-                // Failing to unpack them was reported when the folders were looked for.
+                // Failure to unpack them was reported when the folders were looked up.
                 let folder = files_inside(inside).ok().flatten().unwrap_or_default();
                 workshop.load_in(&inside.scene, (INSIDE, &folder), defaults)
             }
@@ -118,7 +118,7 @@ impl Source {
         }
     }
 
-    /// Reads it, with questions where needed.
+    /// Reads the scene, with questions where needed.
     pub(super) fn open(&self, workshop: &mut Workshop, options: Options) -> Result<Scene, Failure> {
         let invalid = |e: LoadError| Failure::Invalid(self.with_remedy(e.to_string()));
         match self.read(workshop, options.defaults()) {
@@ -146,7 +146,7 @@ impl Source {
         }
     }
 
-    /// A message, with what helps if it is about a file that this program unpacked.
+    /// A message, with a remedy if it concerns a file unpacked by this program.
     fn with_remedy(&self, message: String) -> String {
         let folder = match self {
             Self::Inside(inside) => files_inside(inside).ok().flatten(),
@@ -159,7 +159,7 @@ impl Source {
     }
 }
 
-/// Shows how many files are read, while something reads many of them for long.
+/// Shows the number of files read if reading them takes long.
 fn watched<T>(options: Options, work: impl FnOnce() -> T) -> T {
     let [before, _] = files_read();
     let watch = move |goes_on: &dyn Fn() -> bool| {
@@ -184,7 +184,7 @@ fn answer(options: Options, question: &str) -> Option<bool> {
     }
 }
 
-/// The missing parts in one line.
+/// The missing parts on one line.
 fn parts(missing: &[Missing]) -> String {
     listed(&missing.iter().map(ToString::to_string).collect::<Vec<_>>(), "and")
 }

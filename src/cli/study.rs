@@ -18,7 +18,7 @@ use crate::{
     study,
 };
 
-/// The default folder of the report.
+/// Default folder of the report.
 const FOLDER: &str = "study";
 
 #[derive(Args, Debug)]
@@ -34,9 +34,9 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-/// The reason why there is no report.
+/// The reason why no report was made.
 enum Stopped {
-    /// The folder cannot be made.
+    /// The folder cannot be created.
     Folder(io::Error),
     Failed(Failure),
 }
@@ -49,10 +49,11 @@ impl From<io::Error> for Stopped {
 
 pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
     let folder = &arguments.output;
-    // A write error is better known now than in half a minute.
+    // A write error is better detected now than in half a minute.
     outputs::spare(folder, &inputs([], [], registry))?;
     free(folder, arguments.overwrite)?;
-    // Around all of it, so that no empty folder stays if it is ended. A new report is made beside its place.
+    // Around everything, so that no empty folder remains if the process ends. A new report is made next to
+    // its destination.
     let within = if folder.exists() { folder } else { files::folder_of(folder) };
     files::in_folder(within, || report(arguments, options, registry).map_err(Stopped::Failed)).map_err(
         |stopped| match stopped {
@@ -104,7 +105,7 @@ fn unwritten(folder: &Path, error: &FileError) -> Failure {
 
 /// Refuses a folder with files in it: a report is replaced only at the user's request, anything else never.
 fn free(folder: &Path, overwrite: bool) -> Outcome {
-    // A problem of a folder that cannot be read shows on writing.
+    // A problem with an unreadable folder appears on writing.
     let Ok(mut entries) = fs::read_dir(folder) else { return Ok(()) };
     let name = folder.shown();
     match (entries.next(), study::is_report(folder)) {

@@ -68,7 +68,7 @@ pub(super) fn run(
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {
-        // The interrupted writes of a killed process are finished before the file is read.
+        // Interrupted writes of a killed process are finished before the file is read.
         Source::File(path) => {
             let target = files::follow(path).unwrap_or_else(|_| path.clone());
             files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
@@ -94,7 +94,7 @@ pub(super) fn run(
         exit_after,
         capture,
         no_scene,
-        // The scene decides how much of it is read.
+        // The scene determines how much of it is read.
         registry: None,
         trial_program: options.trial_program(),
         warnings,
@@ -126,7 +126,7 @@ pub(super) fn run(
                     view.stamp = Some(loaded.stamp);
                     view.file = Some(path);
                 }
-                // Of another program, the window may know types that the command line does not.
+                // In an extended program, the window may know types that the command line does not.
                 Err(_) if program::name() != program::LAB => {
                     view.late = Some((path, options.defaults()));
                 }
@@ -161,7 +161,7 @@ fn meant_command(path: &Path) -> Outcome {
     }
 }
 
-/// The lesson of that name among those that come with the program, or else the file.
+/// The shipped lesson with this name, or else the file.
 fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Failure> {
     let shipped = lesson.to_str().and_then(|name| LESSONS.iter().position(|lesson| lesson.id == name));
     if let Some(i) = shipped {

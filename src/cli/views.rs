@@ -1,4 +1,4 @@
-//! The views of a scene on the command line: which are drawn, and how they are compared.
+//! The views of a scene on the command line: the ones to draw, and how they are compared.
 
 use clap::Args;
 
@@ -80,8 +80,8 @@ fn split(text: &str) -> Result<f32, String> {
 }
 
 impl Choice {
-    /// A comparison with these changes, but for the other view. A single view is no comparison: then the views stand
-    /// side by side.
+    /// The comparison with these changes, except for the other view. For a single view, there is no
+    /// comparison: the views are then side by side.
     pub(super) fn applied(&self, comparison: Comparison) -> Comparison {
         let usual = match comparison.layout {
             Layout::Single => Layout::SideBySide,
@@ -120,7 +120,7 @@ pub(super) fn find(scene: &Scene, name: &str) -> Result<usize, String> {
     })
 }
 
-/// A part of a picture: a view, and its place.
+/// A part of a picture: a view, and its area.
 pub(super) struct Part {
     pub(super) cell: Cell,
     /// The scene that the view shows.
@@ -128,14 +128,14 @@ pub(super) struct Part {
     pub(super) terms: TermSelection,
 }
 
-/// The parts of a picture of a scene, and what is made of them.
+/// The parts of a picture of a scene, and how they are combined.
 pub(super) struct Plan {
     pub(super) comparison: Comparison,
     pub(super) parts: Vec<Part>,
 }
 
 impl Plan {
-    /// The picture of a scene as it is compared. `terms`, unless they are all, replace those of each view.
+    /// The picture of a scene as compared. `terms`, unless all are selected, replace those of each view.
     pub(super) fn new(
         scene: &Scene,
         comparison: Comparison,
@@ -173,7 +173,7 @@ impl Plan {
         Self { comparison, parts: vec![Part { cell, scene, terms }] }
     }
 
-    /// True if the picture is made from light, not from display codes.
+    /// True if the picture is made from light instead of display codes.
     pub(super) fn needs_light(&self) -> bool {
         self.is_map() && self.comparison.values == Compared::Light
     }

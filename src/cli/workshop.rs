@@ -51,22 +51,22 @@ fn pasted(word: &str) -> String {
     }
 }
 
-/// The known models and shaders, and their sources. Of the folder of custom models, only as much is read as a command
-/// needs.
+/// The known models and shaders, and their sources. The folder of custom models is read only as far as a
+/// command needs.
 pub(super) struct Workshop {
     pub registry: Registry,
     /// The scene inside this program.
     pub inside: Option<Arc<Payload>>,
     pub(super) options: Options,
-    /// A window draws broken models as stand-ins, and reports them itself.
+    /// True for a window, which draws broken models with the fallback, and reports them itself.
     for_window: bool,
     /// The ids whose files were read, or do not exist.
     tried: BTreeSet<String>,
 }
 
 impl Workshop {
-    /// Reads the model with that id. If there is none, the declarations of all are read, so that messages can list
-    /// them.
+    /// Reads the model with this id. If it does not exist, the declarations of all are read, so that messages
+    /// can list them.
     pub(super) fn need(&mut self, id: &str) {
         self.read(id);
         if self.registry.model(id).is_none() && self.registry.broken_model(id).is_none() {
@@ -74,7 +74,7 @@ impl Workshop {
         }
     }
 
-    /// Reads the model with that id, if it is not read yet. True if more is known now.
+    /// Reads the model with this id, unless read before. True if more is known now.
     fn read(&mut self, id: &str) -> bool {
         if !self.tried.insert(id.to_owned()) {
             return false;
@@ -90,7 +90,7 @@ impl Workshop {
             Reading::Broken(problems) => {
                 complain(all_annotated(&problems));
                 self.registry.remove_model(id);
-                // The problems are reported by now; their place is as good as a name.
+                // The problems have been reported by now; their position is as good as a name.
                 if let Some((path, first)) = problems.first() {
                     let place = format!("{}:{}:{}", path.shown(), first.line, first.column);
                     self.registry.mark_broken(id, place);
@@ -100,8 +100,8 @@ impl Workshop {
         }
     }
 
-    /// Reads the declarations of all models not yet known. Returns whether there was one, and the problems of files. A
-    /// folder that cannot be read is reported at once.
+    /// Reads the declarations of all models not yet known. Returns whether there were any, and the problems
+    /// of files. An unreadable folder is reported at once.
     fn declare_rest(&mut self) -> (bool, folder::Problems) {
         let found = folder::declare_rest(&mut self.registry);
         let is_folder = |path: &Path| Some(path) == self.registry.custom_folder();
@@ -134,10 +134,10 @@ impl Workshop {
         !problems.is_empty()
     }
 
-    /// Reads all custom models completely, and reports their problems; of very many, it leaves it at their declarations.
-    /// True if there are any.
+    /// Reads all custom models completely, and reports their problems; if there are very many, only their
+    /// declarations. True if there are any.
     pub(super) fn read_all(&mut self) -> bool {
-        /// Each takes some 15 ms.
+        /// Maximum number; each takes about 15 ms.
         const MOST: usize = 64;
         let ids: Vec<_> = self.registry.custom_models().map(|(model, _)| model.declaration.id).collect();
         if ids.len() > MOST {
@@ -153,13 +153,14 @@ impl Workshop {
         self.registry.custom_models().count() < ids.len()
     }
 
-    /// Reads a scene from the content of a file, with the custom models that it names. The declarations of others are
-    /// read only if there are problems: the scene may have parameters that they declare, and messages list them.
+    /// Reads a scene from the contents of a file, with the custom models that it names. The declarations of
+    /// others are read only if there are problems: the scene may have parameters that they declare, and
+    /// messages list them.
     pub(super) fn load(&mut self, bytes: &[u8], name: &str, defaults: Defaults) -> Result<Loaded, LoadError> {
         self.load_in(bytes, (name, Path::new(name).parent().unwrap_or(Path::new(""))), defaults)
     }
 
-    /// The same, with the folder of the files that the scene names.
+    /// Like [`load`](Self::load), with the folder of the files named in the scene.
     pub(super) fn load_in(
         &mut self,
         bytes: &[u8],
@@ -175,7 +176,7 @@ impl Workshop {
                 }
                 Err(_) => return loaded,
             };
-            // Read each, even when the first brings something new.
+            // Each is read, even if the first brings something new.
             let read = named.iter().filter(|id| self.read(id)).count() > 0;
             let rest = || matches!(loaded, Err(LoadError::Invalid { .. }));
             let more = read || rest() && self.declare_rest().0;
@@ -197,12 +198,12 @@ impl Places {
             .collect()
     }
 
-    /// The same, in a program with a scene inside.
+    /// The folders, in a program with a scene inside.
     pub(super) fn with(self, inside: Option<Payload>) -> Self {
         Self { inside: inside.map(Arc::new), ..self }
     }
 
-    /// The folders. Where a program carries a scene, its shaders and models are what `--assets` would name.
+    /// The folders. In a program that carries a scene, its shaders and models take the place of `--assets`.
     pub(super) fn folders(&self) -> Result<Folders, Failure> {
         let find = |assets: Option<&Path>| {
             Folders::find(assets, self.models.as_deref()).map_err(|e| Failure::Usage(e.to_string()))
@@ -217,7 +218,8 @@ impl Places {
         Ok(Folders { shaders: below("shaders"), models, extensions: Vec::new() })
     }
 
-    /// Reads the shaders, for a registry that knows all but custom models; one that cannot be read is an error. Custom models are read when they are needed.
+    /// Reads the shaders, for a registry that knows everything except custom models; an unreadable shader is
+    /// an error. Custom models are read when they are needed.
     pub(super) fn open(&self, options: Options, known: Registry) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
             return Err(Failure::Usage(format!("there is no folder {} for --models", named.shown())));
@@ -225,7 +227,7 @@ impl Places {
         self.open_for_writing(options, known)
     }
 
-    /// As [`open`](Self::open), for commands that create the folder of custom models.
+    /// Like [`open`](Self::open), for commands that create the folder of custom models.
     pub(super) fn open_for_writing(
         &self,
         options: Options,
@@ -253,9 +255,9 @@ impl Places {
         Workshop { registry, inside, options, for_window, tried: BTreeSet::new() }
     }
 
-    /// Reads what a window needs at the start: the declarations of all custom models, since it lists them. Models that
-    /// its scene does not use are drawn as stand-ins until they are read, and so are broken ones. No problem keeps the
-    /// window from opening.
+    /// Reads what a window needs at the start: the declarations of all custom models, since it lists them.
+    /// Models that its scene does not use are drawn with the fallback until they are read, and so are broken
+    /// ones. No problem prevents the window from opening.
     pub(super) fn open_for_window(
         &self,
         options: Options,
@@ -266,14 +268,14 @@ impl Places {
             registry.set_shader_folder(shaders);
         }
         if let Some(models) = &folders.models {
-            // The window itself reports problems.
+            // The window reports problems itself.
             let _ = folder::declare_folder(models, &mut registry);
         }
         Ok(self.workshop(registry, options, true))
     }
 }
 
-/// The folder of the files that travelled inside this program; none if there are none.
+/// The folder of the files carried by this program; `None` if there are none.
 pub(super) fn files_inside(inside: &Payload) -> Result<Option<PathBuf>, Failure> {
     let within = assets::data_folder().map_or_else(std::env::temp_dir, |data| data.join("inside"));
     inside.folder(&within).map_err(|error| match error {
@@ -308,11 +310,11 @@ impl From<GpuError> for Failure {
     }
 }
 
-/// The failure for a model that the CPU cannot run, with the alternative.
+/// The failure for a model that the CPU cannot run, with an alternative.
 pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failure {
     let id = model.declaration.id;
     if model.runs_too_long() {
-        // Nor would the GPU be asked to run it.
+        // The GPU would not be asked to run it either.
         return Failure::Invalid(format!("{id} cannot be run: {why}"));
     }
     Failure::NoRenderer(format!(
@@ -325,8 +327,8 @@ pub(super) fn on_disk(registry: &Registry, file: &str) -> String {
     registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.shown().to_string())
 }
 
-/// Fails if the shader of a model is invalid, as the files on disk have it, or other crates compiled it in. What ships
-/// with the program is valid.
+/// Fails if the shader of a model, from files on disk or from another crate, is invalid. Shipped shaders are
+/// valid.
 pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
     if registry.sources().edited().next().is_none() && !registry.is_foreign(model.declaration.wgsl.path) {
         return Ok(());
@@ -339,7 +341,7 @@ pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
     Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 
-/// Fails if a shader for a scene is invalid, as the files on disk have it, or other crates compiled it in.
+/// Fails if a shader for a scene, from files on disk or from another crate, is invalid.
 pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     match shader_problems(registry, scene).into_iter().next() {
         Some((_, problem)) => Err(invalid(registry, &problem)),
@@ -347,7 +349,7 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     }
 }
 
-/// The problems of the shaders for a scene, each with the first object that is drawn with it.
+/// The problems of the shaders for a scene, each with the first object drawn with it.
 pub(super) fn shader_problems(registry: &Registry, scene: &Scene) -> Vec<(usize, ShaderProblem)> {
     if registry.sources().edited().next().is_none() && !registry.has_foreign() {
         return Vec::new();
@@ -366,7 +368,7 @@ pub(super) fn shader_problems(registry: &Registry, scene: &Scene) -> Vec<(usize,
         let faces = shading.declaration.stage == Stage::Polygon;
         if let Err(problem) = validate_drawing(&composed, faces) {
             let problem = wgsl::blamed(problem, registry, model, shading, &lights);
-            // One model has it under several shading models.
+            // The same model has it under several shading models.
             if !problems.iter().any(|(_, known)| *known == *problem) {
                 problems.push((i, *problem));
             }

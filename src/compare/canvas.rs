@@ -2,9 +2,9 @@
 
 use crate::lettering::Lettering;
 
-/// The ground of plates with text, and between pictures.
+/// The background of plates with text, and the colour between pictures.
 pub(super) const DARK: [u8; 3] = [22, 22, 22];
-/// Text on a plate.
+/// The colour of text on a plate.
 pub(super) const BRIGHT: [u8; 3] = [240, 240, 240];
 
 /// A rectangle of pixels: left, top, width, height.
@@ -22,7 +22,7 @@ impl Canvas {
         Self { size, rgb8: colour.repeat(size[0] as usize * size[1] as usize) }
     }
 
-    /// Sizes of text and lines grow with the picture: 1 at 720 pixels across its smaller side.
+    /// The scale of text and lines, proportional to the picture: 1 if its shorter side has 720 pixels.
     pub(super) fn scale(&self) -> f32 {
         (self.size[0].min(self.size[1]) as f32 / 720.0).clamp(0.6, 4.0)
     }
@@ -34,7 +34,7 @@ impl Canvas {
         self.rgb8.as_chunks_mut::<3>().0.get_mut(i)
     }
 
-    /// Mixes a colour into a pixel; outside nothing happens.
+    /// Mixes a colour into a pixel; does nothing outside the picture.
     fn blend(&mut self, x: i64, y: i64, colour: [u8; 3], part: f32) {
         let Some(pixel) = self.pixel(x, y) else { return };
         for (old, new) in pixel.iter_mut().zip(colour) {
@@ -43,7 +43,7 @@ impl Canvas {
         }
     }
 
-    /// Fills a rectangle; `part` 1 covers what was there.
+    /// Fills a rectangle with this opacity; 1 covers the previous content.
     pub(super) fn fill(&mut self, [left, top, width, height]: Rect, colour: [u8; 3], part: f32) {
         for y in top..top.saturating_add(height).min(self.size[1]) {
             for x in left..left.saturating_add(width).min(self.size[0]) {
@@ -52,7 +52,7 @@ impl Canvas {
         }
     }
 
-    /// Copies a part of a picture of some width to a place of this one.
+    /// Copies a part of a picture of this width to a position in this one.
     pub(super) fn copy(&mut self, from: &[u8], width: u32, [x, y]: [u32; 2], [left, top, w, h]: Rect) {
         let bytes = |x: u32, y: u32, width: u32| 3 * (y as usize * width as usize + x as usize);
         for row in 0..h {
@@ -63,7 +63,7 @@ impl Canvas {
         }
     }
 
-    /// A ring around the centre of a pixel, smooth at its edges.
+    /// Draws a ring around the centre of a pixel, with smooth edges.
     pub(super) fn ring(&mut self, [x, y]: [u32; 2], radius: f32, width: f32, colour: [u8; 3]) {
         let reach = (radius + width).ceil() as i64 + 1;
         for dy in -reach..=reach {
@@ -75,7 +75,7 @@ impl Canvas {
         }
     }
 
-    /// A line of text with its upper left corner at a place.
+    /// Draws a line of text with its upper left corner at this position.
     pub(super) fn text(&mut self, style: Lettering, [x, y]: [u32; 2], px: f32, text: &str) {
         let at = [x, y].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
         style.draw(&mut self.rgb8, self.size, at, px, BRIGHT, text);

@@ -6,8 +6,8 @@ use super::{
 };
 use crate::{channel::Legend, lettering::Lettering, optics::viridis::viridis, scene::Comparison};
 
-/// The picture of a layout with the legends of the views that it shows, in the order of [`Comparison::views`], as far as
-/// there is room. Each stands at the letter of its view; without letters all are at the upper left.
+/// The picture of a layout with the legends of its views, in the order of [`Comparison::views`], as far as
+/// there is room. Each legend is at the letter of its view; without letters, all are at the upper left.
 #[must_use]
 pub fn with_legends(comparison: &Comparison, rgb8: Vec<u8>, size: [u32; 2], legends: &[Legend]) -> Vec<u8> {
     let mut canvas = Canvas { size, rgb8 };
@@ -30,8 +30,8 @@ pub fn with_legends(comparison: &Comparison, rgb8: Vec<u8>, size: [u32; 2], lege
     canvas.rgb8
 }
 
-/// Draws a legend in a corner of a part of the picture: at the right, at the bottom. Returns its place; `None` without
-/// room.
+/// Draws a legend in a corner of a part of the picture; the flags select right and bottom. Returns its
+/// rectangle, or `None` without room.
 fn draw(
     canvas: &mut Canvas,
     [left, top, across, down]: Rect,

@@ -1,12 +1,12 @@
-//! Colours for differences that people with any colour vision tell apart: from dark to bright for sizes, from blue over
-//! grey to orange for signs.
+//! Colours for differences, distinguishable with any colour vision: from dark to bright for absolute values,
+//! from blue over grey to orange for signed ones.
 
 use std::sync::LazyLock;
 
 use crate::{optics::viridis::VIRIDIS, scene::comparison::Sign};
 
-/// From the other view being darker over equal to brighter: blue and vermilion of M. Okabe, K. Ito (2008), *Color
-/// Universal Design*, towards black at the ends and a light grey in the middle.
+/// From darker to brighter in the other view: blue and vermilion of M. Okabe, K. Ito (2008), *Color Universal
+/// Design*, towards black at the ends, with a light grey for equality in the middle.
 const BLUE_ORANGE: [[u8; 3]; 9] = [
     [0, 36, 60],
     [0, 76, 120],
@@ -19,7 +19,7 @@ const BLUE_ORANGE: [[u8; 3]; 9] = [
     [75, 30, 0],
 ];
 
-/// The number of steps from one end to the other; even, so that there is one in the middle.
+/// The number of steps from one end to the other; even, so that a step is exactly in the middle.
 const STEPS: usize = 510;
 
 /// A colour for each difference.
@@ -37,7 +37,7 @@ impl Colours {
         }
     }
 
-    /// Straight lines between some colours.
+    /// Linear interpolation between colours.
     fn through(anchors: &[[u8; 3]]) -> Self {
         Self(std::array::from_fn(|step| {
             let at = step as f32 / STEPS as f32 * (anchors.len() - 1) as f32;
@@ -50,12 +50,12 @@ impl Colours {
         }))
     }
 
-    /// The colour at a place from 0 to 1; what lies beyond counts as the end.
+    /// The colour at a position from 0 to 1; positions beyond are clamped.
     pub(super) fn at(&self, place: f32) -> [u8; 3] {
         self.0[(place.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as usize]
     }
 
-    /// The colour of a difference, where 1 is the largest that is told apart.
+    /// The colour of a difference, where 1 is the largest distinguishable one.
     pub(super) fn of_difference(&self, sign: Sign, difference: f32) -> [u8; 3] {
         self.at(match sign {
             Sign::Absolute => difference.abs(),
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn the_colours_between_the_anchors_are_those_of_viridis() {
-        // Of Matplotlib 3, `colormaps["viridis"](i)`.
+        // Values from Matplotlib 3, `colormaps["viridis"](i)`.
         for (i, right) in [
             (8, [71, 13, 96]),
             (40, [69, 55, 129]),
@@ -105,8 +105,9 @@ mod tests {
         assert_eq!((r, r), (g, b), "no difference has no hue");
     }
 
-    /// Seen without cones for green, or for red: F. Viénot, H. Brettel, J. D. Mollon (1999), *Digital Video
-    /// Colourmaps for Checking the Legibility of Displays by Dichromats*, as matrices for linear light.
+    /// The colour as seen without cones for green, or for red: F. Viénot, H. Brettel, J. D. Mollon (1999),
+    /// *Digital Video Colourmaps for Checking the Legibility of Displays by Dichromats*, as matrices for
+    /// linear light.
     #[test]
     fn people_who_confuse_red_and_green_tell_the_signs_apart() {
         let deuteranope =

@@ -8,21 +8,21 @@ use std::{
 
 /// The side of a tile, pixels.
 pub(super) const TILE: usize = 64;
-/// The number of pixels beside a tile that its filters reach: the radius of the widest one.
+/// The number of pixels beside a tile that its filters need: the radius of the widest one.
 pub(super) const REACH: usize = 10;
 /// The side of a tile with its surroundings.
 pub(super) const SIDE: usize = TILE + 2 * REACH;
-/// Pixels at a time: their sums stay in registers.
+/// The number of pixels filtered at a time: their sums stay in registers.
 const LANES: usize = 16;
 
 /// A tile with its surroundings.
 pub(super) type Padded = [[f32; SIDE]; SIDE];
-/// A tile, filtered across, with the rows above and below it.
+/// A tile filtered across, with the rows above and below it.
 pub(super) type Rows = [[f32; TILE]; SIDE];
-/// A tile, filtered.
+/// A filtered tile.
 pub(super) type Tile = [[f32; TILE]; TILE];
 
-/// Numbers on the heap: those of all steps are too many for the stack of a thread.
+/// Numbers on the heap: together they are too many for the stack of a thread.
 pub(super) struct Plane<T>(Box<T>);
 
 impl<const W: usize, const H: usize> Default for Plane<[[f32; W]; H]> {
@@ -47,8 +47,8 @@ impl<T> DerefMut for Plane<T> {
     }
 }
 
-/// The weights of a filter: that of the centre, and those of the pixels 1, 2, … away. At the other side they are the
-/// same, or, where a filter is called odd, the opposite.
+/// The weights of a filter: that of the centre, and those of the pixels at distances 1, 2, … On the other
+/// side, they are equal for even filters, and negated for odd ones.
 pub(super) type Weights<const N: usize> = [f32; N];
 
 /// Weights by distance from the centre, divided by the sum over both sides.
@@ -62,8 +62,8 @@ fn lanes(row: &[f32], at: usize) -> &[f32; LANES] {
     row[at..].first_chunk().unwrap_or(&[0.0; LANES])
 }
 
-/// Filters across with even and odd filters of a radius of `N` − 1 pixels, and as many rows above and below the tile as
-/// filters of that radius need.
+/// Filters across with even and odd filters of a radius of `N` − 1 pixels, including the rows above and below
+/// the tile that filters of this radius need.
 #[inline(always)]
 pub(super) fn across<const N: usize, const E: usize, const O: usize>(
     from: &Padded,
@@ -110,7 +110,7 @@ pub(super) fn down<const N: usize, const E: usize, const O: usize>(
     }
 }
 
-/// Some pixels, filtered; `pixels` are those at a distance on both sides.
+/// Filters some pixels; `pixels` returns those at a distance on both sides.
 #[inline(always)]
 fn filtered<'a, const N: usize, const E: usize, const O: usize>(
     even: [&Weights<N>; E],

@@ -18,11 +18,11 @@ use super::{
 /// Pixels per degree of the field of view: a screen of 3840 pixels on 0.7 m, seen from 0.7 m, as the authors assume.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 
-/// The exponent q_c of differences of colour.
+/// The exponent q_c of colour differences.
 const COLOUR_EXPONENT: f32 = 0.7;
 /// The difference p_c, as a fraction of the largest one, that is mapped to p_t.
 const BEND: f32 = 0.4;
-/// The value p_t to which it is mapped: differences beyond it count little more.
+/// The value p_t to which it is mapped: larger differences add little.
 const BEND_VALUE: f32 = 0.95;
 /// The width w of edges and points, degrees.
 const FEATURE_WIDTH: f64 = 0.082;
@@ -51,7 +51,7 @@ struct Kernels {
     edge: Weights<{ FEATURE + 1 }>,
     point: Weights<{ FEATURE + 1 }>,
     from_xyz: [[f32; 3]; 3],
-    /// The largest difference of colour, that between green and blue, to the power of q_c.
+    /// The largest colour difference, that between green and blue, to the power of q_c.
     largest: f32,
 }
 
@@ -148,7 +148,7 @@ fn f(t: f32) -> f32 {
     if t > DELTA * DELTA * DELTA { root } else { line }
 }
 
-/// CIELAB from the function of X, Y and Z, its chroma as strong as its lightness makes it (Hunt).
+/// CIELAB from the function of X, Y and Z, with chroma scaled by lightness (Hunt effect).
 #[inline(always)]
 fn opposed([x, y, z]: [f32; 3]) -> [f32; 3] {
     let lightness = 116.0 * y - 16.0;
@@ -156,7 +156,7 @@ fn opposed([x, y, z]: [f32; 3]) -> [f32; 3] {
     [lightness, hunt * 500.0 * (x - y), hunt * 200.0 * (y - z)]
 }
 
-/// The distance of colours: that of lightness plus that of chroma.
+/// The colour distance: the sum of the distances in lightness and chroma.
 #[inline(always)]
 fn hyab(a: [f32; 3], b: [f32; 3]) -> f32 {
     let (da, db) = (a[1] - b[1], a[2] - b[2]);
@@ -170,7 +170,7 @@ pub(super) struct Scratch {
     parts: [Plane<Tile>; 2],
 }
 
-/// A picture as it is seen.
+/// A picture as perceived.
 #[derive(Default)]
 pub(super) struct Seen {
     /// The opponent channels, blurred.

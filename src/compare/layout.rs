@@ -14,18 +14,18 @@ use crate::{
     },
 };
 
-/// The place of a view in a picture.
+/// The position of a view in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
     /// The view: 0 for A.
     pub view: usize,
-    /// Pixels from the left.
+    /// The distance from the left, pixels.
     pub left: u32,
-    /// Pixels from the top.
+    /// The distance from the top, pixels.
     pub top: u32,
-    /// Pixels across.
+    /// The width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// The height, pixels.
     pub height: u32,
 }
 
@@ -51,7 +51,7 @@ pub fn cells(comparison: &Comparison, variants: usize, [width, height]: [u32; 2]
     Some(views.into_iter().enumerate().map(place).collect())
 }
 
-/// Pixels between views in a picture whose smaller side has a length.
+/// The gap between views in a picture whose shorter side has this length, pixels.
 fn gap(length: u32) -> u32 {
     (length / 180).clamp(2, 16)
 }
@@ -64,7 +64,7 @@ pub fn size_around(comparison: &Comparison, variants: usize, [width, height]: [u
         return [width, height];
     }
     let with = |gap: u32| [2 * width + gap, if views > 2 { 2 * height + gap } else { height }];
-    // A wider gap makes the picture larger, but hardly ever so much that the gap grows again.
+    // A wider gap enlarges the picture, but hardly ever so much that the gap grows again.
     let mut size = with(gap(0));
     while size != with(gap(size[0].min(size[1]))) {
         size = with(gap(size[0].min(size[1])));
@@ -72,13 +72,13 @@ pub fn size_around(comparison: &Comparison, variants: usize, [width, height]: [u
     size
 }
 
-/// Two equal parts of a length, with a gap between them that takes what is left over: start and length of each.
+/// Two equal parts of a length, with the rest as a gap between them: start and length of each.
 fn halves(length: u32, gap: u32) -> Option<[(u32, u32); 2]> {
     let half = length.checked_sub(gap)? / 2;
     (half > 0).then_some([(0, half), (length - half, half)])
 }
 
-/// The pixels of a wipe at the left of the edge, or above it.
+/// The number of pixels of a wipe to the left of the edge, or above it.
 #[must_use]
 pub fn edge(split: f32, length: u32) -> u32 {
     (split.clamp(0.0, 1.0) * length as f32).round() as u32
@@ -88,10 +88,11 @@ pub fn edge(split: f32, length: u32) -> u32 {
 /// of [`Comparison::views`], each of the size of its cell. A layout of two views shows view A if there is no other.
 ///
 /// # Errors
-/// If pictures of a layout over each other have different sizes, or light is to be compared and one has none.
+/// Returns an error if overlaid pictures have different sizes, or if light is to be compared and one picture
+/// has none.
 ///
 /// # Panics
-/// If there is no picture.
+/// Panics if there are no pictures.
 pub fn compose(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Result<Vec<u8>, Unequal> {
     let (a, b) = (&shown[0], shown.get(1));
     match (comparison.layout, b) {
@@ -116,7 +117,7 @@ fn side_by_side(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Res
     Ok(canvas.rgb8)
 }
 
-/// The parts of a picture of some size at both sides of the edge of a wipe.
+/// The parts of a picture of this size on both sides of the edge of a wipe.
 fn sides(comparison: &Comparison, [width, height]: [u32; 2]) -> [Rect; 2] {
     match comparison.edge {
         Edge::Vertical => {
@@ -138,7 +139,7 @@ fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
     let at = edge(comparison.split, length);
     let [_, b] = sides(comparison, size);
     canvas.copy(pair.b.rgb8(), width, [b[0], b[1]], b);
-    // A view that is not seen has neither letter nor edge.
+    // A view that is not visible has no letter and no edge.
     if at > 0 && at < length {
         let line = (2.0 * canvas.scale()).round().max(1.0) as u32;
         for (extra, colour) in [(1, DARK), (0, BRIGHT)] {
@@ -152,18 +153,19 @@ fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
     Ok(canvas.rgb8)
 }
 
-/// A part of a picture that shows one of several views, with its letter.
+/// A part of a picture that shows one of several views, with the view's letter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Area {
-    /// The place of the view among those that the layout shows.
+    /// The index of the view among those of the layout.
     pub(super) place: usize,
     view: usize,
     rect: Rect,
-    /// The corner of its letter: at the right, at the bottom.
+    /// The corner of the letter; the flags select right and bottom.
     pub(super) corner: [bool; 2],
 }
 
-/// The parts of a picture in which so many views have their letters; none where one is alone, or all are one map.
+/// The areas of a picture in which the letters of this number of views are placed; none for a single view, or if
+/// all views form one map.
 pub(super) fn areas(comparison: &Comparison, size: [u32; 2], shown: usize) -> Vec<Area> {
     match comparison.layout {
         _ if shown < 2 => Vec::new(),
@@ -187,11 +189,11 @@ pub(super) fn areas(comparison: &Comparison, size: [u32; 2], shown: usize) -> Ve
     }
 }
 
-/// The size of letters of views at a scale of 1, pixels.
+/// The size of view letters at a scale of 1, pixels.
 const LETTER: f32 = 20.0;
 
 impl Area {
-    /// The place of its letter on a plate in the corner; `None` without room.
+    /// The rectangle of the letter's plate in the corner; `None` without room.
     fn plate(&self, canvas: &Canvas) -> Option<Rect> {
         let letter = LETTERS.get(self.view)?;
         let ([left, top, width, height], [at_right, at_bottom]) = (self.rect, self.corner);
@@ -208,7 +210,7 @@ impl Area {
         Some([x, y, plate[0], plate[1]])
     }
 
-    /// The part of it that is left below its letter, or above it.
+    /// The part of the area below the letter, or above it.
     pub(super) fn clear_of_letter(&self, canvas: &Canvas) -> Rect {
         let [left, top, width, height] = self.rect;
         let Some([_, y, _, line]) = self.plate(canvas) else { return self.rect };

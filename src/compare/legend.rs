@@ -1,4 +1,4 @@
-//! The legend of a map of differences, and the mark at the largest one.
+//! The legend of a map of differences, and the mark at the largest difference.
 
 use super::{
     canvas::{BRIGHT, Canvas, DARK, Rect},
@@ -16,13 +16,13 @@ use crate::{
 /// The texts of a legend.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Texts {
-    /// The difference that is shown, and its unit.
+    /// The quantity shown, and its unit.
     pub(super) title: String,
     /// The numbers at the left, in the middle and at the right of the bar.
     pub(super) numbers: [String; 3],
 }
 
-/// The largest number of a kind of values.
+/// The value at full scale.
 pub(super) fn full(values: Compared) -> f32 {
     match values {
         Compared::Codes => 255.0,
@@ -47,7 +47,7 @@ impl Texts {
         };
         let title = format!("{factor}{difference}: {channel}, {}", values.name());
         let end = short(full(values) / amplification);
-        // As many digits behind the point as the end has.
+        // As many decimals as the end has.
         let digits = end.split_once('.').map_or(0, |(_, digits)| digits.len());
         let middle = format!("{:.digits$}", 0.5 * full(values) / amplification);
         let numbers = match sign {
@@ -58,14 +58,14 @@ impl Texts {
     }
 }
 
-/// The amplification at which a difference has nearly the last colour of a map: 1, 2, 5, 10, …, 100.
+/// The amplification at which a difference has nearly the last colour of a map: 1, 2, 5, 10, …, or 100.
 #[must_use]
 pub fn fitting_amplification(values: Compared, largest: f32) -> f32 {
     let fits = |factor: &f32| factor * largest <= full(values);
     [100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(fits).unwrap_or(1.0)
 }
 
-/// A number with three digits that count.
+/// A number with three significant digits.
 #[must_use]
 pub fn short(number: f32) -> String {
     let digits = 2 - (number.abs().max(1e-9).log10().floor() as i32).min(2);
@@ -85,7 +85,7 @@ pub(super) fn draw(canvas: &mut Canvas, comparison: &Comparison, factor: f32, la
     let wanted = style.width(px, &texts.title);
     let room = canvas.size[0].saturating_sub(4 * pad);
     let least = texts.numbers.iter().map(|n| style.width(px, n)).sum::<u32>() + 4 * gap;
-    // Without room for the title, it is broken into lines; without room for the numbers there is no legend.
+    // A title that is too wide is broken into lines; without room for the numbers, no legend is drawn.
     let width = wanted.min(room);
     let lines = style.lines(px, &texts.title, width, 3);
     let height = line * lines.len() as u32 + gap + bar + line;
@@ -131,7 +131,7 @@ fn mark_radius(scale: f32) -> f32 {
     (14.0 * scale).round()
 }
 
-/// A circle around the largest difference, dark and bright, so that it shows on every ground.
+/// Draws a circle around the largest difference, dark and bright, so that it is visible on every background.
 pub(super) fn mark(canvas: &mut Canvas, largest: &Largest) {
     let scale = canvas.scale();
     let radius = mark_radius(scale);

@@ -1,4 +1,5 @@
-//! The difference of two pictures as a map: a colour for each number, a legend, and a mark at the largest.
+//! The difference between two pictures as a map: a colour for each value, a legend, and a mark at the largest
+//! one.
 
 use rayon::prelude::*;
 
@@ -10,11 +11,12 @@ use super::{
 };
 use crate::scene::{Comparison, comparison::Sign};
 
-/// How much of an outline covers the colours below it.
+/// The opacity of an outline over the colours below it.
 const OUTLINE: f32 = 0.6;
 
 impl Differences {
-    /// The factor by which a comparison multiplies these differences: its own, or the one that fits the largest.
+    /// The factor by which a comparison multiplies these differences: the one that it specifies, or the one
+    /// that fits the largest difference.
     #[must_use]
     pub fn amplification(&self, comparison: &Comparison) -> f32 {
         let largest = self.largest.as_ref().map_or(0.0, |largest| largest.difference.abs());
@@ -40,11 +42,11 @@ impl Differences {
 }
 
 impl Pair<'_> {
-    /// The map of the differences with the outlines of objects, as far as they are known, its legend and the mark: red,
+    /// The map of the differences with the outlines of objects, if known, its legend and the mark: red,
     /// green, blue, row by row from the top.
     ///
     /// # Errors
-    /// If light is to be compared, and one picture has none.
+    /// Returns an error if light is to be compared, and one picture has none.
     pub fn map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
         let differences = self.differences(comparison)?;
         let mut canvas = Canvas { size: self.a.size(), rgb8: differences.colours(comparison) };
@@ -57,10 +59,10 @@ impl Pair<'_> {
         Ok(canvas.rgb8)
     }
 
-    /// Thin lines where objects end, so that a map without large differences still shows where it is.
+    /// Draws thin lines around objects, so that a map without large differences still shows its subject.
     fn outline(&self, canvas: &mut Canvas, sign: Sign) {
         let Some(outlines) = self.a.outlines().or(self.b.outlines()) else { return };
-        // Signed differences are brightest where they are 0, the others darkest.
+        // Signed differences are brightest at 0, absolute ones darkest.
         let ink = match sign {
             Sign::Absolute => BRIGHT,
             Sign::Signed => DARK,

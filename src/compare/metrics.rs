@@ -1,7 +1,7 @@
 //! The numbers for the difference between two pictures: RMSE, PSNR, SSIM and ꟻLIP.
 //!
-//! The picture is taken in tiles. A tile that is equal in both pictures, with everything that the filters reach, needs
-//! no filter: there SSIM is 1 and ꟻLIP is 0.
+//! The picture is processed in tiles. A tile that is equal in both pictures, including all pixels that the
+//! filters reach, needs no filtering: there SSIM is 1 and ꟻLIP is 0.
 
 use std::sync::LazyLock;
 
@@ -44,11 +44,11 @@ pub struct Measured {
     pub covered: Option<Metrics>,
 }
 
-/// The sums of which the numbers are made.
+/// The sums from which the numbers are calculated.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     pixels: u64,
-    /// Of squared differences of codes.
+    /// The sum of squared differences of codes.
     squares: u64,
     ssim: f64,
     flip: f64,
@@ -96,7 +96,7 @@ impl Sums {
     }
 }
 
-/// The instructions of this machine.
+/// The instruction set of this machine.
 static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);
 /// Linear light of each display code.
 static LINEAR: LazyLock<[f32; 256]> =
@@ -120,7 +120,7 @@ impl Pair<'_> {
     pub fn measure(&self) -> Option<Measured> {
         let [width, height] = self.a.size().map(|side| side as usize);
         let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
-        // Collected in order, so that sums are the same every time.
+        // Collected in order, so that the sums are reproducible.
         let tiles: Vec<[Sums; 2]> = (0..across * down)
             .into_par_iter()
             .map_init(Scratch::default, |scratch, i| self.tile(scratch, i % across * TILE, i / across * TILE))
@@ -131,7 +131,7 @@ impl Pair<'_> {
         Some(Measured { all: all.metrics(has_light)?, covered: covered.metrics(has_light) })
     }
 
-    /// The sums of a tile: of all pixels, and of the covered ones.
+    /// The sums of a tile: over all pixels, and over the covered ones.
     fn tile(&self, scratch: &mut Scratch, left: usize, top: usize) -> [Sums; 2] {
         let [width, height] = self.a.size().map(|side| side as usize);
         let (columns, rows) = (left..width.min(left + TILE), top..height.min(top + TILE));
@@ -176,7 +176,7 @@ impl Pair<'_> {
     }
 }
 
-/// The numbers of a tile's pixels in a row.
+/// The numbers for a row of a tile.
 struct Row<'a> {
     ssim: &'a [f32; TILE],
     flip: &'a [f32; TILE],
@@ -184,7 +184,7 @@ struct Row<'a> {
     light: [f32; TILE],
 }
 
-/// The place of a tile in pictures of a size.
+/// The position of a tile in pictures of this size.
 struct Place {
     left: usize,
     top: usize,
@@ -192,7 +192,8 @@ struct Place {
     height: usize,
 }
 
-/// Reads a tile, with its surroundings, of both pictures, and filters it. Beyond a picture its outermost pixels go on.
+/// Reads a tile with its surroundings from both pictures, and filters it. Outside a picture, the nearest
+/// pixels at its edge are repeated.
 #[inline(always)]
 fn filter(scratch: &mut Scratch, pictures: [&[[u8; 3]]; 2], place: &Place) {
     let linear = &*LINEAR;

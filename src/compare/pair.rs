@@ -12,12 +12,12 @@ use crate::{
 /// The reason why two pictures cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Unequal {
-    /// They have different sizes.
+    /// The pictures have different sizes.
     #[error(
         "one picture has {}×{} pixels, the other {}×{}; they must have the same size", .0[0], .0[1], .1[0], .1[1]
     )]
     Sizes([u32; 2], [u32; 2]),
-    /// Light is to be compared, and one of them has none.
+    /// Light is to be compared, but the light of one picture is unknown.
     #[error("the light of a picture is not known; compare display codes")]
     NoLight,
 }
@@ -29,31 +29,32 @@ pub struct Pair<'a> {
     pub(super) b: &'a Shown,
 }
 
-/// The largest difference between two pictures, and its place.
+/// The largest difference between two pictures, and its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest {
-    /// Pixels from the left, from 0.
+    /// The distance from the left, pixels, counted from 0.
     pub x: u32,
-    /// Pixels from the top, from 0.
+    /// The distance from the top, pixels, counted from 0.
     pub y: u32,
-    /// The difference there with its sign: the other view minus view A, before amplification.
+    /// The signed difference: the other view minus view A, before amplification.
     pub difference: f32,
-    /// The display codes of view A there.
+    /// The display codes of view A at this pixel.
     pub a: [u8; 3],
-    /// Those of the other view.
+    /// The display codes of the other view at this pixel.
     pub b: [u8; 3],
 }
 
 /// The differences of two pictures' pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Differences {
-    /// Row by row from the top: the number of the other view minus that of view A.
+    /// The values row by row from the top: the other view minus view A.
     pub pixels: Vec<f32>,
-    /// The largest in size; the first of equal ones. `None` if the pictures are equal.
+    /// The difference of the largest absolute value; the first if several are equal. `None` if the pictures
+    /// are equal.
     pub largest: Option<Largest>,
 }
 
-/// The number of a pixel's difference.
+/// The value of a pixel's difference.
 pub(super) fn number(channel: Channel, [r, g, b]: [f32; 3]) -> f32 {
     match channel {
         Channel::Red => r,
@@ -68,10 +69,10 @@ pub(super) fn number(channel: Channel, [r, g, b]: [f32; 3]) -> f32 {
 }
 
 impl<'a> Pair<'a> {
-    /// View A and the other.
+    /// Pairs view A with another view.
     ///
     /// # Errors
-    /// If their sizes differ.
+    /// Returns an error if their sizes differ.
     pub fn new(a: &'a Shown, b: &'a Shown) -> Result<Self, Unequal> {
         if a.size() == b.size() { Ok(Self { a, b }) } else { Err(Unequal::Sizes(a.size(), b.size())) }
     }
@@ -83,10 +84,9 @@ impl<'a> Pair<'a> {
         (a.is_some() || b.is_some()).then_some(move |i| of(a, i) || of(b, i))
     }
 
-    /// The differences of the pixels, in the channel and the values of a comparison.
+    /// The differences of the pixels, in the channel and the kind of values of a comparison.
     ///
-    /// # Errors
-    /// If light is to be compared, and one picture has none.
+    /// # Errors Returns an error if light is to be compared, and the light of one picture is unknown.
     pub fn differences(&self, comparison: &Comparison) -> Result<Differences, Unequal> {
         let channel = comparison.channel;
         match comparison.values {

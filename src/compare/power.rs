@@ -1,7 +1,7 @@
-//! Powers of many numbers at once: without branches and calls, so that the compiler calculates several in one
-//! instruction, and with the same result on every machine.
+//! Powers of many numbers at once: without branches and calls, so that the compiler calculates several per
+//! instruction, with identical results on every machine.
 
-/// The number whose addition rounds to a whole one: 1.5 · 2²³.
+/// Adding this number rounds to a whole number: 1.5 · 2²³.
 const ROUND: f32 = 12_582_912.0;
 
 /// The binary logarithm of a positive number, about −127 of 0; the error is below 3e-7 of the larger of 1 and the
@@ -23,7 +23,7 @@ fn log2(x: f32) -> f32 {
 fn exp2(x: f32) -> f32 {
     let shifted = x + ROUND;
     let scale = f32::from_bits((shifted.to_bits() << 23).wrapping_add(0x3f80_0000));
-    // The series of e to the power of the rest, at most ½ ln 2.
+    // The series of the exponential of the remainder, which is at most ½ ln 2.
     let t = (x - (shifted - ROUND)) * std::f32::consts::LN_2;
     let rest = 1.0 / 6.0 + t * (1.0 / 24.0 + t * (1.0 / 120.0 + t * (1.0 / 720.0 + t * (1.0 / 5040.0))));
     scale * (1.0 + t * (1.0 + t * (0.5 + t * rest)))

@@ -1,4 +1,4 @@
-//! What a view shows.
+//! The pictures of views.
 
 use thiserror::Error;
 
@@ -9,7 +9,7 @@ use crate::{
     scene::{Display, Scene},
 };
 
-/// What a view shows, as a picture.
+/// The picture of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     width: u32,
@@ -24,9 +24,9 @@ pub struct Shown {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a picture of {width} × {height} pixels has not {found} of them")]
 pub struct WrongSize {
-    /// Pixels across.
+    /// The width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// The height, pixels.
     pub height: u32,
     /// The number found.
     pub found: usize,
@@ -37,7 +37,7 @@ impl Shown {
     /// are unknown.
     ///
     /// # Errors
-    /// If there are not `width · height · 3` codes.
+    /// Returns an error if there are not `width · height · 3` codes.
     pub fn of_codes(width: u32, height: u32, rgb8: Vec<u8>) -> Result<Self, WrongSize> {
         let pixels = width as usize * height as usize;
         if rgb8.len() != 3 * pixels {
@@ -46,10 +46,10 @@ impl Shown {
         Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None })
     }
 
-    /// The same, where it is known which pixels objects cover.
+    /// Adds which pixels are covered by objects.
     ///
     /// # Errors
-    /// If it is not known of each pixel.
+    /// Returns an error if the number of pixels is wrong.
     pub fn covering(mut self, covered: Vec<bool>) -> Result<Self, WrongSize> {
         if covered.len() * 3 != self.rgb8.len() {
             return Err(WrongSize { width: self.width, height: self.height, found: covered.len() });
@@ -58,10 +58,10 @@ impl Shown {
         Ok(self)
     }
 
-    /// The same with its light, which also tells what objects cover.
+    /// Adds the light, which also determines the covered pixels.
     ///
     /// # Errors
-    /// If the light is of another size.
+    /// Returns an error if the light has another size.
     pub fn with_light(mut self, light: Picture) -> Result<Self, WrongSize> {
         if (light.width, light.height) != (self.width, self.height) {
             return Err(WrongSize { width: self.width, height: self.height, found: light.pixels.len() });
@@ -80,8 +80,8 @@ impl Shown {
         Self { width, height, rgb8, light: Some(light), covered: Some(covered), outlines: None }
     }
 
-    /// A view of a scene, drawn by the CPU renderer; view 0 is the scene itself. The terms of `settings` are shown
-    /// unless they are all: then those of the view. `None` if there is no such view.
+    /// A view of a scene, drawn by the CPU renderer; view 0 is the scene itself. The terms of `settings` are
+    /// shown unless all are selected: then those of the view. `None` if the view does not exist.
     #[must_use]
     pub fn of_view(scene: &Scene, view: usize, registry: &Registry, settings: &Settings) -> Option<Self> {
         let (seen, own) = scene.seen(view, registry)?;
@@ -90,19 +90,19 @@ impl Shown {
         Some(Self::of_light(light, &seen.display))
     }
 
-    /// The same with the outlines of the objects of the scene that it shows, for a map of differences.
+    /// Adds the outlines of the objects in a scene, for a map of differences.
     #[must_use]
     pub fn outlined(mut self, scene: &Scene, registry: &Registry) -> Self {
         self.outlines = Some(reference::outlines(scene, registry, self.size()));
         self
     }
 
-    /// True for each pixel where an object ends, if that is known.
+    /// True for each pixel at the edge of an object, if known.
     pub(super) fn outlines(&self) -> Option<&[bool]> {
         self.outlines.as_deref()
     }
 
-    /// Pixels across and down.
+    /// The width and height, pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
@@ -114,19 +114,19 @@ impl Shown {
         &self.rgb8
     }
 
-    /// The same, without the rest.
+    /// The display codes, consuming the picture.
     #[must_use]
     pub fn into_rgb8(self) -> Vec<u8> {
         self.rgb8
     }
 
-    /// The light, if it is known: linear, before exposure; that of the background is 0.
+    /// The light, if known: linear, before exposure; 0 for the background.
     #[must_use]
     pub fn light(&self) -> Option<&Picture> {
         self.light.as_ref()
     }
 
-    /// Whether objects cover each pixel, if it is known: at least one of its samples.
+    /// True for each pixel with at least one sample covered by objects, if known.
     #[must_use]
     pub fn covered(&self) -> Option<&[bool]> {
         self.covered.as_deref()

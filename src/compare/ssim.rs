@@ -1,8 +1,8 @@
 //! SSIM: the similarity of structures. Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli (2004), *Image Quality
 //! Assessment: From Error Visibility to Structural Similarity*, IEEE Transactions on Image Processing 13(4).
 //!
-//! Of luma in a window of 11 × 11 pixels around each, weighted by a Gaussian of 1.5 pixels:
-//! (2 μ_A μ_B + C₁)(2 σ_AB + C₂) / ((μ_A² + μ_B² + C₁)(σ_A² + σ_B² + C₂)), C₁ = 0.01², C₂ = 0.03².
+//! SSIM of luma in a window of 11 × 11 pixels around each pixel, weighted by a Gaussian of 1.5 pixels: (2 μ_A
+//! μ_B + C₁)(2 σ_AB + C₂) / ((μ_A² + μ_B² + C₁)(σ_A² + σ_B² + C₂)), C₁ = 0.01², C₂ = 0.03².
 
 use std::sync::LazyLock;
 
@@ -10,13 +10,13 @@ use super::filter::{Padded, Plane, REACH, Rows, SIDE, Tile, Weights, across, dow
 
 /// The radius of the window, pixels.
 const RADIUS: usize = 5;
-/// The standard deviation of its weights, pixels.
+/// The standard deviation of the window's weights, pixels.
 const DEVIATION: f64 = 1.5;
-/// Keeps the quotient of means finite.
+/// The constant that keeps the quotient of means finite.
 const C1: f32 = 0.01 * 0.01;
-/// Keeps the quotient of deviations finite.
+/// The constant that keeps the quotient of deviations finite.
 const C2: f32 = 0.03 * 0.03;
-/// Subtracted from luma before it is squared, so that the squares are small: variances are the same.
+/// The constant subtracted from luma before squaring, so that the squares are small; variances do not change.
 pub(super) const CENTRE: f32 = 0.5;
 
 static WINDOW: LazyLock<Weights<{ RADIUS + 1 }>> =

@@ -1,4 +1,4 @@
-//! Points of a function: more where it bends.
+//! Adaptive sampling of a function: points are denser where it bends.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -6,23 +6,24 @@ use rayon::prelude::*;
 use super::Point;
 use crate::progress::{Cancelled, Progress};
 
-/// The passes in which steps are halved.
+/// Maximum number of passes that halve steps.
 const PASSES: u32 = 14;
-/// The most points of a curve.
+/// Maximum number of points of a curve.
 const MOST: usize = 6000;
-/// The largest error of a straight line between two points: a part of the largest value.
+/// The largest error of a straight line between two points, as a fraction of the largest value.
 const OF_LARGEST: f32 = 0.0015;
-/// On logarithmic axes: a part of the value, for values not much smaller than the largest.
+/// The largest error on logarithmic axes, as a fraction of the value, for values not much smaller than the
+/// largest.
 const OF_VALUE: f32 = 0.01;
 const SMALLEST: f32 = 1e-7;
 
-/// The values of a function at some increasing angles.
+/// The values of a function at increasing angles.
 pub(super) fn at(
     angles: &[f64],
     function: &(impl Fn(f64) -> Vec3 + Sync),
     progress: &Progress,
 ) -> Result<Vec<Point>, Cancelled> {
-    /// The points between two looks at the wish to stop.
+    /// The number of points between two checks for cancellation.
     const CHUNK: usize = 8;
     let mut points = Vec::with_capacity(angles.len());
     for chunk in angles.chunks(CHUNK) {
@@ -32,13 +33,13 @@ pub(super) fn at(
     Ok(points)
 }
 
-/// Halves the steps between points until straight lines between them are the curve.
+/// Halves the steps between points until straight lines between them approximate the curve.
 pub(super) fn refined(
     mut points: Vec<Point>,
     function: &(impl Fn(f64) -> Vec3 + Sync),
     progress: &Progress,
 ) -> Result<Vec<Point>, Cancelled> {
-    // True for the steps, each from a point to the next, that may need halving.
+    // True for the steps, each from a point to the next, that may have to be halved.
     let mut open = vec![true; points.len().saturating_sub(1)];
     for pass in 0..PASSES {
         progress.step(pass as f32 / PASSES as f32, "")?;
@@ -78,7 +79,7 @@ pub(super) fn refined(
 fn bends(a: Point, middle: Point, b: Point, largest: f32) -> bool {
     let kinds = [a, middle, b].map(|p| p.rgb.is_finite());
     if kinds != [true; 3] {
-        // The edge of a gap is found, and its inside needs no points.
+        // The edge of a gap has been found; its inside needs no points.
         return kinds != [false; 3];
     }
     (0..3).any(|channel| {

@@ -10,21 +10,22 @@ const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
 /// A measured value: angles in degrees and the BRDF in sr⁻¹ at 630, 550 and 465 nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// Between light and normal.
+    /// The angle between light and normal.
     pub theta_i: f32,
-    /// Between viewer and normal.
+    /// The angle between viewer and normal.
     pub theta_o: f32,
-    /// Between the azimuths of light and viewer; 180 is the mirror direction's side.
+    /// The angle between the azimuths of light and viewer; at 180, the viewer is on the side of the mirror
+    /// direction.
     pub delta_phi: f32,
     /// The azimuth of the light.
     pub phi_i: f32,
-    /// `f_r`.
+    /// The BRDF `f_r`.
     pub f: [f64; 3],
 }
 
 impl Measurement {
-    /// The angle of the viewer in the plane of incidence, degrees, positive on the side of the mirror direction; none
-    /// outside the plane.
+    /// The angle of the viewer in the plane of incidence, degrees, positive on the side of the mirror
+    /// direction; `None` outside the plane.
     #[must_use]
     pub fn in_plane(&self) -> Option<f32> {
         let delta = self.delta_phi.rem_euclid(360.0);
@@ -38,7 +39,7 @@ impl Measurement {
     }
 }
 
-/// The paints: id, name.
+/// The paints: id and name.
 pub const PAINTS: [(&str, &str); 3] =
     [("krylon_blue", "Krylon blue"), ("garnet_red", "Garnet red"), ("acryl_blue", "Acryl blue")];
 
@@ -46,7 +47,7 @@ pub const PAINTS: [(&str, &str); 3] =
 /// reciprocity, degrees.
 pub const LARGEST_ANGLE: f32 = 71.0;
 
-/// The measured values of a paint; none for an unknown paint.
+/// The measured values of a paint; empty for an unknown paint.
 #[must_use]
 pub fn paint(id: &str) -> Vec<Measurement> {
     let row = |line: &str| {
@@ -114,7 +115,7 @@ impl Sgd {
         Some(Self { name, parameters })
     }
 
-    /// `f_r` in sr⁻¹ in the three channels; l and v in the local frame. Zero below the surface.
+    /// `f_r` in sr⁻¹ in the three channels; l and v are in the local frame. Zero below the surface.
     #[must_use]
     pub fn brdf(&self, l: Vec3, v: Vec3) -> [f64; 3] {
         if l.z <= 0.0 || v.z <= 0.0 {

@@ -1,4 +1,4 @@
-//! The files that a plot can be written to.
+//! The file formats of plots.
 
 use std::{ffi::OsStr, io, path::Path};
 
@@ -17,24 +17,24 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Csv];
 
-    /// The format that the name of a file asks for.
+    /// The format given by the extension of a file name.
     ///
     /// # Errors
-    /// If there is no such format.
+    /// Returns an error if no format has this extension.
     pub fn of(path: &Path) -> Result<Self, String> {
         let extension = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
         let known = |format: &Self| extension.as_deref() == Some(format.extension());
         match Self::ALL.into_iter().find(known) {
             Some(format) => Ok(format),
-            // A device or a pipe has no format in its name.
+            // The name of a device or a pipe gives no format.
             None if extension.is_none() && files::is_stream(path) => Ok(Self::Csv),
             None => {
                 let named = path.with_extension("svg");
                 Err(match named == path {
-                    // A folder such as `.`, which takes no extension.
+                    // A folder such as `.`, to which no extension can be added.
                     true => "a plot is written as .svg, .png or .csv; name a file".to_owned(),
                     false => {
                         let named = named.shown();
@@ -45,7 +45,7 @@ impl Format {
         }
     }
 
-    /// Behind the point in the name of a file.
+    /// The extension, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ impl Format {
         }
     }
 
-    /// How such a file begins: others are not replaced.
+    /// The signature of files of this format: other files are not replaced.
     #[must_use]
     pub fn signature(self) -> Signature {
         match self {
@@ -68,7 +68,7 @@ impl Format {
     /// The content of the file.
     ///
     /// # Errors
-    /// If the picture is too large to be encoded.
+    /// Returns an error if the picture is too large to be encoded.
     pub fn bytes(self, sheet: &Sheet) -> io::Result<Vec<u8>> {
         Ok(match self {
             Self::Svg => sheet.figure().svg().into_bytes(),

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::optics::colour::luminance;
 
-/// What a plot shows.
+/// The quantity of a plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// `f` in sr⁻¹ in the plane of incidence.
@@ -30,7 +30,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 9] = [
         Self::Brdf,
         Self::BrdfCos,
@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// The kind with that name.
+    /// The kind with this name.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.id() == id)
@@ -107,28 +107,28 @@ impl Kind {
         }
     }
 
-    /// True if it depends on the angle of the light.
+    /// True if the quantity depends on the angle of the light.
     #[must_use]
     pub fn has_light(self) -> bool {
         matches!(self, Self::Brdf | Self::BrdfCos | Self::Response | Self::Polar | Self::Masking)
     }
 
-    /// True if it has no channels.
+    /// True if the quantity has no colour channels.
     #[must_use]
     pub fn is_scalar(self) -> bool {
         matches!(self, Self::Distribution | Self::Masking)
     }
 
-    /// True if it is the BRDF, perhaps with a factor, in the plane of incidence.
+    /// True if the quantity is the BRDF, perhaps with a factor, in the plane of incidence.
     pub(super) fn is_lobe(self) -> bool {
         matches!(self, Self::Brdf | Self::BrdfCos | Self::Response | Self::Polar)
     }
 }
 
-/// What of three channels a curve shows.
+/// The channel shown by a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
-    /// ITU-R BT.709.
+    /// Luminance by ITU-R BT.709.
     Luminance,
     /// Red.
     Red,
@@ -139,7 +139,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All of them.
+    /// All channels.
     pub const ALL: [Self; 4] = [Self::Luminance, Self::Red, Self::Green, Self::Blue];
 
     /// The name on the command line.
@@ -153,13 +153,13 @@ impl Channel {
         }
     }
 
-    /// The channel with that name.
+    /// The channel with this name.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// In words.
+    /// The name in words.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,7 @@
 //! The lobe of a model at a point: the BRDF over the hemisphere of viewers, as a surface.
 //!
-//! The polar plot ([`Kind::Polar`]) is its section with the plane of incidence: the same quantity, on the same axis.
+//! The polar plot ([`Kind::Polar`]) is the section of this surface with the plane of incidence: it has the
+//! same quantity on the same axis.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,33 +14,33 @@ use crate::{
     reflection::{Surface, brdf_of},
 };
 
-/// Steps around the normal.
+/// The number of steps around the normal.
 const AROUND: usize = 32;
 /// The angles from the normal at which the surface begins, degrees.
 const DOWN: [f64; 11] = [10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 78.0, 84.0, 88.0, GRAZING];
-/// An angle this near to that of the mirror direction gives way to it, degrees.
+/// An angle closer than this to that of the mirror direction is replaced by it, degrees.
 const CLEAR: f64 = 4.0;
-/// The passes in which edges are halved.
+/// Maximum number of passes that halve edges.
 const PASSES: usize = 14;
-/// The most directions.
+/// Maximum number of directions.
 const MOST: usize = 2500;
-/// The largest distance of an edge from the surface; the lobe is 1 long.
+/// The largest distance of an edge from the surface, for a lobe of length 1.
 const TOLERANCE: f64 = 0.008;
-/// The edge of a gap is found to this angle, radians.
+/// The precision with which the edge of a gap is found, radians.
 const GAP: f32 = 0.05;
 
-/// The BRDF of the terms that are shown, for one light, towards all viewers.
+/// The BRDF of the displayed terms, for one light, towards all viewers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lobe {
     /// The directions to the viewers: unit vectors, denser where the surface bends.
     pub ways: Vec<Vec3>,
     /// The luminance of `f` in sr⁻¹ in each direction, as calculated: it may not be finite.
     pub values: Vec<f64>,
-    /// The surface between the directions: three of them each. Where a value is not finite there is a gap.
+    /// The triangles between the directions, three indices each. A non-finite value makes a gap.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The BRDF of the terms that are shown, in sr⁻¹. The ambient term has none.
+/// The BRDF of the displayed terms, in sr⁻¹. The ambient term has none.
 #[must_use]
 pub fn value(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
     let all = surface.response(l, v, frame);
@@ -54,10 +55,10 @@ pub fn value(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame, terms: Term
 }
 
 impl Lobe {
-    /// The lobe at a point with a frame, for light from `l`; all vectors are those of the room.
+    /// The lobe at a point with a frame, for light from `l`; all vectors are in the coordinates of the room.
     ///
     /// # Errors
-    /// If the user no longer wants it.
+    /// Returns [`Cancelled`] if the user cancels.
     pub fn new(
         surface: &dyn Surface,
         l: Vec3,
@@ -78,7 +79,8 @@ impl Lobe {
         Ok(lobe)
     }
 
-    /// Rings around the normal, one of them through the mirror direction, which is a direction of its own.
+    /// Rings around the normal, one of them through the mirror direction, which is itself one of the
+    /// directions.
     fn coarse(l: Vec3, frame: &Frame, value: &impl Fn(Vec3) -> f64) -> Self {
         let local = frame.to_local(l);
         let theta_i = f64::from(local.z.clamp(-1.0, 1.0).acos()).to_degrees();
@@ -104,7 +106,7 @@ impl Lobe {
             for ring in 1..down.len() {
                 let [a, b] = [at(ring - 1, k), at(ring - 1, k + 1)];
                 let [c, d] = [at(ring, k), at(ring, k + 1)];
-                // Both sides of the plane of incidence are alike.
+                // Both sides of the plane of incidence are treated alike.
                 triangles.extend(if k < AROUND / 2 {
                     [[a, c, d], [a, d, b]]
                 } else {
@@ -116,25 +118,26 @@ impl Lobe {
         Self { ways, values, triangles }
     }
 
-    /// The largest value; 0 if there is none above.
+    /// The largest value; 0 if none is positive.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max)
     }
 
-    /// True if some value is not finite: the surface has a gap there.
+    /// True if some value is not finite, so the surface has a gap.
     #[must_use]
     pub fn has_gaps(&self) -> bool {
         self.values.iter().any(|v| !v.is_finite())
     }
 
-    /// True if a value is below 0, which has no length.
+    /// True if a value is below 0, which cannot be shown as a length.
     #[must_use]
     pub fn is_negative(&self) -> bool {
         self.values.iter().any(|v| *v < 0.0)
     }
 
-    /// Halves the edges that leave the surface, seen on either scale. False if there are none, or directions enough.
+    /// Halves the edges that deviate from the surface on either scale. Returns false if there are none, or if
+    /// there are enough directions.
     fn refine(&mut self, value: &impl Fn(Vec3) -> f64, settled: &mut HashSet<[u32; 2]>) -> bool {
         let largest = self.largest();
         let log = span(Kind::Polar, true, true, &[largest]);
@@ -180,7 +183,7 @@ impl Lobe {
         !halves.is_empty() && self.ways.len() < MOST
     }
 
-    /// Puts a triangle, or its parts between the halves of its edges, into the surface.
+    /// Adds a triangle to the surface, or the parts into which its halved edges divide it.
     fn split(&mut self, [a, b, c]: [u32; 3], halves: &HashMap<[u32; 2], u32>) {
         let half = |a: u32, b: u32| halves.get(&[a.min(b), a.max(b)]).copied();
         let mut parts = |all: &[[u32; 3]]| self.triangles.extend_from_slice(all);
@@ -197,23 +200,24 @@ impl Lobe {
     }
 }
 
-/// The edges of a triangle, each alike from both sides.
+/// The edges of a triangle, each with the smaller index first, so that two triangles agree on a common edge.
 #[must_use]
 pub fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// The scale of some lobes together: from 0, or on a logarithmic scale from the smallest value, at most six powers of ten
-/// below the largest.
+/// The common scale of several lobes: from 0, or on a logarithmic scale from the smallest value, at most six
+/// powers of ten below the largest.
 #[must_use]
 pub fn scale(lobes: &[&Lobe], log: bool) -> Axis {
     let values = lobes.iter().flat_map(|lobe| &lobe.values).copied().filter(|v| v.is_finite());
     span(Kind::Polar, log, true, &values.collect::<Vec<_>>())
 }
 
-/// The longest value of a scale that does not follow the surface: white Lambert, 1/π sr⁻¹, or on a logarithmic scale 10 sr⁻¹.
+/// The end of a scale that does not depend on the surface: white Lambert, 1/π sr⁻¹, or on a logarithmic scale
+/// 10 sr⁻¹.
 const FULL: [f64; 2] = [std::f64::consts::FRAC_1_PI, 10.0];
-/// The start of a logarithmic scale that does not follow the surface, sr⁻¹.
+/// The start of a logarithmic scale that does not depend on the surface, sr⁻¹.
 const LEAST: f64 = 0.001;
 
 /// The scale of lobes that are compared over time: a darker surface has a smaller lobe, as it should. It ends at the BRDF of
@@ -223,7 +227,7 @@ const LEAST: f64 = 0.001;
 pub fn steady(lobes: &[&Lobe], log: bool, kept: Option<f64>) -> Axis {
     let own = scale(lobes, log);
     let least = FULL[usize::from(log)];
-    // White is no taller than itself, whatever the last digit of its value is.
+    // Rounding must not make white exceed its own scale.
     let taller = lobes.iter().any(|lobe| lobe.largest() > least * (1.0 + 1e-4));
     let end = if taller { own.to } else { least };
     let to = end.max(least).max(kept.unwrap_or(0.0));

@@ -1,5 +1,6 @@
-//! Curves of reflection models: the BRDF in the plane of incidence, directional albedo, the factors of microfacet models
-//! alone, image slices. No window: what a plot shows, as numbers and as figures.
+//! Curves of reflection models: the BRDF in the plane of incidence, directional albedo, single factors of
+//! microfacet models, image slices. Independent of the window: the content of plots, as numbers and as
+//! figures.
 //!
 //! ```
 //! use lights_camera_models::{
@@ -18,7 +19,7 @@
 //! assert!(sheet.figure().svg().contains("Phong"));
 //! ```
 //!
-//! [`data`] has the measured values to lay over them, [`draw`] the figures.
+//! [`data`] has measured values for comparison, [`draw`] the figures.
 
 mod adaptive;
 pub mod data;
@@ -44,7 +45,7 @@ pub use sheet::{Sheet, Style};
 pub use slice::{Slice, slice};
 pub use subject::{Subject, subjects_with};
 
-/// What all curves of a plot have in common.
+/// The settings shared by all curves of a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
     /// The quantity.
@@ -60,7 +61,7 @@ impl Setup {
     /// A setup with legal angles.
     ///
     /// # Errors
-    /// If the light is not above the surface, or an angle is not finite.
+    /// Returns an error if the light is not above the surface, or an angle is not finite.
     pub fn new(kind: Kind, theta_i: f64, phi_i: f64) -> Result<Self, CurveError> {
         if !(0.0..90.0).contains(&theta_i) {
             return Err(CurveError::Light(theta_i));
@@ -75,7 +76,7 @@ impl Setup {
 /// The number of points of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
-    /// A few, to be there at once.
+    /// A few points, for an immediate result.
     Coarse,
     /// As many as the curve needs to look smooth, more where it bends.
     Fine,
@@ -93,9 +94,9 @@ pub struct Point {
 /// A curve, or measured points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
-    /// By increasing angle.
+    /// The points by increasing angle.
     pub points: Vec<Point>,
     /// True if the points were measured, and nothing is known between them.
     pub measured: bool,
@@ -124,7 +125,7 @@ pub struct Missing {
 
 impl std::fmt::Display for Missing {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        /// The most gaps that are listed.
+        /// Maximum number of gaps that are listed.
         const LISTED: usize = 3;
         if self.all {
             return f.write_str("no value is a finite number");
@@ -142,16 +143,16 @@ impl std::fmt::Display for Missing {
     }
 }
 
-/// The reason why there is no curve.
+/// The reason why a curve cannot be calculated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurveError {
-    /// Light from below.
+    /// The light is below the surface.
     #[error("the angle of the light is {0}°, but it must be at least 0° and less than 90°")]
     Light(f64),
-    /// No direction.
+    /// The azimuth is not a direction.
     #[error("the azimuth of the light is {0}°, but it must be a finite number")]
     Azimuth(f64),
-    /// A model without the factor.
+    /// The model does not have the factor.
     #[error("{name} has no {what}")]
     NoFactor {
         /// The model.
@@ -159,7 +160,7 @@ pub enum CurveError {
         /// The factor.
         what: &'static str,
     },
-    /// Measured points do not give this quantity.
+    /// The measured points do not give this quantity.
     #[error("{name} was measured at single directions only: there is no {what} of it")]
     NotMeasured {
         /// The paint.
@@ -167,17 +168,17 @@ pub enum CurveError {
         /// The quantity.
         what: &'static str,
     },
-    /// Measured with the light elsewhere.
+    /// The points were measured with the light elsewhere.
     #[error("{name} was measured with the light at {known}, not at {asked}°")]
     OtherLight {
         /// The paint.
         name: String,
         /// The angles.
         known: String,
-        /// The angle that was asked for.
+        /// The requested angle.
         asked: f64,
     },
-    /// A model that the CPU cannot run.
+    /// The CPU cannot run the model.
     #[error("{name} cannot be run on the CPU: {why}")]
     NotOnCpu {
         /// The model.
@@ -185,7 +186,7 @@ pub enum CurveError {
         /// The reason.
         why: String,
     },
-    /// The user no longer wants it.
+    /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

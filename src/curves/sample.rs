@@ -12,7 +12,8 @@ use crate::{
     text::listed,
 };
 
-/// The largest angle of the viewer, degrees: at 90° a direction is in the surface, and every BRDF 0 by definition.
+/// The largest angle of the viewer, degrees: at 90° a direction is in the surface, and every BRDF is 0 by
+/// definition.
 pub(super) const GRAZING: f64 = 89.9;
 
 /// The direction to the viewer in the plane of incidence, and its angles θ and φ; positive angles are on the side of the
@@ -21,7 +22,7 @@ pub(super) fn viewer(angle: f64, phi_i: f64) -> (f64, f64) {
     if angle < 0.0 { (-angle, phi_i) } else { (angle, phi_i + 180.0) }
 }
 
-/// The direction from which the albedo is seen, with the cosine μ in 64 bits as `lcm albedo` takes it.
+/// The direction from which the albedo is seen, with the cosine μ in 64 bits, as in `lcm albedo`.
 fn albedo_view(angle: f64, phi: f64) -> Vec3 {
     let mu = angle.to_radians().cos();
     let sin = (1.0 - mu * mu).max(0.0).sqrt();
@@ -29,7 +30,7 @@ fn albedo_view(angle: f64, phi: f64) -> Vec3 {
     DVec3::new(sin * x, sin * y, mu).as_vec3()
 }
 
-/// The angles from one to another with equal steps, and some special ones up to grazing, by size.
+/// The angles of a range with equal steps, and some special ones up to grazing, in increasing order.
 fn grid(from: i32, to: i32, step: usize, special: &[f64]) -> Vec<f64> {
     let even = (from..=to).step_by(step).map(f64::from);
     let special = special.iter().copied().filter(|a| (-GRAZING..=GRAZING).contains(a));
@@ -42,7 +43,8 @@ fn grid(from: i32, to: i32, step: usize, special: &[f64]) -> Vec<f64> {
 /// The curve of a kind: of measured paints the points, of everything else a line.
 ///
 /// # Errors
-/// If there is no such curve of the subject, the CPU cannot run the model, or the user no longer wants it.
+/// Returns an error if the subject has no such curve, if the CPU cannot run the model, or if the user
+/// cancels.
 pub fn curve(
     subject: &Subject,
     setup: &Setup,
@@ -91,7 +93,7 @@ pub fn curve(
         (Kind::Fresnel, _) => grid(0, 90, 2, &[]),
         (Kind::Distribution, _) => grid(0, 89, 1, &[0.05, 0.5, GRAZING]),
         _ => {
-            // Where lobes stand: the mirror direction, the way back to the light, the normal.
+            // The positions of lobes: the mirror direction, the direction back to the light, the normal.
             let lobes = [theta_i, -theta_i, 0.0].into_iter().flat_map(around);
             grid(-88, 88, 2, &lobes.chain([-GRAZING, GRAZING]).collect::<Vec<_>>())
         }

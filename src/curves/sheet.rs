@@ -1,4 +1,4 @@
-//! A plot: curves with what they have in common, as a figure.
+//! A plot: curves with their shared settings, as a figure.
 
 use std::io;
 
@@ -9,20 +9,20 @@ use super::{
 };
 use crate::render::capture::png::{About, encode};
 
-/// Curves or slices of one kind, and how they are shown.
+/// Curves or slices of one kind, with display settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     /// The quantity and the angles.
     pub setup: Setup,
-    /// The channel; for curves luminance and for slices colour if there is none.
+    /// The displayed channel; by default luminance for curves, and colour for slices.
     pub channel: Option<Channel>,
     /// True for a logarithmic axis.
     pub log: bool,
     /// The curves.
     pub curves: Vec<Curve>,
-    /// The slices, where [`Kind::Slice`] is shown.
+    /// The slices, for [`Kind::Slice`].
     pub slices: Vec<Slice>,
-    /// The colour and the dash of each curve; where there are none, those of its place among the lines.
+    /// The colour and the dash of each curve; by default, those that follow from its position in the list.
     pub styles: Vec<Style>,
 }
 
@@ -36,14 +36,14 @@ pub struct Style {
 }
 
 impl Style {
-    /// The n-th style. With six colours and eight dashes there are 24 before the first comes back.
+    /// The n-th style. With six colours and eight dashes there are 24 different ones.
     #[must_use]
     pub fn nth(n: usize) -> Self {
         Self { colour: n % COLOURS.len(), line: Line::ALL[n % Line::ALL.len()] }
     }
 }
 
-/// The powers of ten of a logarithmic axis at most.
+/// Maximum number of decades of a logarithmic axis.
 const DECADES: f64 = 6.0;
 
 impl Sheet {
@@ -53,13 +53,13 @@ impl Sheet {
         Self { setup, channel: None, log: false, curves: Vec::new(), slices: Vec::new(), styles: Vec::new() }
     }
 
-    /// The value of a point as it is shown.
+    /// The displayed value of a point.
     #[must_use]
     pub fn value(&self, rgb: glam::Vec3) -> f64 {
         self.channel.unwrap_or(Channel::Luminance).of(rgb)
     }
 
-    /// What must be said of the values: those that are not finite, and those that the figure cannot show.
+    /// Remarks on non-finite values, and on values that the figure cannot show.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
@@ -116,7 +116,7 @@ impl Sheet {
         words
     }
 
-    /// True if the channels of some curve differ, so that it matters which one is shown.
+    /// True if the channels of some curve differ, so the choice of a channel matters.
     fn is_coloured(&self) -> bool {
         let grey = |rgb: &glam::Vec3| rgb.x == rgb.y && rgb.y == rgb.z || !rgb.is_finite();
         self.curves.iter().flat_map(|curve| &curve.points).any(|p| !grey(&p.rgb))
@@ -167,7 +167,7 @@ impl Sheet {
     /// The figure as the bytes of a PNG file.
     ///
     /// # Errors
-    /// If the picture is too large to be encoded.
+    /// Returns an error if the picture is too large to be encoded.
     pub fn png(&self) -> io::Result<Vec<u8>> {
         let picture = self.figure().picture();
         let mut bytes = Vec::new();
@@ -176,7 +176,7 @@ impl Sheet {
         Ok(bytes)
     }
 
-    /// What the axis cuts off.
+    /// Remarks on values beyond the axis.
     fn beyond(&self, axis: &Axis) -> Vec<String> {
         let largest = |curve: &Curve| {
             let values = curve.points.iter().map(|p| self.value(p.rgb));
@@ -213,7 +213,7 @@ impl Sheet {
         Slices { title, heading, tiles, side: SIDE, columns, notes }
     }
 
-    /// The series of the curves: each with a colour and a dash of its own, black for what was measured.
+    /// The series of the curves: each with its own colour and dash, and black for measured data.
     fn series(&self) -> Vec<Series> {
         let marks = [Mark::Ring, Mark::Square, Mark::Triangle, Mark::Cross];
         let (mut lines, mut measured) = (0, 0);
@@ -233,8 +233,8 @@ impl Sheet {
         self.curves.iter().enumerate().map(each).collect()
     }
 
-    /// The largest angle whose values the axis must hold. Some models rise without limit towards grazing angles, and the
-    /// rest of a curve shall not be flat because of its last degree.
+    /// The largest angle whose values must fit on the axis. Some models rise without limit towards grazing
+    /// angles, and the last degree must not flatten the rest of a curve.
     fn limit(&self) -> f64 {
         let Setup { kind, theta_i, .. } = self.setup;
         let rises = kind == Kind::Albedo || kind.is_lobe() && theta_i <= 70.0;
@@ -251,7 +251,8 @@ impl Sheet {
     }
 }
 
-/// The axis of a quantity that is wide enough for some finite values; `from_centre` has no room for those below 0.
+/// An axis of the quantity, wide enough for the finite values; `from_centre` leaves no room for negative
+/// values.
 pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> Axis {
     let top = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if log {
@@ -276,7 +277,7 @@ pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> 
     Axis::new(kind.quantity(), from, to, 6)
 }
 
-/// The next number that is one of some times a power of ten.
+/// The next larger number that is one of the steps times a power of ten.
 fn round_up(v: f64, steps: &[f64]) -> f64 {
     let power = 10f64.powf(v.log10().floor());
     let found = steps.iter().map(|s| s * power).find(|s| *s >= v * (1.0 - 1e-9));

@@ -6,16 +6,16 @@ use rayon::prelude::*;
 use super::{Channel, CurveError, Detail, Kind, Setup, Subject};
 use crate::{optics::colour::srgb_encode8, progress::Progress};
 
-/// `f` over the half angle θ_h, from left to right, and the difference angle θ_d, from bottom to top, at φ_d = 90°:
-/// highlights stand at the left, the Fresnel effect at the top, retroreflection at the bottom.
+/// `f` over the half angle θ_h, from left to right, and the difference angle θ_d, from bottom to top, at φ_d
+/// = 90°: highlights are at the left, the Fresnel effect at the top, and retroreflection at the bottom.
 ///
 /// B. Burley (2012), *Physically-Based Shading at Disney*; S. Rusinkiewicz (1998), *A New Change of Variables for
 /// Efficient BRDF Representation*.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
-    /// The name of its subject.
+    /// The name of the subject.
     pub name: String,
-    /// Pixels across and down.
+    /// The number of pixels across and down.
     pub side: u32,
     /// The BRDF at the centre of each pixel, row by row from the top.
     pub values: Vec<Vec3>,
@@ -53,7 +53,7 @@ impl Slice {
     }
 
     /// The slice as a picture of RGB bytes: π f, sRGB-encoded, white at 1; or log₁₀ π f from −2, black, to 2, white.
-    /// What is not finite is a pattern of magenta and black.
+    /// Non-finite values are drawn as a pattern of magenta and black.
     #[must_use]
     pub fn rgb8(&self, channel: Option<Channel>, log: bool) -> Vec<u8> {
         let side = self.side.max(1) as usize;
@@ -74,10 +74,10 @@ impl Slice {
     }
 }
 
-/// Powers of ten from grey to white and from grey to black.
+/// The number of powers of ten from grey to white, and from grey to black.
 pub(super) const LOG_RANGE: f32 = 2.0;
 
-/// π f in the channel that is shown.
+/// π f in the displayed channel.
 fn shown(f: Vec3, channel: Option<Channel>) -> Vec3 {
     let f = channel.map_or(f, |channel| Vec3::splat(channel.of(f) as f32));
     std::f32::consts::PI * f
@@ -86,7 +86,7 @@ fn shown(f: Vec3, channel: Option<Channel>) -> Vec3 {
 /// The image slice of a subject.
 ///
 /// # Errors
-/// If it is a paint, the CPU cannot run the model, or the user no longer wants it.
+/// Returns an error if the subject is a paint, if the CPU cannot run the model, or if the user cancels.
 pub fn slice(
     subject: &Subject,
     setup: &Setup,
@@ -96,7 +96,7 @@ pub fn slice(
     subject.has(Kind::Slice)?;
     subject.runs()?;
     let side = if detail == Detail::Fine { 256 } else { 48 };
-    // The rows between two looks at the wish to stop.
+    // The number of rows between two checks for cancellation.
     let step = side / 16;
     let mut slice = Slice { name: subject.name.clone(), side, values: Vec::new() };
     for row in (0..side).step_by(step as usize) {

@@ -1,4 +1,4 @@
-//! What a curve is of.
+//! The subject of a curve.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::{
 /// A model with its parameters, a measured paint, or the fit to a measured material.
 #[derive(Clone)]
 pub struct Subject {
-    /// Its name in the legend.
+    /// The name in the legend.
     pub name: String,
     source: Source,
 }
@@ -32,7 +32,7 @@ enum Source {
     Paint(&'static str),
 }
 
-/// A parameter with its value, in words; none if there are none for it.
+/// A parameter with its value, in words; `None` if it cannot be put in words.
 fn setting(parameter: &'static Parameter, value: &Value) -> Option<String> {
     let (symbol, text) = caption::value(parameter, value)?;
     if matches!(parameter.kind, ParameterKind::Choice { .. }) {
@@ -48,11 +48,11 @@ fn setting(parameter: &'static Parameter, value: &Value) -> Option<String> {
     Some(format!("{name} = {text}{unit}"))
 }
 
-/// Behind the names of measured paints.
+/// The suffix of the names of measured paints.
 pub(super) const MEASURED: &str = " (measured)";
 
 impl Subject {
-    /// A model with parameters. Its name says which differ from their defaults.
+    /// A model with parameters. The name lists those that differ from their defaults.
     #[must_use]
     pub fn model(entry: &ModelEntry, values: &Values, encoding: Encoding) -> Self {
         let changed = entry.parameters.iter().filter_map(|parameter| {
@@ -68,7 +68,7 @@ impl Subject {
     /// Measured data by name: a paint of [`PAINTS`], or a material of the MERL database, as fitted.
     ///
     /// # Errors
-    /// The names that there are.
+    /// Returns the existing names.
     pub fn measured(id: &str) -> Result<Self, String> {
         if let Some((id, name)) = PAINTS.iter().find(|(known, _)| *known == id) {
             return Ok(Self { name: format!("{name}{MEASURED}"), source: Source::Paint(id) });
@@ -98,7 +98,7 @@ impl Subject {
         }
     }
 
-    /// Fails if the CPU cannot run the model, or could not at the last attempt.
+    /// Returns an error if the CPU cannot run the model, or could not at the last attempt.
     pub(super) fn runs(&self) -> Result<(), CurveError> {
         match &self.source {
             Source::Model { entry, .. } => entry.not_on_cpu().map_or(Ok(()), |why| {
@@ -128,7 +128,7 @@ impl Subject {
         }
     }
 
-    /// A factor of the model alone.
+    /// A single factor of the model.
     pub(super) fn factor(&self, factor: Factor) -> Option<Vec3> {
         match &self.source {
             Source::Model { surface, .. } => surface.factor(factor),
@@ -136,10 +136,10 @@ impl Subject {
         }
     }
 
-    /// Fails if there is no such curve of it.
+    /// Fails if the subject has no curve of this kind.
     ///
     /// # Errors
-    /// The reason.
+    /// Returns the reason.
     pub fn has(&self, kind: Kind) -> Result<(), CurveError> {
         let asked = match kind {
             Kind::Fresnel => Some(Factor::Fresnel { cos_d: 1.0 }),
@@ -160,7 +160,7 @@ impl Subject {
     }
 }
 
-/// The ids of the models that have curves of a kind.
+/// The ids of the models that have curves of this kind.
 #[must_use]
 pub fn subjects_with(kind: Kind, registry: &Registry) -> Vec<&'static str> {
     let has =
@@ -168,8 +168,8 @@ pub fn subjects_with(kind: Kind, registry: &Registry) -> Vec<&'static str> {
     registry.models().iter().filter(has).map(|entry| entry.declaration.id).collect()
 }
 
-/// The measured values of a paint in the plane of incidence, by increasing angle, for the light at an angle; or the
-/// angles at which it was measured.
+/// The measured values of a paint in the plane of incidence, by increasing angle of the viewer, for this
+/// angle of the light. The error is the angles of the light at which the paint was measured.
 pub(super) fn in_plane(id: &str, theta_i: f64) -> Result<Vec<(f64, Vec3)>, Vec<f32>> {
     let all = data::paint(id);
     let mut points: Vec<_> = all

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{Channel, Kind, Setup, Sheet, sample::viewer};
 
-/// A cell, in quotation marks where it must be.
+/// A cell, in quotation marks if necessary.
 fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -16,9 +16,9 @@ fn cell(text: &str) -> String {
 }
 
 impl Sheet {
-    /// Every point as a line of CSV: the name of its curve, its angles in degrees, and its values as calculated, in all
-    /// channels whichever is shown. `angle` is that of the horizontal axis. The BRDF is in sr⁻¹; what is no number is
-    /// `NaN` or `inf`, as `lcm evaluate` writes it.
+    /// Every point as a line of CSV: the name of its curve, its angles in degrees, and its values as
+    /// calculated, in all channels, whichever is shown. `angle` is the angle of the horizontal axis. The BRDF
+    /// is in sr⁻¹; non-finite values are `NaN` or `inf`, as `lcm evaluate` writes them.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from("curve,");

@@ -34,7 +34,7 @@ fn names_say_what_differs() {
         subject("phong", &set).name,
         "Phong, base colour = (255, 128, 0), specular coefficient = 0.3, α = 20"
     );
-    // What has no effect is not said.
+    // Settings without effect are not mentioned.
     let set = [("fresnel", Value::Choice("none".into())), ("ior", Value::Triple([2.0; 3]))];
     assert_eq!(subject("microfacet", &set).name, "Microfacet, no Fresnel term");
 }

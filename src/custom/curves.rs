@@ -30,7 +30,7 @@ use crate::{
     },
 };
 
-/// The most curves of a model: each takes 17 quadruples of the row of an object.
+/// Maximum number of curves of a model: each takes 17 quadruples of an object's row.
 const MOST: usize = 8;
 const RULE: &str = "it must be an object of curves: { \"coat\": { \"model\": \"microfacet\", \"alpha_x\": \"coat_alpha\" } }";
 
@@ -46,7 +46,7 @@ pub(super) struct Curve {
 #[derive(Clone)]
 enum Setting {
     Fixed(Value),
-    /// That of the custom model's parameter of the same type.
+    /// The value of the custom model's parameter of the same type.
     Of(Parameter),
 }
 
@@ -56,17 +56,17 @@ pub(super) struct Reads {
     /// The built-in model whose lobe and curves are read, with the parameters of the custom model by name.
     pub lobe: Option<ModelEntry>,
     pub own: Arc<[Curve]>,
-    /// Where the model reflects most, which the light loop reads.
+    /// The directions in which the model reflects most, for the light loop.
     pub lobes: Arc<SaidLobes>,
 }
 
 impl Reads {
-    /// True if there is any.
+    /// True if the model reads any curve.
     pub fn any(&self) -> bool {
         self.lobe.is_some() || !self.own.is_empty()
     }
 
-    /// Their names, in the order of the row.
+    /// The curves' names, in the order of the row.
     pub fn named(&self) -> &'static [NamedCurve] {
         let of_model = self.lobe.as_ref().map_or(&[][..], ModelEntry::curves);
         let own = self.own.iter().map(|curve| NamedCurve { name: curve.name, spacing: Spacing::Cubic });
@@ -80,7 +80,7 @@ impl Reads {
         values: &Values,
         encoding: Encoding,
     ) -> (LobeAlbedo, Vec<Vec4>) {
-        // A model of curves alone has no lobe; its row holds that which reflects everything.
+        // A model that has curves but no lobe: its row contains the lobe that reflects everything.
         let (lobe, mut all) = self.lobe.as_ref().map_or_else(Default::default, |model| {
             let surface = model.instantiate(&declared_alone(parameters, values), encoding);
             (surface.lobe().unwrap_or_default(), model.curves_of(&*surface))
@@ -96,7 +96,7 @@ impl Curve {
         for (parameter, setting) in &self.settings {
             let value = match setting {
                 Setting::Fixed(value) => Some(value.clone()),
-                // Beyond the range of the built-in model, the nearest value that it knows.
+                // Values outside the built-in model's range are clamped to it.
                 Setting::Of(own) => {
                     let value = values.get(own);
                     if parameter.allows(&value) { Some(value) } else { parameter.nearest(&value) }
@@ -120,8 +120,8 @@ impl Curve {
 }
 
 impl Reader<'_> {
-    /// The curves by their names, each with its model and the settings of its parameters. `taken` are the names of the
-    /// curves of the model whose lobe is read.
+    /// The curves by name, each with its model and parameter settings. `taken` are the curve names of the
+    /// model whose lobe is read.
     pub(super) fn curves(
         &mut self,
         fields: &Fields,
@@ -215,7 +215,7 @@ impl Reader<'_> {
     }
 }
 
-/// True if the values of one parameter may serve as those of the other.
+/// True if values of one parameter are valid for the other.
 fn alike(one: &Parameter, other: &Parameter) -> bool {
     use ParameterKind::{Choice, Colour, Integer, Number, Triple};
     match (&one.kind, &other.kind) {

@@ -41,18 +41,18 @@ const MODEL_KEYS: &[&str] = &[
 ];
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
-/// Other words for keys, for suggestions.
+/// Aliases of keys, for suggestions.
 const OTHER_WORDS: &[(&str, &str)] =
     &[("title", "name"), ("description", "summary"), ("options", "choices"), ("params", "parameters")];
-/// The longest name of a model, symbol or label, characters.
+/// Maximum length of a model name, symbol or label, in characters.
 pub(super) const LONGEST_NAME: usize = 60;
-/// The most brackets of a declaration, and so its deepest nesting.
+/// Maximum number of brackets in a declaration, and so its maximum nesting depth.
 const MOST_BRACKETS: usize = 600;
-/// The longest declaration, bytes.
+/// Maximum size of a declaration, in bytes.
 const MOST_BYTES: usize = 64 << 10;
-/// The most errors reported; in longer lists, later errors follow from an early one.
+/// Maximum number of reported errors; in longer lists, later errors follow from earlier ones.
 const MOST_MISTAKES: usize = 50;
-/// The longest text, characters.
+/// Maximum length of a text, in characters.
 pub(super) const LONGEST_TEXT: usize = 2000;
 
 /// The contents of a declaration.
@@ -66,9 +66,9 @@ pub(super) struct Said {
     pub anisotropic: bool,
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
-    /// Where it reflects most.
+    /// The directions in which the model reflects most.
     pub lobes: SaidLobes,
-    /// Further curves, of other built-in models.
+    /// Additional curves, of other built-in models.
     pub curves: Vec<Curve>,
     pub parameters: &'static [Parameter],
     pub groups: &'static [Group],
@@ -76,10 +76,10 @@ pub(super) struct Said {
     pub end: usize,
 }
 
-/// Reads the declaration of the model with that id.
+/// Reads the declaration of the model with this id.
 ///
 /// # Errors
-/// Everything that is wrong with it.
+/// Returns every error in the declaration.
 pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Vec<Mistake>> {
     let comment = comment(text).map_err(|mistake| vec![mistake])?;
     // The parser recurses as deep as the brackets.
@@ -118,7 +118,7 @@ pub(super) fn written<'a>(json: &'a str, key: &'static str) -> Option<&'a str> {
     json.get(range.start..range.end)
 }
 
-/// With a lower-case first letter.
+/// The text with a lower-case first letter.
 fn lower(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
@@ -144,7 +144,7 @@ impl json::Reader for Reader<'_> {
         self.mistake(at, format!("{place} {found}{rule}"));
     }
 
-    /// Short lists as written.
+    /// The value as written, if it is a short list.
     fn shown(&self, value: &Ast) -> String {
         match value {
             Ast::Array(list) if list.elements.len() <= 4 => shortened(value.text(self.json)),
@@ -167,7 +167,7 @@ impl Reader<'_> {
         self.mistakes.push((self.start + at, what.into()));
     }
 
-    /// A given key that is superfluous or wrong.
+    /// Reports a key that is superfluous or wrong.
     pub(super) fn misplaced(&mut self, value: Cursor, predicate: &str) {
         self.report(value.start(), value.path(), None, predicate);
     }
@@ -220,7 +220,7 @@ impl Reader<'_> {
         }
     }
 
-    /// One of several words, each with its value.
+    /// One of several words, mapped to its value.
     pub(super) fn word<T: Copy>(
         &mut self,
         value: Cursor,
@@ -271,7 +271,7 @@ impl Reader<'_> {
         intern::equation(parts)
     }
 
-    /// A line of an equation.
+    /// An equation line.
     fn mathematics(&mut self, fields: &Fields, key: &str) -> Option<&'static str> {
         let text = self.words(fields, key, mathematics::LONGEST_LINE)?;
         let Some((_, what)) = mathematics::beyond_limits(text) else { return Some(text) };
@@ -347,7 +347,7 @@ impl Reader<'_> {
         intern::parameters(parameters)
     }
 
-    /// The groups by their names, each with the names of its parameters.
+    /// The groups by name, each with the names of its parameters.
     fn groups(&mut self, fields: &Fields, parameters: &[Parameter]) -> &'static [Group] {
         const RULE: &str = "it must be an object of lists: { \"Coat\": [\"coat_weight\", \"coat_colour\"] }";
         let Some(value) = fields.get("groups") else { return intern::groups(Vec::new()) };
@@ -376,7 +376,7 @@ impl Reader<'_> {
             starts.push(property.start());
             groups.push(Group { name: intern::text(name), parameters: intern::names(names) });
         }
-        // Of parameters that were refused, nothing is said twice.
+        // Rejected parameters have been reported already.
         if self.mistakes.is_empty()
             && let Some((i, problem)) = Group::problem(&groups, parameters)
         {
@@ -389,14 +389,14 @@ impl Reader<'_> {
         self.registry.models().iter().filter(|m| self.registry.custom_file(m.declaration.id).is_none())
     }
 
-    /// The parameter of that name in some built-in model.
+    /// The built-in parameter with this name, from any model.
     pub(super) fn built_in(&self, name: &str) -> Option<&'static Parameter> {
         self.built_in_models().find_map(|m| m.parameter(name))
     }
 
     fn shared(&mut self, value: Cursor, name: &str) -> Option<Parameter> {
         if let Some(parameter) = self.built_in(name) {
-            // Its condition concerns the parameters of that model.
+            // Its condition refers to parameters of that model.
             return Some(Parameter { used_when: None, ..parameter.clone() });
         }
         let known = self.built_in_models().flat_map(|m| m.parameters).map(|p| (p.name, p.name));

@@ -7,14 +7,14 @@ use crate::{
     shader::check::ShaderProblem,
 };
 
-/// The largest file that is read, bytes. Its declaration and its WGSL have limits of their own, for length and depth:
+/// Maximum size of a file, in bytes. Its declaration and its WGSL have separate limits of length and depth:
 /// [`LIMITS`](crate::shader::limits::LIMITS).
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// The text of a file called `name` in messages, without a byte order mark.
+/// Reads a file, called `name` in messages, and removes a byte order mark.
 ///
 /// # Errors
-/// If it is missing, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
+/// Returns an error if the file is missing, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
 pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
     let failed = |message: String| ShaderProblem {
         file: name.to_owned(),

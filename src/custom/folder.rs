@@ -1,8 +1,8 @@
-//! The folder of custom models. A model is known by its file name alone, by its declaration, or completely; only as
-//! much is read as is needed, so that neither many files nor a bad one affect the others.
+//! The folder of custom models. A model is known by its file name alone, by its declaration, or completely.
+//! Files are read only as far as needed, so that neither many files nor a bad one affects the others.
 //!
-//! [`read_model`] reads one complete model, [`declare_rest`] the declarations of all others, many at a time. The
-//! registry keeps the results; an unchanged file is not read again.
+//! [`read_model`] reads one complete model, [`declare_rest`] the declarations of all others at once. The
+//! registry keeps the results; unchanged files are not read again.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -32,12 +32,12 @@ pub type Problems = Vec<(PathBuf, ShaderProblem)>;
 pub enum Reading {
     /// The model was already completely known.
     Known,
-    /// The folder has no model with that id.
+    /// The folder has no model with this id.
     Missing,
-    /// The model was read, and the registry knows it.
+    /// The model was read and is now in the registry.
     Read,
-    /// It has errors. The registry keeps them (see [`Registry::broken_model`]), and keeps its earlier knowledge of the
-    /// model.
+    /// The model has errors. The registry records them (see [`Registry::broken_model`]) and keeps what it
+    /// knew of the model.
     Broken(Problems),
 }
 
@@ -46,19 +46,19 @@ pub enum Reading {
 pub struct Declared {
     /// The number of files read.
     pub files: usize,
-    /// Problems of declarations, of unreadable files, and of the folder, in the order of the names.
+    /// Problems in declarations, unreadable files and the folder, sorted by name.
     pub problems: Problems,
 }
 
-/// The WGSL files in a folder, by name; none if there is no folder.
+/// The WGSL files in a folder, sorted by name; empty if the folder does not exist.
 ///
 /// # Errors
-/// If the folder cannot be read.
+/// Returns an error if the folder cannot be read.
 pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(names_in(folder)?.into_iter().filter(|path| path.is_file()).collect())
 }
 
-/// The same with what only has such a name: folders, pipes, links to nothing.
+/// Like [`files_in`], but includes everything with a matching name: folders, pipes, dangling links.
 fn names_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -77,8 +77,8 @@ fn names_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(names)
 }
 
-/// Reads the complete model with that id, and the files that it imports, if the registry's folder has it and the
-/// registry does not.
+/// Reads the complete model with this id and the files that it imports, if it is in the registry's folder but
+/// not yet known completely.
 pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     if registry.model(id).is_some() && registry.unread_file(id).is_none() {
         return Reading::Known;
@@ -86,7 +86,7 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     let Some(path) = registry.unread_file(id).map(Path::to_owned).or_else(|| file_of(id, registry)) else {
         return Reading::Missing;
     };
-    // A model found to be bad is not declared later.
+    // A broken model is not declared later.
     if let Some(print) = Print::of(&path) {
         registry.note_seen(&path, print);
     }
@@ -115,10 +115,10 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     }
 }
 
-/// The texts of shaders and models, plus one more model of which only the declaration was read so far.
+/// The shader and model sources, plus one model of which only the declaration was known.
 ///
 /// # Errors
-/// If its file cannot be read.
+/// Returns an error if its file cannot be read.
 pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProblem> {
     let mut sources = registry.sources().clone();
     if let Some(path) = registry.unread_file(id) {
@@ -127,27 +127,27 @@ pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProb
     Ok(sources)
 }
 
-/// What has the name of the file of a model unknown to the registry; it may be no file.
+/// The path that the file of an unknown model would have, if it exists; it may not be a regular file.
 fn file_of(id: &str, registry: &Registry) -> Option<PathBuf> {
     let file = registry.custom_folder()?.join(id).with_extension(EXTENSION);
     (is_id(id) && fs::symlink_metadata(&file).is_ok()).then_some(file)
 }
 
-/// True if a text says nothing: it is no model, and nothing that models share.
+/// True if a text is empty: neither a model nor shared functions.
 fn is_empty(text: &str) -> bool {
     text.trim().is_empty()
 }
 
-/// What is wrong with an empty file.
+/// The problem with an empty file.
 fn empty(path: &Path, text: &str) -> ShaderProblem {
     let message = "the file is empty; a model begins with a comment /* lcm … */ and defines fn response";
     problem(path, text, (0, message.to_owned()))
 }
 
-/// Notes why a file gives no model.
+/// Records why a file does not contain a valid model.
 fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
-        // It may be in a file that the model imports.
+        // The error may be in an imported file.
         let other = (problem.file != source_path(id)).then_some(&problem.file);
         let file = other.map_or(path.shown().to_string(), |source| {
             registry.path_on_disk(source).map_or(source.clone(), |path| path.shown().to_string())
@@ -158,14 +158,14 @@ fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     Reading::Broken(problems)
 }
 
-/// Reads the files in the folder imported by edited shaders, which may do so too.
+/// Reads the files in the folder that edited shaders import, and the imports of those files.
 pub fn import_for_shaders(registry: &mut Registry) -> Problems {
     let sources = registry.sources().clone();
     let edited = sources.edited().filter(|path| !path.starts_with(MODELS));
     edited.flat_map(|path| import(path, sources.get(path).unwrap_or_default(), registry)).collect()
 }
 
-/// Reads the files in the folder imported by a text, and their imports, unless they are known.
+/// Reads the files in the folder that a text imports, and their imports, unless already known.
 fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     let mut problems = Vec::new();
     let mut looked_at = HashSet::from([path.to_owned()]);
@@ -190,7 +190,7 @@ fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     problems
 }
 
-/// A file that was searched for a declaration.
+/// The result of searching a file for a declaration.
 enum Found {
     /// A model.
     Model(Box<CustomModel>),
@@ -200,14 +200,14 @@ enum Found {
     Shared(String),
 }
 
-/// Reads the declarations of all models in a folder, which becomes the registry's folder.
+/// Reads the declarations of all models in a folder, and makes it the registry's folder.
 pub fn declare_folder(folder: &Path, registry: &mut Registry) -> Declared {
     registry.set_custom_folder(folder);
     declare_rest(registry)
 }
 
-/// Reads the declarations of models in the registry's folder that are still unknown, with shared files. Unchanged files
-/// read before are skipped, and so are completely known models.
+/// Reads shared files and the declarations of unknown models in the registry's folder. Skips unchanged files
+/// and completely known models.
 pub fn declare_rest(registry: &mut Registry) -> Declared {
     let Some(folder) = registry.custom_folder() else { return Declared::default() };
     let (paths, others): (Vec<_>, Vec<_>) = match names_in(folder) {
@@ -261,7 +261,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
             }
             Found::Broken(wrong) => wrong,
             Found::Model(model) => {
-                // Each was read as if alone; they must agree on the types of parameters.
+                // Each file was checked on its own; together they must agree on parameter types.
                 let agrees = model.entry.parameters.iter().all(|p| {
                     let kind = discriminant(&p.kind);
                     *kinds.entry(p.name).or_insert(kind) == kind
@@ -295,7 +295,7 @@ fn look(path: &Path, registry: &Registry) -> Found {
             Ok(model) => Found::Model(Box::new(model)),
             Err(problems) => Found::Broken(problems),
         },
-        // One that was a model is none any more.
+        // The file was a model before, and no longer is.
         Ok(text) if is_empty(&text) && id_of(path).is_none_or(|id| registry.model(id).is_none()) => {
             Found::Broken(vec![empty(path, &text)])
         }

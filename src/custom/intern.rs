@@ -15,7 +15,7 @@ use crate::{
 /// The stored values of one type.
 type Kept<T> = Mutex<Vec<&'static T>>;
 
-/// The stored value equal to another; or the other itself, now stored.
+/// The stored value equal to `new`, which is stored if there was none.
 fn kept<T: PartialEq + ?Sized, O>(all: &'static Kept<T>, new: O, keep: fn(O) -> &'static T) -> &'static T
 where
     O: AsRef<T>,

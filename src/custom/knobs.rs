@@ -34,7 +34,7 @@ const PARAMETER_KEYS: &[&str] = &[
 ];
 /// The types of parameters.
 const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice", "flag"];
-/// The default symbol of a parameter: a Greek letter if the name begins with the name of one.
+/// The default symbol of a parameter: a Greek letter if the parameter's name begins with that letter's name.
 fn symbol_of(name: &str) -> String {
     const GREEK: &[(&str, &str)] = &[
         ("alpha", "α"),
@@ -114,7 +114,8 @@ impl Reader<'_> {
         (self.mistakes.len() == before).then_some(parameter)
     }
 
-    /// A material keeps its numbers when the model is exchanged, so they mean the same everywhere.
+    /// Reports a unit that differs from that of the same parameter elsewhere: a material keeps its numbers
+    /// when the model changes, so their meaning must not change.
     fn same_unit_elsewhere(&mut self, named: Cursor, parameter: &Parameter) {
         let users = self.registry.material_users().filter(|(id, _)| *id != self.id);
         let other = users.flat_map(|(id, all)| all.iter().map(move |p| (id, p))).find_map(|(id, p)| {
@@ -130,7 +131,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Parameters are shared by name, so the same name has the same type everywhere.
+    /// Reports a type that differs from that of the same parameter elsewhere: parameters are shared by name.
     fn same_type_elsewhere(&mut self, named: Cursor, name: &str, kind: Option<&ParameterKind>) {
         let Some(kind) = kind else { return };
         let other = self.registry.models().iter().filter(|m| m.declaration.id != self.id).find_map(|m| {
@@ -184,7 +185,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A finite number in 32 bits.
+    /// A finite 32-bit number.
     fn number(&mut self, value: Cursor) -> Option<f32> {
         let number = value.number().filter(|n| n.is_finite());
         if number.is_none() {
@@ -193,7 +194,7 @@ impl Reader<'_> {
         number
     }
 
-    /// A whole number that is exact as a 32-bit float, as in the shader.
+    /// An integer that a 32-bit float represents exactly, as in the shader.
     fn whole(&mut self, value: Cursor) -> Option<i64> {
         const EXACT: i64 = 1 << 24;
         let number = value.integer().filter(|n| (-EXACT..=EXACT).contains(n));
@@ -221,7 +222,7 @@ impl Reader<'_> {
         }
     }
 
-    /// An optional field; `None` only if it is wrong.
+    /// An optional field; `None` only if it is invalid.
     fn given<T>(
         &mut self,
         fields: &Fields,
@@ -231,7 +232,7 @@ impl Reader<'_> {
         fields.get(key).map_or(Some(None), |value| read(self, value).map(Some))
     }
 
-    /// Smallest and largest value, from `range`, or from `min` or `above`, and `max`.
+    /// Minimum and maximum, from `range`, or from `min` or `above`, and `max`.
     fn limits<T: Copy + PartialOrd>(
         &mut self,
         fields: &Fields,

@@ -1,7 +1,7 @@
 //! Lobes of custom models: the directions from which they reflect most, for sampling light with extent.
 //!
-//! `"lobes": ["cosine", { "shape": "ggx", "roughness": "roughness", "weight": "k_s" }]` or `"lobes": "phong"`, those of a
-//! built-in model with the parameters of the same names.
+//! `"lobes": ["cosine", { "shape": "ggx", "roughness": "roughness", "weight": "k_s" }]` or `"lobes":
+//! "phong"`, the lobes of a built-in model with parameters of the same names.
 
 use super::declaration::Reader;
 use crate::{
@@ -17,20 +17,20 @@ use crate::{
     },
 };
 
-/// The keys of a lobe: its width, and others.
+/// The keys that give the width of a lobe.
 const WIDTHS: &[&str] = &["alpha", "roughness", "exponent"];
 const KEYS: &[&str] = &["shape", "weight", "alpha", "roughness", "exponent"];
 const RULE: &str = "it must be a list such as [\"cosine\", { \"shape\": \"ggx\", \"alpha\": 0.3 }], or the id of a built-in model whose lobes fit";
 
-/// What a declaration says of lobes.
+/// The lobes given by a declaration.
 #[derive(Clone, Default)]
 pub(super) enum SaidLobes {
-    /// Nothing.
+    /// No lobes declared.
     #[default]
     Nothing,
-    /// Those of a built-in model, with the parameters of the custom model by name.
+    /// The lobes of a built-in model, with the custom model's parameters by name.
     Of(ModelEntry),
-    /// These, with their weights.
+    /// These lobes, with their weights.
     These(Vec<(Shape, Number)>),
 }
 
@@ -38,7 +38,7 @@ pub(super) enum SaidLobes {
 #[derive(Clone)]
 pub(super) enum Shape {
     Cosine,
-    /// A width along tangent and bitangent, and how it is given.
+    /// Widths along tangent and bitangent, and how they are given.
     Ggx(Width, [Number; 2]),
     Power(Number),
 }
@@ -46,13 +46,13 @@ pub(super) enum Shape {
 #[derive(Clone, Copy)]
 pub(super) enum Width {
     Alpha,
-    /// Its square is α.
+    /// Roughness; its square is α.
     Roughness,
-    /// Of half vectors.
+    /// Exponent of a lobe of half vectors.
     Exponent,
 }
 
-/// A number, or the parameter with it.
+/// A number, or a parameter that provides one.
 #[derive(Clone)]
 pub(super) enum Number {
     Fixed(f32),
@@ -92,7 +92,7 @@ impl Shape {
 }
 
 impl SaidLobes {
-    /// The lobes for some values of the model's parameters.
+    /// The lobes for these values of the model's parameters.
     pub fn lobes(&self, parameters: &[Parameter], values: &Values, encoding: Encoding) -> Lobes {
         match self {
             Self::Nothing => Lobes::default(),
@@ -107,7 +107,7 @@ impl SaidLobes {
     }
 }
 
-/// The values of declared parameters alone: others must not affect the look of a model.
+/// The values of declared parameters only: others must not affect the appearance of a model.
 pub(super) fn declared_alone(parameters: &[Parameter], values: &Values) -> Values {
     let mut own = Values::default();
     for p in parameters {
@@ -140,7 +140,7 @@ impl Reader<'_> {
     fn lobe_shape(&mut self, value: Cursor, parameters: &[Parameter]) -> Option<(Shape, Number)> {
         const SHAPES: &[(&str, &str)] = &[("cosine", "cosine"), ("ggx", "ggx"), ("power", "power")];
         if value.text().is_some() {
-            // The only one that needs no width.
+            // The only shape without a width.
             if value.text() == Some("cosine") {
                 return Some((Shape::Cosine, Number::Fixed(1.0)));
             }
@@ -208,8 +208,8 @@ impl Reader<'_> {
         Some((shape, weight))
     }
 
-    /// A number that is not negative, or the name of a parameter with a number; of a weight, also with a colour or triple, whose
-    /// mean it is.
+    /// A non-negative number, or the name of a numeric parameter; for a weight, also the mean of a colour or
+    /// triple parameter.
     fn lobe_number(&mut self, value: Cursor, parameters: &[Parameter], mean: bool) -> Option<Number> {
         let fits = |p: &&Parameter| match p.kind {
             ParameterKind::Number { .. } | ParameterKind::Integer { .. } => true,

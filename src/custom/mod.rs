@@ -63,20 +63,20 @@ pub fn source_path(id: &str) -> String {
     format!("models/{id}.{EXTENSION}")
 }
 
-/// The id of the model in a file: the file name without the extension.
+/// The id of the model in a file: the file name without its extension.
 #[must_use]
 pub fn id_of(path: &Path) -> Option<&str> {
     path.extension().filter(|e| *e == EXTENSION).and(path.file_stem()).and_then(|stem| stem.to_str())
 }
 
-/// True if a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
+/// True if a word is a valid model id: lower-case letters, digits and underscores, starting with a letter.
 #[must_use]
 pub fn is_id(word: &str) -> bool {
     text::identifier(word).is_ok()
 }
 
-/// True if a text is that of a model: it declares one, or defines `response`. Other files of the folder hold functions
-/// shared by models.
+/// True if a text is a model: it has a declaration, or defines `response`. Other files in the folder contain
+/// functions shared by models.
 #[must_use]
 pub fn is_model(text: &str) -> bool {
     // An unclosed comment swallows the function.
@@ -85,7 +85,7 @@ pub fn is_model(text: &str) -> bool {
     begins || text::comment(text).is_ok() || text::definition(text, "response").is_some()
 }
 
-/// The name of a file in messages before it is known to be valid.
+/// The name of a file in messages, before its validity is known.
 fn named(path: &Path) -> String {
     format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())
 }
@@ -95,15 +95,15 @@ fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProbl
     ShaderProblem::at(&named(path), text, at, message)
 }
 
-/// Reads a model: its declaration, and its WGSL as far as it can be checked without drawing. A registry that knows a
-/// custom model with the same id treats this one as its next version.
+/// Reads a model: checks its declaration, and its WGSL as far as possible without drawing. If the registry
+/// already has a custom model with this id, this one is its next version.
 ///
 /// # Errors
-/// Everything that is wrong with the declaration, or the first error in the WGSL.
+/// Returns every error in the declaration, or the first error in the WGSL.
 pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
     let (model, reads) = declared(path, text, registry)?;
     let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
-    // It may hide the function.
+    // The comment may contain the function.
     if let Some((at, what)) = limits::unfinished(text) {
         return Err(problem_at(at, what));
     }
@@ -123,16 +123,16 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     Ok(CustomModel { entry, ..model })
 }
 
-/// Reads the declaration of a model without its WGSL: both renderers draw a stand-in. For a model not used yet,
-/// and for a window that opens while a file is broken. Cheap: nothing is compiled.
+/// Reads the declaration of a model without its WGSL; both renderers draw a fallback. Used for models that
+/// are not needed yet, and when the window opens while a file is broken. Cheap: nothing is compiled.
 ///
 /// # Errors
-/// Everything that is wrong with the declaration.
+/// Returns every error in the declaration.
 pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
     declared(path, text, registry).map(|(model, _)| model)
 }
 
-/// The declared model, drawn as the stand-in; and the curves that it reads.
+/// The declared model, drawn with the fallback, and the curves that it reads.
 fn declared(
     path: &Path,
     text: &str,
@@ -176,7 +176,7 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     Ok(id)
 }
 
-/// The stand-in for models without a good version.
+/// The fallback for models without a valid version.
 pub(crate) fn stand_in(ambient: Ambient) -> &'static str {
     match ambient {
         Ambient::Formula => FORMULA_STAND_IN,
@@ -184,12 +184,12 @@ pub(crate) fn stand_in(ambient: Ambient) -> &'static str {
     }
 }
 
-/// Lambert's law in grey, whatever the parameters.
+/// Lambert's law in grey, regardless of the parameters.
 const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
 ";
-/// The same for models that answer uniform light by a formula.
+/// The fallback for models with a formula for uniform light.
 const FORMULA_STAND_IN: &str =
     "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));

@@ -24,21 +24,21 @@ use crate::{
     text::mathematics::{parse, plain_symbol, same_symbol},
 };
 
-/// The most words of `let`s whose values are known.
+/// Maximum number of words in `let`s whose values are kept.
 const MOST_WORDS: usize = 256;
 
-/// A custom model as run by the CPU.
+/// A custom model evaluated on the CPU.
 pub struct OnCpu {
     programs: Result<Programs, String>,
-    /// True if a function ran too long.
+    /// True if a function exceeded the step limit.
     endless: AtomicBool,
 }
 
 struct Programs {
     response: Program,
-    /// The `let`s of `response` that the equation names, if there are any, by the symbols there.
+    /// The `let`s of `response` that appear in the equation, by their symbols there.
     lets: Option<(Program, Vec<(String, usize)>)>,
-    /// For models that answer uniform light by a formula.
+    /// Present for models with a formula for uniform light.
     ambient: Option<Program>,
 }
 
@@ -61,7 +61,7 @@ impl OnCpu {
                 Ambient::Formula => Some(program("ambient_response")?),
                 Ambient::Albedo => None,
             };
-            // Names that nobody wants need no second program.
+            // A second program is needed only for requested names.
             let wanted = module.functions.iter().filter(|(_, f)| f.name.as_deref() == Some("response"));
             let wanted = wanted.flat_map(|(_, f)| f.named_expressions.values()).any(|name| named(name));
             let lets = wanted.then(|| Program::lets(module, "response", table, named).ok()).flatten();
@@ -84,7 +84,7 @@ impl OnCpu {
     ) -> [f32; N] {
         let mut results = [0; N];
         let Some(program) = self.programs.as_ref().ok().and_then(which) else { return [0.0; N] };
-        // Each run up to the limit takes a while, and a picture needs a million runs.
+        // Each run up to the limit takes time, and a picture needs a million.
         if self.endless.load(Ordering::Relaxed) {
             return [0.0; N];
         }
@@ -114,7 +114,7 @@ impl crate::reflection::Interpreted for OnCpu {
     }
 }
 
-/// The symbols of an equation that are no parameters: those that a `let` may have.
+/// The symbols of an equation that are not parameters and may be the names of `let`s.
 fn symbols(equation: &[EquationPart], parameters: &[Parameter]) -> Vec<String> {
     let atoms = equation.iter().flat_map(|part| parse(part.text));
     let mut symbols: Vec<_> = atoms.filter_map(|atom| atom.symbol()).map(|s| plain_symbol(&s)).collect();
@@ -124,14 +124,15 @@ fn symbols(equation: &[EquationPart], parameters: &[Parameter]) -> Vec<String> {
     symbols
 }
 
-/// True if a name of WGSL is a symbol of the equation: the same, or with Greek letters spelt out: `alpha_x` is `α_x`.
+/// True if a WGSL name matches a symbol of the equation, directly or with Greek letters spelt out: `alpha_x`
+/// is `α_x`.
 fn is_name_of(name: &str, symbol: &str) -> bool {
     let (base, index) = symbol.split_once('_').unwrap_or((symbol, ""));
     let (letter, rest) = name.split_once('_').unwrap_or((name, ""));
     rest == index && (letter == base || GREEK.iter().any(|(greek, word)| *greek == base && *word == letter))
 }
 
-/// Greek letters as programs spell them.
+/// Spelt-out names of Greek letters.
 const GREEK: [(&str, &str); 24] = [
     ("α", "alpha"),
     ("β", "beta"),
@@ -194,8 +195,8 @@ pub(super) fn entry(
     ModelEntry::custom(declaration, parameters, lobe, curves, instantiate, Some(on_cpu))
 }
 
-/// The entry of a model known only by its declaration: the CPU draws the same stand-in as the WGSL, Lambert's law in
-/// grey.
+/// The entry of a model of which only the declaration is valid: the CPU draws the same fallback as the WGSL,
+/// Lambert's law in grey.
 pub(super) fn stand_in(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
@@ -206,10 +207,10 @@ pub(super) fn stand_in(
     ModelEntry::custom(declaration, parameters, lobe_of(reads), reads.named(), instantiate, None)
 }
 
-/// The albedo of stand-ins.
+/// Albedo of the fallback.
 const GREY: f32 = 0.5;
 
-/// A stand-in.
+/// The fallback surface.
 struct Grey {
     ambient: Ambient,
     curve: OnceLock<Option<AlbedoCurve>>,
@@ -222,7 +223,7 @@ impl Surface for Grey {
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
-        // As on the GPU, which reads the curve if there is one.
+        // As on the GPU, which reads the curve if one exists.
         self.curve().map_or(Vec3::splat(GREY), |curve| curve.at(v, frame))
     }
 
@@ -261,7 +262,7 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
     words
 }
 
-/// The row of an object as read by the shader, with the albedo of the lobe and the further curves.
+/// The row of an object as the shader reads it, with the albedo of the lobe and the additional curves.
 fn row(
     declaration: &Declaration,
     parameters: &[Parameter],
@@ -284,9 +285,9 @@ struct Interpreted {
     parameters: Vec<u32>,
     /// The row as in the shader's table, without the curve; empty if it is not read.
     row: Vec<u32>,
-    /// The lobe and the further curves that the shader reads.
+    /// The lobe and the additional curves that the shader reads.
     read: Option<(LobeAlbedo, Vec<Vec4>)>,
-    /// The directions from which the model reflects most.
+    /// The directions in which the model reflects most.
     lobes: Lobes,
     curve: OnceLock<Option<AlbedoCurve>>,
 }
@@ -299,7 +300,7 @@ impl Interpreted {
         directions: &[Vec3],
         frame: &Frame,
     ) -> [f32; N] {
-        // Two directions, three vectors of the frame, and as many parameters as there is room for.
+        // Two directions, three vectors of the frame, and the maximum number of parameters.
         let mut arguments = [0; 15 + BLOCK_BYTES / 4];
         let vectors = directions.iter().chain([&frame.n, &frame.t, &frame.b]);
         let words =
@@ -331,7 +332,7 @@ impl Surface for Interpreted {
             3 => Vec3::from_slice(words.get(first..first + 3)?),
             _ => return None,
         };
-        // What was not reached is not a number.
+        // Values that were not reached are NaN.
         (!value.is_nan()).then_some(value)
     }
 

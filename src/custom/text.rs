@@ -15,7 +15,7 @@ pub(super) type Mistake = (usize, String);
 pub(super) struct Comment<'a> {
     /// The text between the marker and the end.
     pub json: &'a str,
-    /// Its first byte.
+    /// The index of the first byte of that text.
     pub start: usize,
     /// The byte after the comment.
     pub end: usize,

@@ -37,15 +37,15 @@ pub enum NotDuplicated {
     .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do"))
 )]
 pub struct BadName {
-    /// A similar valid identifier.
+    /// A similar, valid identifier.
     pub instead: Option<String>,
 }
 
-/// The identifier for a model's name: `Student toon (2)` becomes `student_toon_2`. Spaces and punctuation become
-/// underscores; letters beyond a–z, dots and slashes are errors with a suggestion.
+/// The identifier for a model's name: `Student toon (2)` becomes `student_toon_2`. Spaces and punctuation
+/// become underscores. Letters beyond a–z, dots and slashes are errors, with a suggestion.
 ///
 /// # Errors
-/// The rule that the name breaks, and a suggestion.
+/// Returns the rule that the name breaks, and a suggestion.
 pub fn id_of_name(name: &str) -> Result<String, BadName> {
     let name = name.trim();
     if identifier(name).is_ok() {
@@ -63,7 +63,7 @@ pub fn id_of_name(name: &str) -> Result<String, BadName> {
     Err(BadName { instead: identifier(near).is_ok().then(|| near.to_owned()) })
 }
 
-/// A name in the letters a–z: umlauts in German transliteration, others by sound.
+/// A name in the letters a–z: umlauts in German transliteration, other letters by sound.
 fn latin(name: &str) -> String {
     let umlauts = [('ä', "ae"), ('ö', "oe"), ('ü', "ue"), ('Ä', "Ae"), ('Ö', "Oe"), ('Ü', "Ue")];
     let name = umlauts.iter().fold(name.to_owned(), |name, (letter, two)| name.replace(*letter, two));
@@ -77,7 +77,7 @@ fn joined(name: &str) -> String {
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
 }
 
-/// A commented template, valid unchanged: a matte body under a soft gloss that keeps all laws.
+/// A commented template, valid as it is: a matte base under a soft gloss, obeying all laws.
 #[must_use]
 pub fn template(id: &str, name: &str) -> String {
     let name = if name == id { humanised(id) } else { name.to_owned() };
@@ -140,11 +140,11 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
 // fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { … }
 "#;
 
-/// A model as a file with that id: the same picture, the same knobs. `name` is the displayed name of the copy; if it
-/// equals the id, a name is derived from it.
+/// A copy of a model as the text of a file with this id: same picture, same parameters. `name` is the display
+/// name of the copy; if it equals the id, a name is derived from it.
 ///
 /// # Errors
-/// If the id is not valid.
+/// Returns an error if the id is invalid.
 pub fn duplicate(
     entry: &ModelEntry,
     sources: &Sources,
@@ -154,14 +154,14 @@ pub fn duplicate(
     identifier(id).map_err(|rule| NotDuplicated::Id { id: id.to_owned(), rule })?;
     let d = entry.declaration;
     let source = sources.text(&d.wgsl);
-    // From a file everything but the declaration is copied; that is written anew.
+    // Everything in a file is copied except the declaration, which is rewritten.
     let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
     let name = match name {
         name if name != id => name.to_owned(),
         _ if id == format!("{}_copy", d.id) => format!("{} (copy)", d.name),
         _ => humanised(id),
     };
-    // Writing to a String cannot fail; here and below.
+    // Writing to a String cannot fail, here and below.
     let mut out = format!("/* {MARKER}\n{{\n");
     for (key, value) in
         [("name", name.as_str()), ("author", d.author), ("source", d.source), ("summary", d.summary)]
@@ -188,7 +188,7 @@ pub fn duplicate(
             writeln!(out, "    // The shader reads the albedo of the lobe, or the curves, of this model.");
         let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
     }
-    // Of models from files: the declaration does not keep the text of their settings.
+    // Only for models from files: the declaration does not keep the source text of their settings.
     let in_file = comment(source).ok();
     for key in ["lobes", "curves"] {
         if let Some(text) = in_file.as_ref().and_then(|c| written(c.json, key)) {

@@ -27,7 +27,7 @@ pub enum Edit {
     SceneDescription(String),
     /// The extent of the room.
     SceneSize(SceneSize),
-    /// Tone mapping, exposure, encoding.
+    /// Tone mapping, exposure and encoding.
     Display(Display),
     /// The reflection model of the scene.
     Model(String),
@@ -41,7 +41,8 @@ pub enum Edit {
     Object(usize, ObjectField),
     /// A field of a variant.
     Variant(usize, VariantField),
-    /// All variants, where some come, go or change places, with the comparison of the views then.
+    /// All variants, if some are added, removed or reordered, together with the resulting comparison of the
+    /// views.
     Views {
         /// The variants.
         variants: Vec<Variant>,
@@ -54,7 +55,7 @@ pub enum Edit {
     Comparison(Comparison),
 }
 
-/// A field of a variant with its new value; `None` where it is inherited.
+/// A field of a variant with its new value; `None` if it is inherited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VariantField {
     /// The name; empty for none.
@@ -67,7 +68,7 @@ pub enum VariantField {
     Material(&'static str, Option<Value>),
     /// Several parameters at once: those of a match, or of a measured material.
     Materials(Vec<(&'static str, Value)>, &'static str),
-    /// The terms that are shown.
+    /// The displayed terms.
     Terms(Option<TermSelection>),
     /// The tone mapping.
     ToneMapping(Option<ToneMapping>),
@@ -80,7 +81,7 @@ pub enum VariantField {
 }
 
 impl VariantField {
-    /// Its name within that of a step.
+    /// The name of the field within the name of a step.
     fn label(&self, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -97,7 +98,7 @@ impl VariantField {
         .to_owned()
     }
 
-    /// Gives a variant this field.
+    /// Sets this field of a variant.
     pub(super) fn put(self, variant: &mut Variant) {
         match self {
             Self::Name(name) => variant.name = named(&name),
@@ -122,21 +123,21 @@ impl VariantField {
 pub enum LightField {
     /// The name; empty for none.
     Name(String),
-    /// False switches it off.
+    /// False if the light is switched off.
     Enabled(bool),
     /// The type.
     Type(String),
     /// The position.
     Position(Vec3),
-    /// The direction of its light.
+    /// The direction in which the light shines.
     Direction(Vec3),
-    /// Colour, instead of a colour temperature.
+    /// The colour, instead of a colour temperature.
     Colour([u8; 3]),
-    /// Colour temperature in kelvin, instead of a colour.
+    /// The colour temperature in kelvin, instead of a colour.
     ColourTemperature(f32),
-    /// Intensity, instead of a luminous flux.
+    /// The intensity, instead of a luminous flux.
     Intensity(f32),
-    /// Luminous flux in lumen, instead of an intensity.
+    /// The luminous flux in lumen, instead of an intensity.
     LuminousFlux(f32),
     /// A parameter of the type.
     Parameter(&'static str, Value),
@@ -147,13 +148,13 @@ pub enum LightField {
 pub enum ObjectField {
     /// The name; empty for none.
     Name(String),
-    /// False hides it.
+    /// False if the object is hidden.
     Visible(bool),
     /// The type.
     Type(String),
-    /// Position of the centre.
+    /// The position of the centre.
     Position(Vec3),
-    /// Largest extent.
+    /// The largest extent.
     Size(f32),
     /// Euler angles XYZ, degrees.
     Rotation(Vec3),
@@ -177,7 +178,7 @@ fn named(text: &str) -> Option<String> {
 }
 
 impl LightField {
-    /// Its name within that of a step.
+    /// The name of the field within the name of a step.
     fn label(&self, light: &Light, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -199,7 +200,7 @@ impl LightField {
     }
 
     fn put(self, light: &mut Light, registry: &Registry, room: SceneSize) {
-        // A field that is absent gets the value that it has when the file is read again.
+        // A missing field gets the value that it has when the file is reloaded.
         match self {
             Self::Name(name) => light.name = named(&name),
             Self::Enabled(on) => light.enabled = on,
@@ -224,7 +225,7 @@ impl LightField {
 }
 
 impl ObjectField {
-    /// Its name within that of a step.
+    /// The name of the field within the name of a step.
     fn label(&self, object: &Object, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -265,7 +266,7 @@ impl ObjectField {
     }
 }
 
-/// Gives a variant of a scene a field. Variants based on it follow its name.
+/// Sets a field of a variant of a scene. Variants based on it follow a change of its name.
 pub(super) fn put_in_variant(scene: &mut Scene, i: usize, field: VariantField) {
     let Some(variant) = scene.variants.get_mut(i) else { return };
     let before = variant.name.clone();
@@ -291,10 +292,10 @@ fn step(label: &str, part: &str) -> String {
 }
 
 impl Document {
-    /// Makes a change, if the rules of scenes allow it. `selection` is the present one.
+    /// Makes a change, if the rules of scenes allow it. `selection` is the current selection.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
         self.check(&edit, registry)?;
         let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut Scene)| {
@@ -372,11 +373,12 @@ impl Document {
         Ok(())
     }
 
-    /// Changes the type of a light, which gets everything that the type requires. `place` is a position and a
-    /// direction for one that has none; without it, the light hangs in the middle of the room and shines down.
+    /// Changes the type of a light and adds everything that the new type requires. `place` is the position
+    /// and direction for a light without them; by default, the light is in the middle of the room and shines
+    /// down.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn change_light_type(
         &mut self,
         i: usize,
@@ -399,7 +401,7 @@ impl Document {
             }
             field.put(light, registry, room);
             if let Some(position) = light.position.filter(|_| !has_place) {
-                // Heights that stay apart, however many others are in the way.
+                // Distinct heights, however many other lights are in the way.
                 let height = |k: usize| (k as f64 * GOLDEN_RATIO).fract() as f32 * room.height;
                 let column =
                     (1..document.scene.objects.len() + 3).map(|k| (0.5 * room.corner()).with_y(height(k)));
@@ -465,7 +467,7 @@ impl Document {
         self.came_or_went(patch, format!("Delete {name}"), part);
     }
 
-    /// A part came or went: a step of its own.
+    /// Records that a part was added or removed, as a separate step.
     fn came_or_went(&mut self, patch: Patch, name: String, selection: Selection) {
         self.end_gesture();
         self.touch(Extent::All, true);

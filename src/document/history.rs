@@ -1,22 +1,22 @@
-//! The steps by which a document came to be: each can be undone and redone.
+//! The history of a document: each of its steps can be undone and redone.
 //!
-//! A step holds what it changed and nothing else, so that moving one of ten thousand objects costs one object.
+//! A step stores only what it changed, so that moving one of ten thousand objects costs one object.
 
 use std::ops::Range;
 
 use super::{Extent, PartId, Selection};
 use crate::scene::{Light, Object, Scene};
 
-/// The most steps that are kept; the oldest are dropped.
+/// Maximum number of steps; the oldest are dropped.
 const MOST_STEPS: usize = 500;
-/// The most lights and objects in all steps together, so that memory is bounded.
+/// Maximum number of lights and objects in all steps together, so that memory is bounded.
 const MOST_PARTS: usize = 200_000;
 
-/// The identity of a part for life.
+/// The permanent identity of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Label {
     pub(super) id: PartId,
-    /// Its number among the parts of its type, by which it is called without a name; 0 until it gets one.
+    /// Number among the parts of its type, by which it is called if it has no name; 0 until it gets one.
     pub(super) number: usize,
 }
 
@@ -27,8 +27,8 @@ pub(super) struct Labels {
     pub(super) objects: Vec<Label>,
 }
 
-/// The stretches in which two lists of these lengths differ, without their common beginning and end. `same` compares
-/// an entry of the first with one of the second.
+/// The ranges in which two lists of these lengths differ, without their common beginning and end. `same`
+/// compares an entry of the first with one of the second.
 pub(crate) fn difference(
     [old, new]: [usize; 2],
     mut same: impl FnMut(usize, usize) -> bool,
@@ -39,7 +39,7 @@ pub(crate) fn difference(
     [start..old - end, start..new - end]
 }
 
-/// A stretch of a list, before and after.
+/// A range of a list, before and after.
 #[derive(Clone, Debug, PartialEq)]
 struct Splice<T> {
     at: usize,
@@ -79,24 +79,24 @@ impl<T: Clone + PartialEq> Splice<T> {
         self.old.len() + self.new.len()
     }
 
-    /// True if the list has another length after it.
+    /// True if the list has a different length afterwards.
     fn resizes(&self) -> bool {
         self.old.len() != self.new.len()
     }
 
-    /// True if it gives one part another value, but not another type.
+    /// True if only the value of one part changes, but not its type.
     fn is_of_one_by(&self, type_of: impl Fn(&T) -> &str) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if type_of(&old.1) == type_of(&new.1))
             && self.is_of_one()
     }
 
-    /// True if it gives one part another value.
+    /// True if only the value of one part changes.
     fn is_of_one(&self) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0.id == new.0.id)
     }
 }
 
-/// Everything of a scene but its lights and objects.
+/// Everything in a scene except its lights and objects.
 pub(super) fn rest_of(scene: &Scene) -> Scene {
     let Scene {
         name,
@@ -126,15 +126,15 @@ pub(super) fn rest_of(scene: &Scene) -> Scene {
     }
 }
 
-/// Makes everything but lights and objects equal to that of another scene.
+/// Copies everything except lights and objects from another scene.
 pub(super) fn copy_rest(from: &Scene, to: &mut Scene) {
     let lists = (std::mem::take(&mut to.lights), std::mem::take(&mut to.objects));
     *to = rest_of(from);
     (to.lights, to.objects) = lists;
 }
 
-/// The difference between two versions of a scene: stretches of lights and of objects that do not overlap, in the order
-/// of the scene. Their places are those in the old version.
+/// The difference between two versions of a scene: ranges of lights and of objects that do not overlap, in
+/// the order of the scene. Positions refer to the old version.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Patch {
     rest: Option<Box<[Scene; 2]>>,
@@ -143,7 +143,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The difference between two versions that differ in the room, the display, the observer and the like.
+    /// The difference between two versions that differ in everything except lights and objects.
     pub(super) fn of_rest(old: Scene, new: Scene) -> Self {
         let rest = (old != new).then(|| Box::new([old, new]));
         Self { rest, ..Self::default() }
@@ -159,12 +159,12 @@ impl Patch {
         Self { objects: Splice::of_one(at, old, new).into_iter().collect(), ..Self::default() }
     }
 
-    /// A light that came or went: before, after.
+    /// The difference made by adding or removing lights: before, after.
     pub(super) fn of_lights(at: usize, old: Vec<(Label, Light)>, new: Vec<(Label, Light)>) -> Self {
         Self { lights: vec![Splice { at, old, new }], ..Self::default() }
     }
 
-    /// An object that came or went: before, after.
+    /// The difference made by adding or removing objects: before, after.
     pub(super) fn of_objects(at: usize, old: Vec<(Label, Object)>, new: Vec<(Label, Object)>) -> Self {
         Self { objects: vec![Splice { at, old, new }], ..Self::default() }
     }
@@ -189,7 +189,8 @@ impl Patch {
         put(&self.objects, &mut scene.objects, &mut labels.objects, back);
     }
 
-    /// The part that it changes. Another type of one changes the numbers that a file gives to others.
+    /// The part that the step changes. A change of a part's type concerns all parts, because it changes the
+    /// numbers that a file gives to others.
     fn extent(&self) -> Extent {
         match (&self.rest, &self.lights[..], &self.objects[..]) {
             (Some(_), [], []) => Extent::Rest,
@@ -204,7 +205,7 @@ impl Patch {
             + self.objects.iter().map(Splice::parts).sum::<usize>()
     }
 
-    /// Makes this change and a later one a single change, which may be none.
+    /// Merges this change and a later one into a single change, which may be empty.
     pub(super) fn join(&mut self, later: Self) {
         self.rest = match (self.rest.take(), later.rest) {
             (Some(a), Some(b)) => {
@@ -218,13 +219,14 @@ impl Patch {
     }
 }
 
-/// Puts stretches into a list. Their places are those in the old list, in which what is before a stretch must be old.
+/// Inserts ranges into a list. Their positions refer to the old list; everything before a range must still be
+/// old.
 fn put<T: Clone + PartialEq>(splices: &[Splice<T>], parts: &mut Vec<T>, labels: &mut Vec<Label>, back: bool) {
     let put = |splice: &Splice<T>| splice.put(parts, labels, back);
     if back { splices.iter().for_each(put) } else { splices.iter().rev().for_each(put) }
 }
 
-/// Makes two changes of a list a single one.
+/// Merges two changes of a list into one.
 fn join<T: Clone + PartialEq>(a: &mut Vec<Splice<T>>, b: Vec<Splice<T>>) {
     if !a.iter().chain(&b).all(Splice::is_of_one) {
         *a = composed(std::mem::take(a), b);
@@ -239,16 +241,17 @@ fn join<T: Clone + PartialEq>(a: &mut Vec<Splice<T>>, b: Vec<Splice<T>>) {
     }
 }
 
-/// A change from an old list to one in between, and one from there to a new list, as a single change. Stretches that
-/// share parts of the list in between, or between which a part came or went, become one.
+/// Combines a change from an old list to an intermediate one with a change from there to a new list. Ranges
+/// that share parts of the intermediate list, or between which a part was added or removed, become one.
 fn composed<T: Clone + PartialEq>(a: Vec<Splice<T>>, b: Vec<Splice<T>>) -> Vec<Splice<T>> {
     let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
     let mut all = Vec::with_capacity(a.len().max(b.len()));
-    // The lengths of all old and new stretches of the first change so far: by them the list in between is longer.
+    // The total lengths of the old and new ranges of the first change so far: the intermediate list is longer
+    // by their difference.
     let (mut gone, mut come) = (0, 0);
     loop {
         let before = (gone, come);
-        // Stretches with their places in between.
+        // Ranges with their positions in the intermediate list.
         let (mut first, mut later): (Vec<(usize, Splice<T>)>, Vec<Splice<T>>) = (Vec::new(), Vec::new());
         let mut range = None;
         let mut resized = false;
@@ -293,7 +296,8 @@ fn composed<T: Clone + PartialEq>(a: Vec<Splice<T>>, b: Vec<Splice<T>>) -> Vec<S
     }
 }
 
-/// Stretches of two changes that cover a range of the list in between, as one stretch at this place of the old list.
+/// The ranges of two changes that cover a range of the intermediate list, as one range at this position of
+/// the old list.
 fn merged<T: Clone>(
     at: usize,
     range: &Range<usize>,
@@ -313,7 +317,7 @@ fn merged<T: Clone>(
             slot.get_or_insert(part);
         }
     }
-    // What only one of the changes has is the same before or after it; no part is both.
+    // Parts in only one of the changes are equal before or after it; no part is both.
     let mut side = |stretches: Vec<(usize, usize, Vec<(Label, T)>)>| {
         let (mut all, mut next) = (Vec::new(), 0);
         for (place, length, parts) in stretches {
@@ -331,14 +335,14 @@ fn merged<T: Clone>(
 #[derive(Clone, Debug)]
 struct Step {
     name: String,
-    /// Steps of one name within one gesture are one.
+    /// Steps with the same name within one gesture are merged.
     gesture: u64,
     patch: Patch,
     before: Selection,
     after: Selection,
 }
 
-/// The steps, and how many of them are done.
+/// The steps, and the number of those that have not been undone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     steps: Vec<Step>,
@@ -346,7 +350,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// A change was made.
+    /// Records a change.
     pub(super) fn record(&mut self, name: String, gesture: u64, patch: Patch, selection: Selection) {
         if patch.is_empty() {
             return;
@@ -369,7 +373,7 @@ impl History {
         self.done = self.steps.len();
     }
 
-    /// A change belongs to the last step that is done.
+    /// Adds a change to the last step that has not been undone.
     pub(super) fn go_on(&mut self, patch: Patch) {
         if let Some(Step { name, gesture, after, .. }) =
             self.done.checked_sub(1).and_then(|i| self.steps.get(i))
@@ -378,7 +382,7 @@ impl History {
         }
     }
 
-    /// The selection after the last step: some steps select what they made.
+    /// Sets the selection after the last step: some steps select what they added.
     pub(super) fn selected(&mut self, selection: Selection) {
         if let Some(step) = self.done.checked_sub(1).and_then(|i| self.steps.get_mut(i)) {
             step.after = selection;
@@ -430,7 +434,7 @@ mod tests {
     use super::*;
     use crate::{document::Document, registry::Registry};
 
-    /// A generator of numbers that are the same in each run.
+    /// A random number generator with the same sequence in each run.
     struct Dice(u64);
 
     impl Dice {
@@ -463,7 +467,7 @@ mod tests {
         document.redo();
         assert!(*document.scene() == end);
         assert_eq!(document.object_id(20), id);
-        // All that came goes again.
+        // Everything that was added is removed.
         let removed: Vec<_> = (1..=20).map(Extent::Object).collect();
         document.submit_lists(&start, &removed, Selection::Room, &registry).expect("they may go");
         assert_eq!(document.steps().len(), 0, "together that changes nothing");

@@ -1,4 +1,4 @@
-//! The way from an id to its part, and from a part to the number that a file gives it, without a search.
+//! Lookup of parts by id, and of the numbers that a file gives them, without a search.
 
 use std::{
     collections::HashMap,
@@ -40,7 +40,7 @@ impl List {
         Self { places, numbers: numbers(types).collect() }
     }
 
-    /// The place of a part in the list.
+    /// The position of a part in the list.
     pub(super) fn place(&self, id: PartId) -> Option<usize> {
         self.places.get(&id).copied()
     }

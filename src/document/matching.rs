@@ -1,4 +1,4 @@
-//! The parts of a scene that another version of it still has.
+//! Matches the parts of a scene with those of another version.
 
 use super::{
     Document, Extent, Selection, difference,
@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Document {
-    /// Replaces the scene by another version of it, as one step: parts that are equal, or have the same name, or else the
-    /// same place, keep their ids, and names that a file had to give them are no names of their own.
+    /// Replaces the scene by another version of it, as one step. Parts that are equal, or have the same name,
+    /// or else the same position, keep their ids; names that a file had to give them do not count as names.
     pub fn replace(
         &mut self,
         name: impl Into<String>,
@@ -46,8 +46,8 @@ impl Document {
     }
 }
 
-/// The labels of the parts of a new list that are parts of the old one, which stands there as it is and as a file has it.
-/// A part of another type needs another number; a name that only the file gave is taken from the new part.
+/// The labels of the parts of a new list that are parts of the old one, given as it is and as in a file. A
+/// part of another type needs another number; a name that only the file gave is removed from the new part.
 fn relabelled<T: PartialEq>(
     old: [&[T]; 2],
     labels: &[Label],
@@ -68,8 +68,8 @@ fn relabelled<T: PartialEq>(
     places.into_iter().zip(new).map(relabel).collect()
 }
 
-/// The places in the old list of the parts of a new one: of equal parts, else of those with the same name, else of
-/// those in the same place. The old list stands there twice: as it is, and as a file has it.
+/// The positions in the old list of the parts of a new one: equal parts, else those with the same name, else
+/// those in the same position. The old list is given twice: as it is, and as in a file.
 fn matched<T: PartialEq>(
     [old, named]: [&[T]; 2],
     new: &[T],
@@ -82,7 +82,7 @@ fn matched<T: PartialEq>(
     free[gone.clone()].fill(true);
     (0..gone.start).for_each(|i| found[i] = Some(i));
     (middle.end..new.len()).zip(gone.end..old.len()).for_each(|(i, j)| found[i] = Some(j));
-    // In a file of thousands of new parts, place decides.
+    // In a file of thousands of new parts, the position decides.
     const MOST: usize = 2000;
     let few = middle.len() <= MOST && gone.len() <= MOST;
     let called_alike = |i: usize, j: usize| name(&new[j]).is_some() && name(&named[i]) == name(&new[j]);

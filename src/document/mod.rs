@@ -1,5 +1,5 @@
-//! The document: the one writer of the scene. Every change of the scene is submitted here, checked, and recorded for
-//! undo. Parts have ids that survive changes of their place in the list.
+//! The document, the only writer of the scene. Every change of the scene is submitted here, checked, and
+//! recorded for undo. Parts have ids that survive changes of their position in the list.
 
 use std::{
     collections::VecDeque,
@@ -25,15 +25,15 @@ pub(crate) use history::difference;
 use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};
 
-/// The most changes that [`Document::changes_since`] looks back.
+/// Maximum number of changes covered by [`Document::changes_since`].
 const RECENT: usize = 64;
 
-/// Identifies a light or an object while the document is open: it keeps its id when others come and go, when undo
-/// brings it back, and when the file is reloaded.
+/// Identifies a light or an object while the document is open: the id stays the same when others are added
+/// and removed, when undo restores the part, and when the file is reloaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PartId(u64);
 
-/// A part of the scene, by its place in it.
+/// The selected part of the scene, by its index.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// The room and the display: the selection when no part is selected.
@@ -50,13 +50,13 @@ pub enum Selection {
 /// The part of a scene to which a change is confined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Everything but lights and objects.
+    /// Everything except lights and objects.
     Rest,
     /// One light.
     Light(usize),
     /// One object.
     Object(usize),
-    /// Any of it.
+    /// Any part.
     All,
 }
 
@@ -70,7 +70,7 @@ impl Extent {
         }
     }
 
-    /// Makes this part of a scene equal to that of another. Lists of other lengths stay as they are.
+    /// Makes this part of a scene equal to that of another. Lists of different lengths are left unchanged.
     pub(crate) fn copy(self, from: &Scene, to: &mut Scene) {
         match self {
             Self::Rest => history::copy_rest(from, to),
@@ -91,21 +91,21 @@ impl Extent {
 
 /// A scene and its history.
 ///
-/// It reads as the [`Scene`] that it holds.
+/// Dereferences to its [`Scene`].
 #[derive(Clone, Debug)]
 pub struct Document {
     scene: Scene,
     labels: Labels,
-    /// Unset until it is needed.
+    /// Set when needed.
     index: OnceLock<Index>,
     visits: Visits,
     /// The next id.
     next: u64,
     /// The scene as it is in the file.
     saved: Scene,
-    /// The names that only the file has.
+    /// The names that exist only in the file.
     saved_names: Vec<(Extent, String)>,
-    /// True if the two differ; unset until it is needed.
+    /// True if the scene and the file differ; set when needed.
     differs: OnceLock<bool>,
     history: History,
     gesture: u64,
@@ -114,7 +114,7 @@ pub struct Document {
     recent: VecDeque<(Revision, Extent)>,
 }
 
-/// The number of a value of a document. No two values have the same, whichever documents they are of.
+/// The revision of a document. It is unique among all values of all documents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Revision(u64);
 
@@ -140,7 +140,7 @@ impl PartialEq<Scene> for Document {
 }
 
 impl Document {
-    /// A document that is as its file has it, without a history.
+    /// A document equal to its file, without a history.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let mut document = Self {
@@ -179,19 +179,19 @@ impl Document {
         &self.saved
     }
 
-    /// True if the scene is not as it is in the file.
+    /// True if the scene differs from the file.
     #[must_use]
     pub fn differs(&self) -> bool {
         *self.differs.get_or_init(|| self.scene != self.saved)
     }
 
-    /// The number of the present value: another one as soon as anything changes.
+    /// The revision of the present value, which differs after any change.
     #[must_use]
     pub fn revision(&self) -> Revision {
         self.revision
     }
 
-    /// The parts that may have changed since a revision; `None` if that may be anything.
+    /// The parts that may have changed since a revision; `None` if anything may have.
     #[must_use]
     pub fn changes_since(&self, revision: Revision) -> Option<Vec<Extent>> {
         if revision == self.revision {
@@ -202,7 +202,7 @@ impl Document {
         (!parts.contains(&Extent::All)).then_some(parts)
     }
 
-    /// A part of the scene has another value; `moved` if parts may have other places or types than before.
+    /// Records a change of a part; `moved` is true if positions or types of parts may have changed.
     fn touch(&mut self, part: Extent, moved: bool) {
         if moved {
             self.index.take();
@@ -215,7 +215,7 @@ impl Document {
         self.differs.take();
     }
 
-    /// The scene, as [`named`](Self::named), was written to the file, or read from it.
+    /// Records that the scene, as [`named`](Self::named), was written to the file, or read from it.
     pub fn mark_saved(&mut self, registry: &Registry) {
         // Undoing leads back to what was saved.
         self.end_gesture();
@@ -235,7 +235,7 @@ impl Document {
         saved == *scene
     }
 
-    /// The file holds another scene than was known.
+    /// Records that the content of the file is a different scene from the one known so far.
     pub fn set_saved(&mut self, scene: Scene) {
         self.saved = scene;
         self.saved_names.clear();
@@ -274,14 +274,15 @@ impl Document {
         })
     }
 
-    /// The number of lights and objects visited since the start to find parts by their ids, and numbers for their names.
+    /// The number of lights and objects visited since the start to find parts by id, and numbers for their
+    /// names.
     #[must_use]
     pub fn visits(&self) -> u64 {
         self.visits.count()
     }
 
-    /// Changes the scene within an extent, as one step of that name. `selection` is what is selected now. A change to
-    /// the same value is none.
+    /// Changes the scene within an extent, as one step with this name. `selection` is the current selection.
+    /// Setting an equal value is not a change.
     pub fn change(
         &mut self,
         name: impl Into<String>,
@@ -354,7 +355,7 @@ impl Document {
         patch
     }
 
-    /// Every part has a label, whatever a change did to the lists.
+    /// Gives every part a label after any change to the lists.
     fn label_parts(&mut self, registry: Option<&Registry>) {
         let (lights, objects) = (self.scene.lights.len(), self.scene.objects.len());
         self.labels.lights.truncate(lights);
@@ -370,13 +371,13 @@ impl Document {
         self.number_parts(registry);
     }
 
-    /// Changes a part as a consequence of the last step, which undoes it too.
+    /// Changes a part as a consequence of the last step; undoing the step undoes this too.
     pub fn go_on(&mut self, part: Extent, change: impl FnOnce(&mut Scene)) {
         let patch = self.patch(part, None, |document| change(&mut document.scene));
         self.history.go_on(patch);
     }
 
-    /// Changes values without a step, as models that come and go require.
+    /// Changes values without a step, as required when models change.
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
         self.label_parts(None);
@@ -385,12 +386,12 @@ impl Document {
 
     // ── steps ──
 
-    /// Ends a gesture. Only within a gesture are steps of one name joined.
+    /// Ends a gesture. Only within a gesture are steps with the same name merged.
     pub fn end_gesture(&mut self) {
         self.gesture += 1;
     }
 
-    /// True if a step could be joined with the last one.
+    /// True if a step could be merged with the last one.
     #[must_use]
     pub fn in_gesture(&self) -> bool {
         self.history.gesture() == Some(self.gesture)
@@ -422,7 +423,7 @@ impl Document {
         self.history.names()
     }
 
-    /// The number of steps that are done.
+    /// The number of steps that have not been undone.
     #[must_use]
     pub fn done(&self) -> usize {
         self.history.done()

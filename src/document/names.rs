@@ -1,5 +1,5 @@
-//! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that name for
-//! life: where others came or went, it is written into the file.
+//! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that
+//! name permanently: if others were added or removed, it is written into the file.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,7 +7,7 @@ use super::{Document, Extent, Selection, history::Label};
 use crate::{registry::Registry, scene::Scene};
 
 impl Document {
-    /// The name of a part, else its type and its number among parts of that type.
+    /// The name of a part, or else its type and its number among parts of that type.
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         match part {
@@ -39,7 +39,7 @@ pub(super) fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
     registry.shape(id).map_or(id, |entry| entry.declaration.name)
 }
 
-/// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
+/// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next free number.
 pub fn free_name(scene: &Scene, name: &str) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
     let stem = if stem.is_empty() { name } else { stem };
@@ -75,8 +75,8 @@ fn is_given(scene: &Scene, name: &str) -> bool {
 }
 
 impl Document {
-    /// Every part has a number, whatever a change did to lists and types. With a registry, none gets the name that
-    /// another part was given.
+    /// Gives every part a number, whatever a change did to lists and types. With a registry, avoids names
+    /// given to other parts.
     pub(super) fn number_parts(&mut self, registry: Option<&Registry>) {
         let Self { scene, labels, .. } = self;
         let given = |type_name: &str, n: usize| is_given(scene, &format!("{type_name} {n}"));
@@ -86,7 +86,7 @@ impl Document {
         number(&mut labels.objects, |i| &scene.objects[i].object_type, object);
     }
 
-    /// A part that lost its name is not called as another that was given such a name.
+    /// Gives another number to a part that lost its name, if its automatic name was given to another part.
     pub(super) fn number_again(&mut self, part: Selection, registry: &Registry) {
         let name = match part {
             Selection::Light(i) => &self.scene.lights[i].name,
@@ -104,8 +104,8 @@ impl Document {
         self.number_parts(Some(registry));
     }
 
-    /// The name that a part without one needs in a file, since a reader would give it another: parts of the same type have
-    /// gone or come before it.
+    /// The name that an unnamed part needs in a file, since a reader would otherwise give it another: parts
+    /// of the same type were removed or added before it.
     fn written_name(&self, part: Extent, registry: &Registry) -> Option<String> {
         let (own, number, read, part) = match part {
             Extent::Light(i) => {
@@ -121,14 +121,14 @@ impl Document {
         (own.is_none() && number != read).then(|| self.name_of(part, registry))
     }
 
-    /// All names that only the file has.
+    /// All names that exist only in the file.
     pub(super) fn written_names(&self, registry: &Registry) -> Vec<(Extent, String)> {
         let lights = (0..self.lights.len()).map(Extent::Light);
         let parts = lights.chain((0..self.objects.len()).map(Extent::Object));
         parts.filter_map(|part| Some((part, self.written_name(part, registry)?))).collect()
     }
 
-    /// Writes the names that only the file has into a copy of the scene.
+    /// Writes the names that exist only in the file into a copy of the scene.
     pub fn write_names(&self, part: Extent, copy: &mut Scene, registry: &Registry) {
         let names = match part {
             Extent::All => self.written_names(registry),
@@ -137,7 +137,7 @@ impl Document {
         names.into_iter().for_each(|(part, name)| part.set_name(copy, name));
     }
 
-    /// The scene as a file has it: parts without a name keep theirs, as far as a reader would give them another.
+    /// The scene as in a file: unnamed parts get their present names where a reader would give them others.
     #[must_use]
     pub fn named(&self, registry: &Registry) -> Scene {
         let mut named = self.scene.clone();

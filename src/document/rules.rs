@@ -1,4 +1,4 @@
-//! The rules that an edit must keep, by the same limits that widgets show.
+//! The rules that an edit must obey, with the same limits that widgets show.
 
 use glam::Vec3;
 
@@ -197,7 +197,7 @@ fn is_basis(scene: &Scene, i: usize) -> bool {
 fn variants(scene: &Scene, registry: &Registry, change: impl FnOnce(&mut Scene)) -> Result<(), String> {
     let mut after = scene.clone();
     change(&mut after);
-    // What a changed model file made wrong before must not keep the rest from being edited.
+    // Errors caused before by a changed model file must not prevent other edits.
     let known = check::variants(scene, registry);
     let problem = check::variants(&after, registry).into_iter().find(|problem| !known.contains(problem));
     problem.map_or(Ok(()), |problem| Err(format!("{problem}.")))
@@ -211,14 +211,14 @@ fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
     lights.chain(objects).chain([(Selection::Observer, scene.observer.position)])
 }
 
-/// True if two parts must not stand in the same place: lights, objects and the observer exclude each other;
+/// True if two parts must not have the same position: lights, objects and the observer exclude each other;
 /// two lights or two objects may share theirs.
 fn may_not_meet(a: Selection, b: Selection) -> bool {
     std::mem::discriminant(&a) != std::mem::discriminant(&b)
 }
 
-/// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
-/// calls a part of the scene.
+/// An extent of the room, in metres: everything in the room must stay inside. `name` returns the name of a
+/// part.
 fn dimension(scene: &Scene, axis: usize, name: impl Fn(Selection) -> String) -> Limits {
     let at = |p: Vec3| p.to_array()[axis.min(2)];
     let lights =

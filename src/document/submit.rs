@@ -1,4 +1,5 @@
-//! Changes of the scene by systems: checked part by part, and recorded as one step as long as they follow each other.
+//! Changes of the scene by systems: checked part by part, and recorded as one step while they follow each
+//! other.
 
 use super::{
     Document, Extent, Patch, Selection,
@@ -10,17 +11,17 @@ use crate::{
     text::sentence,
 };
 
-/// The gesture of all that systems change.
+/// The gesture shared by all changes of systems.
 const SYSTEMS: u64 = u64::MAX;
 /// The name of the step.
 const BY_SYSTEM: &str = "Change by a system";
 
 impl Document {
-    /// Adopts what a system changed in these parts, if the rules of scenes allow it. All such changes that follow each
-    /// other are one step: a system may change something in every frame.
+    /// Adopts what a system changed in these parts, if the rules of scenes allow it. Consecutive changes of
+    /// this kind are one step: a system may change something in every frame.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn submit(
         &mut self,
         scene: &Scene,
@@ -43,11 +44,12 @@ impl Document {
         })
     }
 
-    /// Adopts a scene in which systems removed these lights and objects, by their places before, added others at the
-    /// ends of the lists, or gave some another type; as [`submit`](Self::submit) does. The others keep their names.
+    /// Adopts a scene in which systems removed these lights and objects, given by their former positions,
+    /// added others at the ends of the lists, or changed the types of some, as [`submit`](Self::submit) does.
+    /// The others keep their names.
     ///
     /// # Errors
-    /// Why it is refused; the scene stays as it is.
+    /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn submit_lists(
         &mut self,
         scene: &Scene,
@@ -95,7 +97,7 @@ impl Document {
         }
         let rest = |scene: &Scene| Scene { observer: Observer::default(), ..rest_of(scene) };
         if parts.iter().any(|part| matches!(part, Extent::All | Extent::Rest)) && rest(scene) != rest(self) {
-            // Room and models have a say in everything.
+            // Room and models affect everything.
             return check::scene(scene, registry).into_iter().next();
         }
         let mut check = check::Parts::of(scene, registry);
@@ -125,8 +127,8 @@ fn object(part: Extent) -> Option<usize> {
     if let Extent::Object(i) = part { Some(i) } else { None }
 }
 
-/// The labels of the parts that stay. `same_type` compares the type of a part, by its old place, with that in its new
-/// one, if there is one: a part of another type gets another number.
+/// The labels of the parts that stay. `same_type` compares the type of a part at its old index with that at
+/// its new one, if there is one: a part of another type gets another number.
 fn kept(labels: &[Label], gone: &[usize], same_type: impl Fn(usize, usize) -> Option<bool>) -> Vec<Label> {
     let mut stays = vec![true; labels.len()];
     for i in gone {

@@ -14,14 +14,14 @@ use crate::{
     },
 };
 
-/// A step from the numbers that are given to a factor.
+/// A step in the calculation of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The equation as it is written: `1/d^2`, or `x = cos θ`.
+    /// The equation as written: `1/d^2`, or `x = cos θ`.
     pub text: String,
     /// The right side with numbers.
     pub numbers: String,
-    /// Its value.
+    /// The value of the step.
     pub value: Value,
 }
 
@@ -39,8 +39,8 @@ impl Scope for Known {
 }
 
 impl Factor {
-    /// The way from the numbers that are given to the factor, the factor itself first; empty if it says none, or one that
-    /// does not lead there.
+    /// The calculation of the factor from given numbers, the factor itself first; empty if the light type
+    /// provides none, or one that does not yield the factor.
     #[must_use]
     pub fn steps(&self, digits: usize) -> Vec<Step> {
         let given = self.from.iter().map(|(symbol, value, unit)| {
@@ -52,7 +52,7 @@ impl Factor {
         if self.equation.is_empty() {
             return steps;
         }
-        // What is defined last is needed by what stands before.
+        // Later definitions are inputs of earlier ones.
         for text in definitions(self.equation).into_iter().rev() {
             let (head, body) = sides(text).unwrap_or(("", text));
             let Ok(value) = Expression::read(body).and_then(|e| e.value(&mut known)) else {
@@ -71,7 +71,7 @@ impl Factor {
     }
 }
 
-/// An expression with numbers, of as many digits as it takes.
+/// An expression with numbers, with as many digits as needed.
 fn with_numbers(body: &str, known: &Known, value: &Value, digits: usize) -> String {
     let values = || known.0.iter().map(|(name, value)| (name.as_str(), *value));
     let with =

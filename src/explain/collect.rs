@@ -1,4 +1,4 @@
-//! Explanations from what the renderer did.
+//! Explanations collected from the renderer's own calculation.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub(super) struct Explain<'a> {
 }
 
 impl Explain<'_> {
-    /// The object that a probe found.
+    /// The explanation of the object that a probe found.
     pub(super) fn seen(&self, found: Probe) -> Option<Seen> {
         let object = self.scene.objects.get(found.object)?;
         let model = self.registry.model(self.scene.model_of(object))?;
@@ -57,7 +57,7 @@ impl Explain<'_> {
             spots: at_corners.chain(at_pixel).collect(),
             per_pixel: found.phong.as_ref().map(|point| spot(Place::Pixel, point)),
             light: found.light.truncate(),
-            // Asked last: an endless function shows only when it runs.
+            // Checked last: an endless function is detected only when it runs.
             model: Model::of(model, &object.material, self.scene.display.encoding, found.surface.clone()),
         })
     }
@@ -137,7 +137,7 @@ impl Explain<'_> {
 }
 
 impl Model {
-    /// A model with the parameters of an object, and its surface for them.
+    /// A model with an object's parameters, and its surface.
     #[must_use]
     pub fn of(entry: &ModelEntry, values: &Values, encoding: Encoding, surface: Arc<dyn Surface>) -> Self {
         let setting = |parameter: &'static Parameter| {
@@ -156,7 +156,7 @@ impl Model {
         }
     }
 
-    /// True if the parameter of that name has one of these choices.
+    /// True if the parameter with this name has one of these choices.
     pub(super) fn chooses(&self, name: &str, ids: &[&str]) -> bool {
         let setting = self.settings.iter().find(|setting| setting.parameter.name == name);
         setting.is_some_and(|setting| matches!(&setting.value, Value::Choice(id) if ids.contains(&&**id)))

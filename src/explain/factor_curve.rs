@@ -1,4 +1,4 @@
-//! A quantity of an equation over the angle of the light, for a small plot.
+//! A quantity of an equation as a function of the light's angle, for a small plot.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use crate::{
     text::expression::{Expression, Value},
 };
 
-/// What moves while a quantity is plotted.
+/// The direction that varies along the plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The light, in its plane with the normal.
@@ -17,25 +17,26 @@ pub enum Along {
     Viewer,
 }
 
-/// A quantity over an angle to the normal.
+/// A quantity as a function of an angle to the normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorCurve {
-    /// What moves.
+    /// The direction that varies.
     pub along: Along,
-    /// Angles from −90° to 90°, on the side of the present one above 0, with the values there; none where it has none.
+    /// Angles from −90° to 90°, positive on the present side, with the values there; `None` where undefined.
     pub points: Vec<(f32, Option<[f32; 3]>)>,
-    /// The present angle, degrees, and the value there.
+    /// The present angle in degrees, and the value there.
     pub here: (f32, [f32; 3]),
 }
 
-/// Angles of a curve.
+/// Number of angles of a curve.
 const STEPS: i32 = 60;
-/// The angle next to the horizon, degrees, where cosines are not 0 yet.
+/// Largest angle, in degrees, just above the horizon, where cosines are not 0 yet.
 const MOST: f64 = 89.9;
 
 impl Model {
-    /// A quantity of the equation, by its name as a line [defines](super::Line::defines) it, while the light moves in its
-    /// plane with the normal, or the viewer where the light makes no difference. None for a constant.
+    /// A quantity of the equation, named as by [defines](super::Line::defines), while the light moves in its
+    /// plane with the normal, or the viewer if the quantity does not depend on the light. `None` for a
+    /// constant.
     #[must_use]
     pub fn curve_of(&self, name: &str, geometry: &Geometry) -> Option<FactorCurve> {
         let expression = Expression::read(name).ok()?;

@@ -1,8 +1,8 @@
-//! Light that is not finite: which light or reflection model of a scene gives it, and where.
+//! Non-finite light: finds the light or reflection model of a scene that produces it, and where.
 //!
-//! Renderers draw such light as something: NaN as black, infinity as white. This module finds out whose it is, by trying
-//! places and directions, or from pixels that are known to be wrong. On the way it meets models that cannot be tried,
-//! since a function runs too long.
+//! Renderers draw NaN as black and infinity as white. This module finds the source, by trying positions and
+//! directions, or from pixels known to be affected. It also finds models that cannot be tried because a
+//! function runs too long.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -32,25 +32,25 @@ use crate::{
     text::quoted,
 };
 
-/// Angles of lights to the normal that are tried, degrees; behind the surface a model must be finite too.
+/// Angles between light and normal to try, in degrees; a model must be finite behind the surface too.
 const LIGHTS: [f32; 10] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.9, 100.0, 180.0];
-/// Angles of the viewer to the normal that are tried, degrees.
+/// Angles between viewer and normal to try, in degrees.
 const VIEWS: [f32; 6] = [0.0, 30.0, 45.0, 60.0, 85.0, 89.9];
-/// Angles between their planes that are tried, degrees.
+/// Angles between their planes to try, in degrees.
 const PLANES: [f32; 5] = [0.0, 60.0, 120.0, 180.0, 270.0];
-/// Objects at which lights are tried.
+/// Maximum number of objects at which lights are tried.
 const MOST_OBJECTS: usize = 64;
-/// Different surfaces that are tried.
+/// Maximum number of different surfaces to try.
 const MOST_SURFACES: usize = 512;
-/// Pixels that are traced to what is wrong.
+/// Maximum number of pixels traced to their source.
 const MOST_PIXELS: usize = 16;
 
-/// A light, or an object by its reflection model, whose light is not finite, or cannot be calculated.
+/// A light, or an object with its reflection model, whose light is not finite or cannot be calculated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotFinite {
-    /// Its path in the scene.
+    /// Path in the scene.
     pub path: Path,
-    /// The rest of the sentence: its type or model, the value, and where.
+    /// The rest of the sentence: type or model, value, and position.
     pub what: String,
 }
 
@@ -60,12 +60,12 @@ impl fmt::Display for NotFinite {
     }
 }
 
-/// The lights and models of a scene that are tried.
+/// Selects the lights and models of a scene to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// All.
     All,
-    /// Those that no test of this crate has tried: custom models, and the types of other crates.
+    /// Those without tests in this crate: custom models, and types of other crates.
     Untested,
 }
 
@@ -76,7 +76,7 @@ impl Scope {
     }
 }
 
-/// What surfaces gave, by model, version and parameters: each is tried once.
+/// Results for surfaces, by model, version and parameters: each is tried once.
 #[derive(Debug, Default)]
 pub struct Tried {
     surfaces: HashMap<(&'static str, u64, Vec<u32>), Option<String>>,
@@ -84,16 +84,16 @@ pub struct Tried {
 }
 
 impl Tried {
-    /// The objects of the last scene in whose models a function ran too long, the first of each model: neither renderer
-    /// runs them.
+    /// Objects of the last scene whose models ran a function for too long, one for each model: neither
+    /// renderer runs these models.
     #[must_use]
     pub fn too_long(&self) -> &[NotFinite] {
         &self.too_long
     }
 }
 
-/// Tries the lights of a scene at its objects and in its room, and its models for directions of light and viewer.
-/// Models that the CPU cannot run are left out.
+/// Tries the lights of a scene at its objects and in its room, and its models for directions of light and
+/// viewer. Skips models that the CPU cannot run.
 #[must_use]
 pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried) -> Vec<NotFinite> {
     let mut found = lights(scene, registry, scope);
@@ -114,7 +114,7 @@ pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried
         }
         let what = tried.surfaces.entry(key).or_insert_with(|| surface(scene, object, model));
         found.extend(what.clone().map(|what| NotFinite { path: part("objects", i), what }));
-        // It did not before, so it is this object that shows it.
+        // It did not run too long before, so this object triggers it.
         if model.runs_too_long() {
             let what = too_long(object, model, registry);
             tried.too_long.push(NotFinite { path: part("objects", i), what });
@@ -131,7 +131,7 @@ fn named(name: Option<&str>) -> String {
     name.map_or_else(String::new, |name| format!("({}) ", quoted(name)))
 }
 
-/// The lights that shine, each with the first place at which it is not finite.
+/// The active lights that are not finite somewhere, each with the first such position.
 fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
     let places = places(scene);
     let mut found = Vec::new();
@@ -227,19 +227,19 @@ fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<O
 
 /// Points of the unit square: a grid with its edges.
 fn grid() -> impl Iterator<Item = Vec2> {
-    /// Points on a side. Samples are below 1.
+    /// Points per side. Samples are below 1.
     const SIDE: usize = 5;
     let at = |i: usize| (i as f32 / (SIDE - 1) as f32).min(1.0f32.next_down());
     (0..SIDE * SIDE).map(move |i| Vec2::new(at(i % SIDE), at(i / SIDE)))
 }
 
-/// Directions of the whole sphere.
+/// Directions over the whole sphere.
 fn directions() -> Vec<Vec3> {
     let polar = [0.0, 45.0, 90.0, 135.0, 180.0];
     polar.into_iter().flat_map(|theta| PLANES.map(|phi| direction(theta, phi))).collect()
 }
 
-/// Points at objects, and a grid in the room.
+/// Positions at objects, and a grid in the room.
 fn places(scene: &Scene) -> Vec<Vec3> {
     let room = scene.scene_size.corner();
     let grid = (0..27).map(|i| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32));
@@ -249,16 +249,16 @@ fn places(scene: &Scene) -> Vec<Vec3> {
     objects.chain(grid.map(|cell| (0.1 + 0.4 * cell) * room)).collect()
 }
 
-/// A direction by its angles, degrees.
+/// The direction with these angles, in degrees.
 fn direction(theta: f32, phi: f32) -> Vec3 {
     let (sin, cos) = theta.to_radians().sin_cos();
     let (y, x) = phi.to_radians().sin_cos();
     Vec3::new(sin * x, sin * y, cos)
 }
 
-/// The first of these directions for which the surface of an object is not finite, in words.
+/// A description of the first of these directions for which an object's surface is not finite.
 fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String> {
-    // As before a GPU runs it.
+    // As before a GPU runs the model.
     check_that_it_ends(model, &object.material, scene.display.encoding).ok()?;
     let surface = model.instantiate(&object.material, scene.display.encoding);
     let (value, where_) = directed(&*surface, model).or_else(|| everywhere(&*surface, scene))?;
@@ -283,7 +283,7 @@ fn of_model(object: Option<&str>, model: &str, value: Vec3, where_: &str) -> Str
     )
 }
 
-/// The sum of the terms, which is not finite where one is not.
+/// The sum of the terms, if any of them is not finite.
 fn odd(terms: &Terms) -> Option<Vec3> {
     let sum = terms.ambient + terms.diffuse + terms.specular;
     (!sum.is_finite()).then_some(sum)
@@ -310,7 +310,7 @@ fn directed(surface: &dyn Surface, model: &ModelEntry) -> Option<(Vec3, String)>
 }
 
 fn everywhere(surface: &dyn Surface, scene: &Scene) -> Option<(Vec3, String)> {
-    // Calculating it takes long for some models, so only where it is needed.
+    // Calculated only where needed: it takes long for some models.
     if !scene.shining().any(|light| light.position.is_none() && light.direction.is_none()) {
         return None;
     }
@@ -321,7 +321,7 @@ fn everywhere(surface: &dyn Surface, scene: &Scene) -> Option<(Vec3, String)> {
     })
 }
 
-/// The pixels that are marked as not finite in a picture of the channel for that, row by row.
+/// The pixels marked as not finite in a picture of that debug channel, row by row.
 #[must_use]
 pub fn marked(rgb8: &[u8], width: u32) -> Vec<[u32; 2]> {
     let pixels = rgb8.as_chunks::<3>().0.iter().zip(0u32..);
@@ -329,7 +329,7 @@ pub fn marked(rgb8: &[u8], width: u32) -> Vec<[u32; 2]> {
     odd.map(|(_, i)| [i % width, i / width]).collect()
 }
 
-/// The lights and objects that make some of these pixels of a picture what they are.
+/// The lights and objects that make some of these pixels of a picture non-finite.
 #[must_use]
 pub fn traced(
     scene: &Scene,
@@ -383,7 +383,7 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
         }
     }
     if found.is_empty() {
-        // The GPU alone gives it, or the CPU cannot run the model.
+        // Only the GPU produces it, or the CPU cannot run the model.
         let what = format!("{}has the reflection model {}: pixel {x},{y}", named(object), seen.model.id);
         found.push(NotFinite { path: part("objects", seen.object.index), what });
     }

@@ -1,5 +1,6 @@
-//! The hemisphere above a point, seen from straight above: W. Nusselt's picture (1928), in which area is projected solid angle. The
-//! light that arrives, the lobe of the model, and their product, whose mean times π is the light to the observer.
+//! The hemisphere above a point, seen from straight above: the Nusselt analogue (W. Nusselt 1928), in which
+//! area is projected solid angle. It shows the arriving light, the lobe of the model, and their product,
+//! whose mean times π is the light to the observer.
 
 use glam::{Vec2, Vec3};
 
@@ -16,48 +17,49 @@ mod picture;
 
 pub use picture::HemispherePicture;
 
-/// Points per side of a pixel.
+/// Sample points per side of a pixel.
 const FINE: usize = 2;
 
-/// What lies in one direction above a point.
+/// The values in one direction above a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Above {
     /// The luminance that arrives from all lights with extent, cd/m².
     pub arriving: Vec3,
-    /// The lobe: the answer of the model over the cosine, π f for a BRDF f.
+    /// The lobe: the model's response divided by the cosine, π f for a BRDF f.
     pub lobe: Vec3,
-    /// Their product.
+    /// The product of the two.
     pub product: Vec3,
 }
 
-/// A light of one direction, which has no area.
+/// A light with a single direction, which has no area.
 #[derive(Clone, Debug)]
 pub struct PointLight {
-    /// Its place in the disc.
+    /// Position in the disc.
     pub place: Vec2,
-    /// The light that arrives, lx.
+    /// The arriving light, lx.
     pub light: Vec3,
 }
 
-/// The hemisphere above a point as a disc in a square: the tangent to the right, the bitangent up, the normal in the middle.
+/// The hemisphere above a point as a disc in a square: tangent to the right, bitangent up, normal in the
+/// middle.
 #[derive(Clone, Debug)]
 pub struct Hemisphere {
-    /// Width and height, pixels.
+    /// Width and height, in pixels.
     pub side: usize,
-    /// Row by row from the top: means over the part of each pixel that is in the disc; none beside the disc.
+    /// Row by row from the top: means over the part of each pixel inside the disc; `None` outside.
     pub pixels: Vec<Option<Above>>,
     /// The mean of the product over the disc times π: the integral over all lights with extent.
     pub integral: Vec3,
-    /// Lights of one direction that shine on the point.
+    /// Lights with a single direction that shine on the point.
     pub points: Vec<PointLight>,
-    /// The direction to the viewer in the disc.
+    /// Direction to the viewer in the disc.
     pub view: Vec2,
-    /// Its mirror direction.
+    /// Mirror direction of the viewer.
     pub mirror: Vec2,
 }
 
-/// The direction above a point for a place in the disc, whose radius is 1: in the local frame, normal +z. Area is projected solid
-/// angle.
+/// The direction above a point for a position in the unit disc, in the local frame with the normal +z. Area
+/// is projected solid angle.
 #[must_use]
 pub fn above(place: Vec2) -> Option<Vec3> {
     let squared = place.length_squared();
@@ -85,13 +87,13 @@ impl Shining {
         Self(scene.shining().filter_map(lamp).collect())
     }
 
-    /// The luminance that arrives from lights with extent.
+    /// The luminance arriving from lights with extent.
     fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
         let extended = self.0.iter().filter(|(.., extent)| *extent);
         extended.map(|(emitter, record, _)| emitter.seen(record, p, l).radiance * record.colour).sum()
     }
 
-    /// The lights of one direction above a point.
+    /// The lights with a single direction above a point.
     fn points(&self, p: Vec3, frame: &Frame) -> Vec<PointLight> {
         let point = |(emitter, record, extent): &(Box<dyn Emitter>, LightRecord, bool)| match emitter
             .incident(record, p)
@@ -108,11 +110,11 @@ impl Shining {
 /// One of the three discs.
 #[derive(Debug)]
 pub struct Disc {
-    /// What it shows.
+    /// Name of the quantity.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: &'static str,
-    /// Its values.
+    /// Selects the value.
     pub of: fn(&Above) -> Vec3,
 }
 
@@ -124,7 +126,8 @@ pub const DISCS: [Disc; 3] = [
 ];
 
 impl Hemisphere {
-    /// The hemisphere above a point of an explanation, with these terms of the model, as discs of so many pixels.
+    /// The hemisphere above a point of an explanation, with these terms of the model, as discs with this many
+    /// pixels per side.
     #[must_use]
     pub fn new(
         shining: &Shining,

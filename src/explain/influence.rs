@@ -1,4 +1,4 @@
-//! The numbers of a scene that would move a pixel most, by differences.
+//! The numbers of a scene with the greatest influence on a pixel, by finite differences.
 
 use glam::Vec3;
 
@@ -11,48 +11,49 @@ use crate::{
     scene::{Scene, limits},
 };
 
-/// The part of its range by which a number is changed up and down.
+/// Fraction of a number's range by which it is changed up and down.
 const STEP: f64 = 0.01;
 
 /// A number of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Knob {
-    /// A parameter of the reflection model of the object at the pixel, by its name.
+    /// A parameter of the reflection model of the object at the pixel, by name.
     Material {
-        /// The object, by its place in the list.
+        /// Index of the object.
         object: usize,
-        /// The name of the parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// True for a whole number.
+        /// True for an integer.
         whole: bool,
     },
     /// The intensity or the luminous flux of a light.
     Intensity {
-        /// The light, by its place in the list.
+        /// Index of the light.
         light: usize,
     },
 }
 
-/// How a pixel follows a number of the scene: a difference quotient between two values around the present one.
+/// The dependence of a pixel on a number of the scene: a difference quotient between two values around the
+/// present one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
     /// The number.
     pub knob: Knob,
-    /// Its symbol.
+    /// Symbol of the number.
     pub symbol: &'static str,
-    /// Its name in words.
+    /// Name in words.
     pub label: String,
-    /// Its unit; often none.
+    /// Unit; often empty.
     pub unit: &'static str,
-    /// Its present value.
+    /// Present value.
     pub value: f64,
-    /// The two values that were tried: a hundredth of its range below and above, where that is legal.
+    /// The two values tried: a hundredth of the range below and above, where legal.
     pub tried: [f64; 2],
-    /// The light of the pixel for these two.
+    /// The light of the pixel for these two values.
     pub light: [Vec3; 2],
-    /// A hundredth of its range.
+    /// A hundredth of the range.
     pub hundredth: f64,
-    /// The significant digits of the differences that mean something: fewer where light with extent has noise.
+    /// Significant digits of the differences: fewer where light with extent has noise.
     pub digits: usize,
 }
 
@@ -78,12 +79,12 @@ impl Influence {
 }
 
 impl Explainer {
-    /// The numbers of a scene, that with the largest [effect](Influence::effect) on a pixel first: those of the material of its
-    /// object, without colours, and the intensities of the lights. Each takes two renderings of the pixel, so this is for the
-    /// asking, not for every frame.
+    /// The numbers of a scene, sorted by their [effect](Influence::effect) on a pixel, largest first: the
+    /// material of the object there, without colours, and the intensities of the lights. Each takes two
+    /// renderings of the pixel, so call this on demand, not in every frame.
     ///
     /// # Errors
-    /// If the pixel is not in the picture.
+    /// Returns an error if the pixel is not in the picture.
     pub fn influences(
         &mut self,
         scene: &Scene,
@@ -94,7 +95,8 @@ impl Explainer {
         let explanation = self.pixel(scene, registry, settings, pixel)?;
         let Some(seen) = explanation.seen else { return Ok(Vec::new()) };
         let object = seen.object.index;
-        // The samples are the same for all values, so that differences are smooth; they have the relative error of the sum.
+        // All values use the same samples, so that differences are smooth; these have the relative error of
+        // the sum.
         let digits = digits_within(noise(&seen), DIGITS);
         let mut knobs = Vec::new();
         for setting in &seen.model.settings {
@@ -126,10 +128,10 @@ impl Explainer {
         let mut found = Vec::new();
         let mut changed = scene.clone();
         for (knob, symbol, label, unit, value, [min, max]) in knobs {
-            // Whole numbers change by whole ones.
+            // Integers change in whole steps.
             let whole = matches!(knob, Knob::Material { whole: true, .. });
             let hundredth = if whole { (STEP * (max - min)).round().max(1.0) } else { STEP * (max - min) };
-            // A light may be brighter than its slider.
+            // A light may be brighter than the maximum of its slider.
             let tried = [(value - hundredth).max(min), (value + hundredth).min(max.max(value))];
             let mut light = [Vec3::ZERO; 2];
             for (light, tried) in light.iter_mut().zip(tried) {
@@ -145,7 +147,7 @@ impl Explainer {
     }
 }
 
-/// The standard error of the light of a pixel over that light, at the worst of its points.
+/// The relative standard error of a pixel's light, at the noisiest of its points.
 fn noise(seen: &Seen) -> f32 {
     let of = |spot: &super::Spot| {
         let squares: f32 =
@@ -201,7 +203,7 @@ mod tests {
         let found = explainer.influences(&scene, &registry, &settings, [32, 18]).expect("inside");
         let of =
             |symbol: &str| found.iter().find(|i| i.symbol == symbol).unwrap_or_else(|| panic!("{symbol}"));
-        // The diffuse term is all of the light here, but for the ambient one.
+        // Here the diffuse term gives all of the light except the ambient.
         for (symbol, light) in [("k_d", light - of("k_a").derivative() * 0.1), ("I", light)] {
             let influence = of(symbol);
             let expected = light / influence.value as f32;

@@ -1,4 +1,4 @@
-//! Light with extent in an explanation: an integral over many directions instead of the equation for one.
+//! Light with extent in explanations: an integral over many directions instead of the equation for one.
 
 use super::{Geometry, Line, Lit, Model, lines::of_terms, measured, numbers::colour, rounded};
 use crate::{
@@ -7,35 +7,35 @@ use crate::{
 };
 use glam::Vec3;
 
-/// What the terms of a light with extent rest on: each is the integral of the equation's term times the luminance over the
-/// directions of the light.
+/// The basis of the terms of a light with extent: each is the integral of the equation's term times the
+/// luminance over the directions of the light.
 #[derive(Clone, Copy, Debug)]
 pub struct Integral {
     /// The standard error of each term.
     pub errors: Terms,
-    /// That of the light to the observer.
+    /// Standard error of the light to the observer.
     pub error: Vec3,
-    /// The samples of the light, and as many of the model's lobes.
+    /// Number of samples of the light, and of the model's lobes.
     pub samples: u32,
-    /// The solid angle from which the light shines, sr, and its standard error.
+    /// The solid angle of the light, sr, and its standard error.
     pub solid_angle: [f32; 2],
-    /// Of the samples, the direction that gives most; none if all are dark.
+    /// The sampled direction that contributes most; none if all are dark.
     pub brightest: Option<Brightest>,
 }
 
-/// One direction of a light with extent, as the light of a point would come from there.
+/// One direction of a light with extent, treated like a light without extent.
 #[derive(Clone, Copy, Debug)]
 pub struct Brightest {
-    /// The direction, and its cosines.
+    /// The direction and its cosines.
     pub geometry: Geometry,
-    /// The luminance from there, cd/m²: red, green and blue, with the colour of the light.
+    /// The luminance from this direction, cd/m²: red, green and blue, including the colour of the light.
     pub luminance: Vec3,
-    /// The answer of the model to light of unit intensity from there.
+    /// The response of the model to light of unit intensity from this direction.
     pub response: Terms,
 }
 
 impl Integral {
-    /// What it rests on, in words.
+    /// Describes the samples behind the integral.
     #[must_use]
     pub fn basis(&self) -> String {
         let count = self.samples;
@@ -45,7 +45,7 @@ impl Integral {
         )
     }
 
-    /// The solid angle of the light, in words.
+    /// Describes the solid angle of the light.
     #[must_use]
     pub fn filled(&self) -> String {
         let [angle, error] = self.solid_angle;
@@ -69,13 +69,13 @@ impl Integral {
 }
 
 impl Brightest {
-    /// The equation for light from there, line by line: see [`Lit::lines`].
+    /// The equation for light from this direction, line by line: see [`Lit::lines`].
     #[must_use]
     pub fn lines(&self, model: &Model, digits: usize) -> Vec<Line> {
         model.lines(Some(&self.geometry), &self.response, digits)
     }
 
-    /// What it gives, per steradian.
+    /// The contribution of this direction, per steradian.
     #[must_use]
     pub fn gives(&self, terms: TermSelection) -> Vec3 {
         self.response.select(terms) * self.luminance
@@ -83,21 +83,22 @@ impl Brightest {
 }
 
 impl Lit {
-    /// The directions at the point: those of the light, or of the direction of a light with extent that gives most.
+    /// The directions at the point: those of the light, or of the direction of a light with extent that
+    /// contributes most.
     #[must_use]
     pub fn leading(&self) -> Option<Geometry> {
         let brightest = || Some(self.integral?.brightest?.geometry);
         self.geometry.or_else(brightest)
     }
 
-    /// The light to the observer as it is to be written: with so many digits, or with those that its standard error allows.
+    /// The light to the observer as written: with this many digits, or those that its standard error allows.
     #[must_use]
     pub fn outcome(&self, digits: usize) -> String {
         super::told(self.contribution, self.error(), digits)
     }
 }
 
-/// The significant digits that a relative error leaves: from one to `most`.
+/// The significant digits that a relative error allows: from one to `most`.
 pub(super) fn digits_within(relative: f32, most: usize) -> usize {
     match relative {
         r if r > 0.0 && r.is_finite() => ((-r.log10()).floor().max(0.0) as usize + 1).clamp(1, most),
@@ -105,9 +106,10 @@ pub(super) fn digits_within(relative: f32, most: usize) -> usize {
     }
 }
 
-/// A number with its standard error, each with the digits that mean something: one of the error, or two if it begins with 1.
+/// A number with its standard error, both with their significant digits: one for the error, or two if it
+/// begins with 1.
 pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
-    /// The digits of 32 bits.
+    /// The digits of a 32-bit number.
     const MOST: i32 = 7;
     let (value, error) = (f64::from(value), f64::from(error));
     if error <= 0.0 || !error.is_finite() || !value.is_finite() {
@@ -118,7 +120,7 @@ pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
     let of_error = if (1.0..1.95).contains(&lead) { 2 } else { 1 };
     let last = place(error) + 1 - of_error;
     let digits = if value == 0.0 { 1 } else { (place(value) - last + 1).clamp(1, MOST) };
-    // Digits before the point are written whether they mean something or not.
+    // Digits before the decimal point are written whether significant or not.
     let unit = 10f64.powi(last.max(0));
     let value = if last > 0 { (value / unit).round() * unit } else { value };
     [rounded(value, digits as usize), rounded(error, of_error as usize)]

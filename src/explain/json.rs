@@ -1,4 +1,4 @@
-//! Explanations for programs.
+//! Explanations as JSON.
 
 use glam::Vec3;
 use serde_json::{Value as Json, json};
@@ -9,10 +9,11 @@ use super::{
 };
 use crate::{light::Factor, optics::Terms, parameter, text::number as finite};
 
-/// The digits of numbers that are put in: all that 32 bits have.
+/// Digits of substituted numbers: all that 32 bits have.
 const FULL: usize = 9;
 
-/// A number; JSON has none for values that are not finite, which are texts: `"NaN"`, `"Infinity"`, `"-Infinity"`.
+/// A number; non-finite values, which JSON does not have, become strings: `"NaN"`, `"Infinity"`,
+/// `"-Infinity"`.
 fn number(v: f32) -> Json {
     match v {
         v if v.is_finite() => finite(v),
@@ -22,7 +23,7 @@ fn number(v: f32) -> Json {
     }
 }
 
-/// A number with 64 bits, with the digits of 32 where those suffice.
+/// A 64-bit number, with the digits of 32 bits where those suffice.
 fn exact(v: f64) -> Json {
     match v as f32 {
         short if f64::from(short) == v || !v.is_finite() => number(short),
@@ -39,8 +40,8 @@ fn part(part: &Part) -> Json {
 }
 
 impl Explanation {
-    /// The explanation as JSON, every number of it. Numbers that are not finite are the texts `"NaN"`, `"Infinity"` and
-    /// `"-Infinity"`.
+    /// The explanation as JSON, with every number. Non-finite numbers become the strings `"NaN"`,
+    /// `"Infinity"` and `"-Infinity"`.
     #[must_use]
     pub fn to_json(&self) -> Json {
         let steps = &self.steps;
@@ -161,7 +162,7 @@ impl Spot {
     }
 }
 
-/// The scalar products at a point by name, as they are or as angles.
+/// The scalar products at a point by name, mapped by `of`, for instance to angles.
 fn cosines(geometry: &Geometry, of: impl Fn(f32) -> f32) -> Json {
     geometry.cosines.into_iter().map(|(name, c)| (name.to_owned(), number(of(c)))).collect()
 }

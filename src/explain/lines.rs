@@ -1,4 +1,4 @@
-//! The equation of a model for one light, line by line: as it is written, with numbers, and its value.
+//! The equation of a model for one light, line by line: as written, with numbers, and its value.
 
 use glam::Vec3;
 
@@ -19,10 +19,10 @@ use crate::{
     },
 };
 
-/// The most digits of a number in a line; enough for any that the program has.
+/// Maximum number of digits of a number in a line; enough for every number in the program.
 const MOST_DIGITS: usize = 12;
 
-/// The answer to light from everywhere of models that have no formula for it.
+/// The response to uniform light of models without a formula for it.
 const ALBEDO: Quantity = Quantity::new(
     "I_a",
     "directional albedo towards V: the integral of f_r N·L over the hemisphere, by the program",
@@ -31,31 +31,32 @@ const ALBEDO: Quantity = Quantity::new(
 /// A line of the equation of a model for one light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// The term that it belongs to.
+    /// The term to which the line belongs.
     pub term: Term,
-    /// As the model writes it, with the arguments of functions in their places; the name alone for a quantity that the
-    /// model gives without an equation; empty for a term about which its equation says nothing.
+    /// The text as written by the model, with the arguments of functions substituted; only the name for a
+    /// quantity that the model provides without an equation; empty for a term that the equation does not
+    /// cover.
     pub text: String,
-    /// The same with numbers, if there are any to put in: as many digits as it takes to get the value from them.
+    /// The text with numbers, if any can be substituted, with as many digits as needed to obtain the value.
     pub numbers: Option<String>,
-    /// Of each number on the right side, in their order, the symbol in whose place it stands; see [`Put`].
+    /// The symbol replaced by each number on the right side, in order; see [`Put`].
     pub symbols: Vec<Option<String>>,
-    /// Its value, where it is known.
+    /// The value, if known.
     pub value: Option<Value>,
-    /// The standard error of the value, where it is an integral over a light with extent.
+    /// The standard error of the value, if it is an integral over a light with extent.
     pub error: Option<Vec3>,
-    /// The declaration of a quantity; none for a part of the equation itself.
+    /// The declaration of a quantity; `None` for a part of the equation itself.
     pub quantity: Option<&'static Quantity>,
 }
 
 impl Line {
-    /// The symbol of its term: `I_d`.
+    /// The symbol of the line's term: `I_d`.
     #[must_use]
     pub fn symbol(&self) -> &'static str {
         self.term.symbol()
     }
 
-    /// What it defines: `I_d`, or `H(N·L)`.
+    /// The symbol that the line defines: `I_d`, or `H(N·L)`.
     #[must_use]
     pub fn defines(&self) -> &str {
         match sides(&self.text) {
@@ -65,13 +66,14 @@ impl Line {
         }
     }
 
-    /// True if it defines its term.
+    /// True if the line defines its term.
     #[must_use]
     pub fn is_term(&self) -> bool {
         self.defines() == self.symbol()
     }
 
-    /// True for a line of the equation itself: a term, or a part that the equation defines; false for a quantity beside it.
+    /// True for a line of the equation itself: a term, or a part that the equation defines; false for a
+    /// separate quantity.
     #[must_use]
     pub fn is_equation(&self) -> bool {
         self.is_term() || self.quantity.is_none()
@@ -83,7 +85,7 @@ impl Line {
         self.value.map(|value| Vec3::from_array(value.rgb.map(|v| v as f32)))
     }
 
-    /// The value as it is to be written: with so many digits, or with those that its standard error allows.
+    /// The value as written: with this many digits, or those that its standard error allows.
     #[must_use]
     pub fn outcome(&self, digits: usize) -> Option<String> {
         match (self.rgb(), self.error) {
@@ -92,7 +94,7 @@ impl Line {
         }
     }
 
-    /// The right side with numbers, without what is defined.
+    /// The right side with numbers.
     #[must_use]
     pub fn right(&self) -> Option<&str> {
         let numbers = self.numbers.as_deref()?;
@@ -100,7 +102,7 @@ impl Line {
     }
 }
 
-/// Numbers as they are written know no names.
+/// Written numbers contain no names.
 struct Nameless;
 
 impl Scope for Nameless {
@@ -113,23 +115,23 @@ impl Scope for Nameless {
     }
 }
 
-/// The value of a line as it stands: of the right side, or of the whole if there is no equals sign.
+/// The value of a line as written: of the right side, or of the whole text without an equals sign.
 ///
 /// # Errors
-/// If it is no calculation, in words.
+/// Returns a description of the error if the line cannot be calculated.
 pub fn reading(numbers: &str) -> Result<Value, String> {
     let body = sides(numbers).map_or(numbers, |(_, body)| body);
     Expression::read(body)?.value(&mut Nameless)
 }
 
-/// True if two values agree to so many significant digits, or both are next to nothing: below a billionth.
+/// True if two values agree to this many significant digits, or both are negligible: below a billionth.
 #[must_use]
 pub fn agrees(a: &Value, b: &Value, digits: usize) -> bool {
     agrees_above(a, b, digits, 1e-9)
 }
 
-/// The same with another size of next to nothing: at most one unit of the last digit apart, and half of one of a number that
-/// begins with 1.
+/// Like [`agrees`], with another threshold for negligible values: at most one unit of the last digit apart,
+/// or half a unit for a number that begins with 1.
 fn agrees_above(a: &Value, b: &Value, digits: usize, nothing: f64) -> bool {
     let most = b.rgb.iter().fold(0.0f64, |most, v| most.max(v.abs()));
     let near = |(a, b): (&f64, &f64)| {
@@ -142,27 +144,28 @@ fn agrees_above(a: &Value, b: &Value, digits: usize, nothing: f64) -> bool {
     a.rgb.iter().zip(&b.rgb).all(near)
 }
 
-/// True if two values are written alike with so many digits, or nearly: rounding may hang on the last digit of all.
+/// True if two values are written alike with this many digits, or nearly: rounding may depend on the last
+/// bit.
 fn reads_as(a: &Value, b: &Value, digits: usize) -> bool {
     agrees_above(a, b, digits + 1, 1e-15)
         || agrees_above(a, b, digits, 1e-15) && of_value(a, digits) == of_value(b, digits)
 }
 
-/// A calculation with as many digits as it takes to get its value from them: at least so many.
+/// A calculation with as many digits as needed to obtain its value, but at least this many.
 pub(super) fn calculation(digits: usize, value: &Value, with: impl Fn(usize) -> String) -> String {
     let fits = |text: &String| reading(text).is_ok_and(|read| reads_as(&read, value, digits));
     (digits..=MOST_DIGITS).map(&with).find(fits).unwrap_or_else(|| with(digits))
 }
 
 impl Lit {
-    /// The equation of the model for this light, line by line: each term with its value, then the quantities that it
-    /// needs, in the order in which they are met. Every term that is not zero has a line with its value.
+    /// The equation of the model for this light, line by line: each term with its value, then the quantities
+    /// that it needs, in the order of their appearance. Every non-zero term has a line with its value.
     #[must_use]
     pub fn lines(&self, model: &Model) -> Vec<Line> {
         self.rounded_lines(model, DIGITS)
     }
 
-    /// The same with so many significant digits, and more where the value would not follow from so few.
+    /// The lines with this many significant digits, and more where the value would not follow from so few.
     #[must_use]
     pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
         match &self.integral {
@@ -171,19 +174,20 @@ impl Lit {
         }
     }
 
-    /// The terms that reach the observer: those that are shown and not 0.
+    /// The terms that reach the observer: shown, and not 0.
     fn shown(&self, terms: TermSelection) -> impl Iterator<Item = (Term, Vec3)> {
         let shown = move |term: Term| terms == TermSelection::All || term.alone() == Some(terms);
         of_terms(&self.response).into_iter().filter(move |(term, value)| *value != Vec3::ZERO && shown(*term))
     }
 
-    /// The terms that reach the observer, those that are shown and not 0, as a factor: `(I_d + I_s)`.
+    /// The terms that reach the observer (shown, and not 0) as a factor: `(I_d + I_s)`.
     #[must_use]
     pub fn sum(&self, terms: TermSelection) -> String {
         factor(self.shown(terms).map(|(term, _)| term.symbol().to_owned()))
     }
 
-    /// The same with their values, and the arriving light: as many digits as it takes to get the light to the observer.
+    /// The factor with values, times the arriving light, with as many digits as needed to obtain the light to
+    /// the observer.
     pub(super) fn product(&self, terms: TermSelection) -> String {
         let with = |digits: usize| {
             let sum = factor(self.shown(terms).map(|(_, value)| rounded_triple(value, digits)));
@@ -193,13 +197,13 @@ impl Lit {
     }
 }
 
-/// The ambient, diffuse and specular term, each with its value.
+/// The ambient, diffuse and specular terms with their values.
 pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
     let Terms { ambient, diffuse, specular } = *response;
     [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
 }
 
-/// A sum as a factor: in brackets if there are several.
+/// A sum as a factor: in brackets if it has several terms.
 fn factor(terms: impl Iterator<Item = String>) -> String {
     let terms: Vec<_> = terms.collect();
     match terms.as_slice() {
@@ -210,8 +214,8 @@ fn factor(terms: impl Iterator<Item = String>) -> String {
 }
 
 impl Model {
-    /// The lines of the equation for light from a direction, or for light from everywhere, and the answer of the model: see
-    /// [`Lit::rounded_lines`].
+    /// The lines of the equation for light from a direction, or for uniform light, and the response of the
+    /// model: see [`Lit::rounded_lines`].
     #[must_use]
     pub fn lines(&self, geometry: Option<&Geometry>, response: &Terms, digits: usize) -> Vec<Line> {
         let workings = Workings::new(self, geometry, response);
@@ -219,7 +223,7 @@ impl Model {
         for (term, value) in of_terms(response) {
             lines.term(term, value);
         }
-        // A model may have one formula for all of its light.
+        // A model may have one formula for all its light.
         let total = response.select(TermSelection::All);
         for text in parts(self, Term::Total).filter(|_| geometry.is_some()) {
             lines.total(text, total);
@@ -245,10 +249,10 @@ struct Lines<'a> {
 impl Lines<'_> {
     fn term(&mut self, term: Term, light: Vec3) {
         let value = colour(light);
-        // An equation is for light from a direction, except for its ambient term.
+        // An equation describes light from a direction, except in its ambient term.
         let said = term == Term::Ambient || self.geometry.is_some();
         let before = self.lines.len();
-        // A model without a formula for light from everywhere answers with its albedo.
+        // A model without a formula for uniform light responds with its albedo.
         let albedo = term == Term::Ambient && self.model.declaration.ambient == Ambient::Albedo;
         let blank = Line {
             term,
@@ -264,7 +268,8 @@ impl Lines<'_> {
         for text in texts.iter().filter(|text| is_head(text)) {
             let start = self.workings.worked.len();
             let outcome = self.workings.evaluate(text);
-            // Behind the surface an equation may give something else, or nothing: a shader has returned before its `let`s.
+            // Behind the surface an equation may give another value or none: a shader has returned before its
+            // `let`s.
             let off = outcome.as_ref().map_or(true, |worked| !agrees(worked, &value, self.digits));
             let gate = self.geometry.and_then(|geometry| gate(geometry, blank.symbol()));
             if let Some(gate) = gate.filter(|_| off && light == Vec3::ZERO) {
@@ -274,11 +279,11 @@ impl Lines<'_> {
             }
             match outcome {
                 Ok(worked) => {
-                    // The digits are those that the equation needs, whose last ones differ from those of 32 bits.
+                    // The equation determines the digits; the last ones differ from those of 32 bits.
                     self.push_with(term, text, (Some(value), Some(&worked)), None);
                     self.quantities(term, start);
                 }
-                // Mathematics that nobody can calculate, such as an integral: as it is written.
+                // Mathematics that cannot be calculated, such as an integral, stays as written.
                 Err(_) => {
                     self.push(term, text, Some(value), None);
                     self.quantities(term, start);
@@ -301,7 +306,7 @@ impl Lines<'_> {
         }
     }
 
-    /// The line about the sum of the terms, if it has numbers.
+    /// Adds the line for the sum of the terms, if it has numbers.
     fn total(&mut self, text: &'static str, total: Vec3) {
         if self.lines.iter().any(|line| line.text == text) || total == Vec3::ZERO {
             return;
@@ -318,7 +323,7 @@ impl Lines<'_> {
         self.quantities(Term::Total, start);
     }
 
-    /// The lines of the quantities that were worked out since then.
+    /// Adds the lines of the quantities calculated since `start`.
     fn quantities(&mut self, term: Term, start: usize) {
         for worked in self.workings.worked.split_off(start) {
             let Definition { term: own, quantity, .. } =
@@ -332,7 +337,7 @@ impl Lines<'_> {
         self.push_with(term, text, (value, value.as_ref()), quantity);
     }
 
-    /// A line with its value, and the value that its numbers are to give.
+    /// Adds a line with its value, and the value that its numbers should give.
     fn push_with(
         &mut self,
         term: Term,
@@ -345,7 +350,7 @@ impl Lines<'_> {
         self.lines.push(Line { term, text: text.to_owned(), numbers, symbols, value, error: None, quantity });
     }
 
-    /// A text with numbers, of as many digits as it takes to get the value from them.
+    /// A text with numbers, with as many digits as needed to obtain the value.
     fn numbers(&self, text: &str, value: Option<&Value>) -> Option<Put> {
         sides(text)?;
         let with = |digits: usize| put(text, &Symbols::of(self.workings.values(), digits));
@@ -356,18 +361,18 @@ impl Lines<'_> {
             return Some(first);
         }
         let more = (self.digits + 1..=MOST_DIGITS).filter_map(with).find(fits);
-        // What cannot be calculated is written with few digits.
+        // A line that cannot be calculated is written with few digits.
         more.or_else(|| if reading(&first.text).is_ok() { with(MOST_DIGITS) } else { Some(first) })
     }
 }
 
-/// The reason why a term is 0 though its equation is not.
+/// The reason why a term is 0 although its equation is not.
 fn gate(geometry: &Geometry, symbol: &str) -> Option<String> {
     let below = ["N·L", "N·V"].into_iter().find(|product| geometry.cosine(product) <= 0.0)?;
     Some(format!("{symbol} = 0 if {below} ≤ 0"))
 }
 
-/// A parameter in an explanation: `k_d = 0.8, diffuse coefficient`.
+/// A parameter as written in an explanation: `k_d = 0.8, diffuse coefficient`.
 pub(super) fn setting(setting: &Setting) -> String {
     let p = setting.parameter;
     let value = match (&setting.value, setting.linear) {

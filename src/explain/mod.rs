@@ -1,8 +1,8 @@
-//! The colour of one pixel, explained: where the equation of the model was evaluated, with which numbers, light by light,
-//! and the way from light to the code on the display.
+//! The explanation of the colour of one pixel: where the model's equation was evaluated, with which numbers,
+//! light by light, and how light becomes the code on the display.
 //!
-//! Nothing is calculated in a second way: the CPU renderer draws a picture of this one pixel and is watched, so that the
-//! last number is the code of the picture with one sample per pixel, at the pixel's centre.
+//! Nothing is calculated a second time: the CPU renderer draws this one pixel and records its calculation, so
+//! that the last number is the code of the picture with one sample per pixel, at the pixel's centre.
 //!
 //! ```
 //! use lights_camera_models::{explain, reference::Settings, registry::Registry, scene::Scene};
@@ -72,7 +72,7 @@ pub use sentence::sentence;
 /// The reason why a pixel cannot be explained.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum ExplainError {
-    /// It is not in the picture.
+    /// The pixel is not in the picture.
     #[error(
         "the pixel {},{} is outside the picture of {}x{} pixels; {}",
         .pixel[0], .pixel[1], .size[0], .size[1], legal(.size)
@@ -85,10 +85,10 @@ pub enum ExplainError {
     },
 }
 
-/// Refuses a pixel that is not in a picture of this size.
+/// Checks that a pixel is in a picture of this size.
 ///
 /// # Errors
-/// Its place, and the legal ones.
+/// Returns an error with the pixel and the valid range if it is outside.
 pub fn inside(pixel: [u32; 2], size: [u32; 2]) -> Result<(), ExplainError> {
     if pixel[0] < size[0] && pixel[1] < size[1] {
         return Ok(());
@@ -96,7 +96,7 @@ pub fn inside(pixel: [u32; 2], size: [u32; 2]) -> Result<(), ExplainError> {
     Err(ExplainError::Outside { pixel, size })
 }
 
-/// The legal pixels of a picture.
+/// The valid pixels of a picture.
 fn legal([width, height]: &[u32; 2]) -> String {
     match (width.checked_sub(1), height.checked_sub(1)) {
         (Some(x), Some(y)) => format!("X must be from 0 to {x}, and Y from 0 to {y}"),
@@ -107,60 +107,60 @@ fn legal([width, height]: &[u32; 2]) -> String {
 /// The explanation of a pixel.
 #[derive(Clone, Debug)]
 pub struct Explanation {
-    /// Column and row, from the top left, from 0.
+    /// Column and row, counted from 0 at the top left.
     pub pixel: [u32; 2],
     /// Width and height of the picture.
     pub size: [u32; 2],
-    /// The terms of the equation that are shown.
+    /// The displayed terms of the equation.
     pub terms: TermSelection,
-    /// The object at the pixel's centre; none where there is only background, or a light.
+    /// The object at the pixel's centre; `None` for background or a light.
     pub seen: Option<Seen>,
-    /// The light with extent that is seen at the pixel's centre instead, if there is one.
+    /// The light with extent that is visible at the pixel's centre instead, if any.
     pub lamp: Option<Lamp>,
-    /// The settings of the way to the display.
+    /// The settings of the conversion to the display.
     pub display: Display,
-    /// That way, ending at the code.
+    /// The steps of that conversion, ending with the code.
     pub steps: DisplaySteps,
 }
 
-/// Light with extent that is itself seen at a pixel.
+/// A light with extent that is itself visible at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lamp {
-    /// The light, or several that are infinitely far away.
+    /// The light, or several lights at infinity.
     pub lights: Vec<Part>,
-    /// Their radiance, cd/m².
+    /// The radiance of the light or lights, cd/m².
     pub radiance: Vec3,
 }
 
 /// A part of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its place in the list of the scene, from 0.
+    /// Index in the scene's list, from 0.
     pub index: usize,
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
-    /// Id of its type.
+    /// Id of the type.
     pub id: String,
-    /// The name of its type.
+    /// Display name of the type.
     pub type_name: &'static str,
 }
 
-/// The object at a pixel, and how it got its light.
+/// The object at a pixel, and the calculation of its light.
 #[derive(Clone, Debug)]
 pub struct Seen {
     /// The object.
     pub object: Part,
-    /// Its reflection model.
+    /// Reflection model.
     pub model: Model,
-    /// Its shading model.
+    /// Shading model.
     pub shading: &'static shading::Declaration,
     /// The point of the triangle at the pixel's centre.
     pub position: Vec3,
-    /// The number of the polygon in the mesh of the object.
+    /// Index of the polygon in the object's mesh.
     pub polygon: usize,
     /// The corners of that polygon.
     pub outline: Vec<Vec3>,
-    /// The normal of the triangle, which is the polygon's unless the polygon is bent.
+    /// The normal of the triangle, equal to that of the polygon if it is planar.
     pub face_normal: Vec3,
     /// The normal interpolated between the corners, as the shading model passes it on: not renormalised.
     pub interpolated_normal: Vec3,
@@ -168,7 +168,8 @@ pub struct Seen {
     pub corners: [Corner; 3],
     /// The points at which the equation was evaluated, in order.
     pub spots: Vec<Spot>,
-    /// The point at which Phong shading would have evaluated it, for shading models that do so elsewhere.
+    /// The point at which Phong shading would have evaluated the equation, for shading models that evaluate
+    /// it elsewhere.
     pub per_pixel: Option<Spot>,
     /// The light of the pixel: the result of the shading model.
     pub light: Vec3,
@@ -187,18 +188,19 @@ impl std::fmt::Debug for Asked {
 /// A reflection model with its parameters.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Its id.
+    /// Id of the model.
     pub id: &'static str,
     /// Name, source, equation.
     pub declaration: &'static Declaration,
-    /// Its parameters.
+    /// Parameters of the model.
     pub settings: Vec<Setting>,
-    /// The model with these parameters, to be asked for other directions and for quantities of its equation.
+    /// The model with these parameters, which can be evaluated for other directions and for quantities of its
+    /// equation.
     pub surface: Asked,
     /// True if the CPU interprets its WGSL.
     pub interpreted: bool,
-    /// The reason why the CPU cannot run it, if any. Then it gives no light here, and the explanation is not that of the
-    /// GPU's picture.
+    /// The reason why the CPU cannot run the model, if any. The model then gives no light here, and the
+    /// explanation does not match the GPU's picture.
     pub trouble: Option<String>,
 }
 
@@ -207,22 +209,22 @@ pub struct Model {
 pub struct Setting {
     /// The parameter.
     pub parameter: &'static Parameter,
-    /// Its value as scene files have it.
+    /// Value as in scene files.
     pub value: Value,
-    /// The numbers for calculation, of colours and triples.
+    /// Linear values of colours and triples, for calculation.
     pub linear: Option<Vec3>,
 }
 
 /// A corner of the triangle that covers a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// The number of the vertex in the mesh of the object.
+    /// Index of the vertex in the object's mesh.
     pub vertex: usize,
-    /// Its position in the room.
+    /// Position in the room.
     pub position: Vec3,
-    /// Its weight in the pixel, with perspective correction; the three add up to 1.
+    /// Weight in the pixel, with perspective correction; the three add up to 1.
     pub weight: f32,
-    /// The colour that the shading model calculated there; zero for models that calculate it elsewhere.
+    /// The colour calculated there by the shading model; zero for models that calculate it elsewhere.
     pub colour: Vec3,
 }
 
@@ -233,9 +235,9 @@ pub enum Place {
     Polygon,
     /// A vertex.
     Vertex {
-        /// Its number in the mesh of the object.
+        /// Index in the object's mesh.
         vertex: usize,
-        /// Its weight in the pixel.
+        /// Weight in the pixel.
         weight: f32,
     },
     /// The point seen at the pixel's centre.
@@ -245,26 +247,26 @@ pub enum Place {
 /// A point at which the equation was evaluated.
 #[derive(Clone, Debug)]
 pub struct Spot {
-    /// Its kind.
+    /// Kind of point.
     pub place: Place,
-    /// Its position in the room.
+    /// Position in the room.
     pub position: Vec3,
     /// The normal `N`.
     pub normal: Vec3,
-    /// The frame around it: anisotropic models are brushed along its tangent.
+    /// The frame around the normal: anisotropic models are brushed along its tangent.
     pub frame: Frame,
     /// The direction to the observer.
     pub eye: Vec3,
-    /// The direction `V` that the model got: that to the observer, mirrored in the surface if the normal faces away from
-    /// it.
+    /// The direction `V` passed to the model: the direction to the observer, mirrored in the surface if the
+    /// normal faces away.
     pub view: Vec3,
     /// The distance to the observer, metres.
     pub distance: f32,
-    /// The lights that are switched on, in the order of the scene.
+    /// The active lights, in the order of the scene.
     pub lights: Vec<Lit>,
-    /// The sum over the lights, as it comes.
+    /// The unmodified sum over the lights.
     pub sum: Vec3,
-    /// The sum that is used: values that are no numbers are 0, and none is beyond ±10³⁰.
+    /// The sum as used: NaN becomes 0, and values are limited to ±10³⁰.
     pub colour: Vec3,
 }
 
@@ -275,9 +277,9 @@ pub struct Lit {
     pub light: Part,
     /// The equation of the light that arrives at a point.
     pub equation: &'static str,
-    /// Its position, for types that have one.
+    /// Position, for types that have one.
     pub position: Option<Vec3>,
-    /// The distance, for types that have a position, metres.
+    /// Distance in metres, for types that have a position.
     pub distance: Option<f32>,
     /// The factors of the intensity.
     pub factors: Vec<Factor>,
@@ -285,16 +287,16 @@ pub struct Lit {
     pub intensity: Vec3,
     /// The linear colour of the light.
     pub colour: Vec3,
-    /// Intensity times colour. Of a light with extent 1: its luminance is in the integral.
+    /// Intensity times colour; 1 for a light with extent, whose luminance is in the integral.
     pub arriving: Vec3,
-    /// Directions and cosines; none for light from everywhere, and for light with extent.
+    /// Directions and cosines; none for uniform light and for light with extent.
     pub geometry: Option<Geometry>,
-    /// The answer of the model to light of unit intensity, by term; for light from everywhere, its ambient response; for light
-    /// with extent the integral of the answer times the luminance.
+    /// The response of the model to light of unit intensity, by term; its ambient response for uniform light;
+    /// the integral of response times luminance for light with extent.
     pub response: Terms,
-    /// What the integral rests on, for light with extent.
+    /// Basis of the integral, for light with extent.
     pub integral: Option<Integral>,
-    /// The light that leaves to the observer: the response times the arriving light, of the terms that are shown.
+    /// The light to the observer: the response times the arriving light, for the displayed terms.
     pub contribution: Vec3,
 }
 
@@ -307,8 +309,8 @@ impl Explanation {
 }
 
 impl Seen {
-    /// The point that counts most in the pixel: of vertices, the one with the largest weight. None if the shading model did
-    /// not evaluate the reflection model.
+    /// The most important point of the pixel: among vertices, the one with the largest weight. `None` if the
+    /// shading model did not evaluate the reflection model.
     #[must_use]
     pub fn main_spot(&self) -> Option<usize> {
         let weight = |i: &usize| match self.spots[*i].place {
@@ -320,19 +322,19 @@ impl Seen {
 }
 
 impl Spot {
-    /// True if the normal faces away from the observer, who is mirrored in the surface then.
+    /// True if the normal faces away from the observer, whose direction is then mirrored in the surface.
     #[must_use]
     pub fn is_mirrored(&self) -> bool {
         self.eye != self.view
     }
 
-    /// True if the sum was no number, or too bright, and another one was used.
+    /// True if the sum was NaN or too bright, and was replaced.
     #[must_use]
     pub fn is_replaced(&self) -> bool {
         self.sum != self.colour
     }
 
-    /// The lights by their contribution, the brightest first; contributions that are no numbers before all others.
+    /// The lights by contribution, brightest first; NaN contributions come before all others.
     #[must_use]
     pub fn brightest(&self) -> Vec<&Lit> {
         let mut lights: Vec<_> = self.lights.iter().collect();
@@ -358,7 +360,7 @@ impl Lit {
         self.geometry.is_some_and(|geometry| geometry.cosine("N·L") <= 0.0)
     }
 
-    /// What is to be said before its equation, if anything.
+    /// The remark to show before the equation, if any.
     #[must_use]
     pub fn remark(&self) -> Option<&'static str> {
         if self.is_dark() {
@@ -372,7 +374,7 @@ impl Lit {
         }
     }
 
-    /// True if all its numbers are finite.
+    /// True if all numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         let Terms { ambient, diffuse, specular } = self.response;
@@ -380,17 +382,17 @@ impl Lit {
     }
 }
 
-/// The angle of a cosine, degrees; rounding beyond ±1 is cut off.
+/// The angle of a cosine, in degrees; rounding beyond ±1 is clamped.
 #[must_use]
 pub fn angle(cosine: f32) -> f32 {
     cosine.clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Explains a pixel of the picture of a scene with these settings, as the CPU renderer draws it with one sample at the
-/// pixel's centre; more samples are ignored. The scene of a view is that of [`Scene::seen`].
+/// Explains a pixel of the picture of a scene with these settings, as the CPU renderer draws it with one
+/// sample at the pixel's centre; more samples are ignored. For a view, pass the scene from [`Scene::seen`].
 ///
 /// # Errors
-/// If the pixel is not in the picture.
+/// Returns an error if the pixel is not in the picture.
 pub fn pixel(
     scene: &Scene,
     registry: &Registry,
@@ -400,7 +402,7 @@ pub fn pixel(
     Explainer::default().pixel(scene, registry, settings, pixel)
 }
 
-/// Explains pixel after pixel, and makes the meshes of the scene only once.
+/// Explains one pixel after another, building the meshes of the scene only once.
 #[derive(Default)]
 pub struct Explainer {
     meshes: MeshStore,
@@ -416,7 +418,7 @@ impl Explainer {
     /// See [`pixel`].
     ///
     /// # Errors
-    /// If the pixel is not in the picture.
+    /// Returns an error if the pixel is not in the picture.
     pub fn pixel(
         &mut self,
         scene: &Scene,
@@ -448,7 +450,7 @@ fn explained(
     Ok(explanation(scene, registry, settings, pixel, found))
 }
 
-/// The explanation of what a probe found.
+/// The explanation of a probe's result.
 fn explanation(
     scene: &Scene,
     registry: &Registry,
@@ -461,7 +463,7 @@ fn explanation(
     explained_as(&explain, pixel, found, None, light)
 }
 
-/// The explanation of what is seen at a pixel, and its light.
+/// The explanation of the object at a pixel, and its light.
 fn explained_as(
     explain: &Explain,
     pixel: [u32; 2],

@@ -1,4 +1,4 @@
-//! The noise of light with extent on its way to the code: standard errors, and the digits that they leave.
+//! The noise of light with extent on its way to the code: standard errors, and the digits that they allow.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ use super::{
 use crate::reference::{DisplaySteps, Picture};
 
 impl Lit {
-    /// The standard error of the light to the observer; none if the light has no extent.
+    /// The standard error of the light to the observer; `None` if the light has no extent.
     #[must_use]
     pub fn error(&self) -> Option<Vec3> {
         self.integral.map(|integral| integral.error)
@@ -18,7 +18,7 @@ impl Lit {
 }
 
 impl Spot {
-    /// The standard error of the sum over the lights; none where no light has extent.
+    /// The standard error of the sum over the lights; `None` without light with extent.
     #[must_use]
     pub fn error(&self) -> Option<Vec3> {
         root_of_squares(self.lights.iter().filter_map(Lit::error))
@@ -26,7 +26,7 @@ impl Spot {
 }
 
 impl Seen {
-    /// The standard error of the light of the pixel; none where no light has extent.
+    /// The standard error of the light of the pixel; `None` without light with extent.
     #[must_use]
     pub fn error(&self) -> Option<Vec3> {
         let weight = |spot: &Spot| match spot.place {
@@ -36,7 +36,7 @@ impl Seen {
         root_of_squares(self.spots.iter().filter_map(|spot| Some(spot.error()? * weight(spot))))
     }
 
-    /// That of the colour of a corner; none where the equation was evaluated elsewhere.
+    /// The standard error of a corner's colour; `None` if the equation was evaluated elsewhere.
     #[must_use]
     pub fn error_at(&self, corner: &Corner) -> Option<Vec3> {
         let is = |spot: &&Spot| matches!(spot.place, Place::Vertex { vertex, .. } if vertex == corner.vertex);
@@ -71,30 +71,30 @@ fn root_of_squares(errors: impl Iterator<Item = Vec3>) -> Option<Vec3> {
     squares.map(|squares| squares.map(f32::sqrt))
 }
 
-/// A number with the digits that its standard error leaves, at most so many.
+/// A number with the digits that its standard error allows, but at most this many.
 #[must_use]
 pub fn within(v: f32, error: Option<f32>, digits: usize) -> String {
     let usual = rounded(v, digits);
     let Some(error) = error.filter(|error| *error > 0.0) else { return usual };
     let [measured, _] = with_error(v, error);
-    // Both are roundings of one number: that of fewer digits is no longer.
+    // Both are roundings of one number: the one with fewer digits is not longer.
     if measured.chars().count() <= usual.chars().count() { measured } else { usual }
 }
 
-/// The same of red, green and blue.
+/// Red, green and blue with the digits that their standard errors allow, but at most this many.
 #[must_use]
 pub fn triple_within(v: Vec3, error: Option<Vec3>, digits: usize) -> String {
     let [r, g, b] = [0, 1, 2].map(|i| within(v[i], error.map(|error| error[i]), digits));
     format!("({r}, {g}, {b})")
 }
 
-/// Red, green and blue with so many digits, or with their standard errors and the digits that these allow.
+/// Red, green and blue with this many digits, or with their standard errors and the digits that these allow.
 #[must_use]
 pub fn told(v: Vec3, error: Option<Vec3>, digits: usize) -> String {
     error.map_or_else(|| rounded_triple(v, digits), |error| measured(v, error))
 }
 
-/// Four digits, as explanations have them.
+/// Red, green and blue with four digits, as in explanations.
 pub(super) fn estimated(v: Vec3, error: Option<Vec3>) -> String {
     triple_within(v, error, DIGITS)
 }
@@ -143,7 +143,7 @@ mod tests {
         pixel(&scene, &Registry::builtin(), &settings, [34, 16]).expect("inside")
     }
 
-    /// The digits behind the point, at most, of the last line that begins so.
+    /// The maximum number of decimals in the last line that begins with `begins`.
     fn digits(text: &str, begins: &str) -> usize {
         let line = text.lines().map(str::trim).rfind(|line| line.starts_with(begins)).expect(begins);
         let value =
@@ -166,7 +166,7 @@ mod tests {
         assert!((of_light - sum).abs().max_element() < 1e-6, "{of_light} {sum}");
         let exposed = explanation.error_of(|steps| steps.exposed).expect("noise");
         assert!((exposed - 0.5 * sum).abs().max_element() < 1e-6, "half at −1 EV");
-        // Of vertices, each by its weight.
+        // For vertices, weighted.
         let explanation = explained("rectangle", "gouraud");
         let seen = explanation.seen.as_ref().expect("the sphere");
         let squares: Vec3 = seen
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn no_line_from_the_sum_to_the_code_has_a_digit_that_noise_made() {
         let sphere = explained("rectangle", "phong");
-        // The digit of the error, or two if it begins with 1.
+        // One digit of the error, or two if it begins with 1.
         let most = |step: fn(&DisplaySteps) -> Vec3| {
             let error = sphere.error_of(step).expect("noise").min_element();
             (1.0 - error.log10().floor()) as usize
@@ -216,7 +216,7 @@ mod tests {
             assert!(digits(&text, begins) <= most(step), "{begins}: {}\n{text}", most(step));
         }
         assert!(text.contains("The standard error of the light is that of ("), "{text}");
-        // Without noise all four are said.
+        // Without noise, all four digits are written.
         let exact = explained("point", "phong").to_text();
         assert!(digits(&exact, "sum over 2 lights") == 3 && digits(&exact, "light ") == 3, "{exact}");
         assert!(!exact.contains("standard error"), "{exact}");

@@ -1,24 +1,24 @@
-//! Numbers as explanations write them.
+//! The formatting of numbers in explanations.
 
 use glam::Vec3;
 
 use super::integral::with_error;
 use crate::text::expression::Value;
 
-/// Digits that tell: codes have eight bits.
+/// Significant digits: codes have eight bits.
 pub(super) const DIGITS: usize = 4;
 
-/// A number with four significant digits, and none at its end that say nothing; `NaN` and `∞` are written as such.
+/// A number with up to four significant digits, without trailing zeros; `NaN` and `∞` are written as such.
 #[must_use]
 pub fn number(v: f32) -> String {
     rounded(v, DIGITS)
 }
 
-/// The same with so many significant digits.
+/// A number with up to this many significant digits.
 #[must_use]
 pub fn rounded(v: impl Into<f64>, digits: usize) -> String {
     let (v, digits) = (v.into(), digits.max(1));
-    // Of a number with 32 bits the shortest digits that tell it from others, as scene files have it.
+    // The shortest digits that identify a 32-bit number, as in scene files.
     let v = match v as f32 {
         short if digits > 7 && f64::from(short) == v => short.to_string().parse().unwrap_or(v),
         _ => v,
@@ -44,7 +44,7 @@ pub fn rounded(v: impl Into<f64>, digits: usize) -> String {
     format!("{sign}{text}")
 }
 
-/// A decimal fraction without zeros at its end.
+/// A decimal fraction without trailing zeros.
 fn trimmed(text: &str) -> String {
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -58,7 +58,7 @@ pub fn triple(v: Vec3) -> String {
     rounded_triple(v, DIGITS)
 }
 
-/// The same with so many significant digits.
+/// A colour or a vector with up to this many significant digits.
 #[must_use]
 pub fn rounded_triple(v: Vec3, digits: usize) -> String {
     let [x, y, z] = v.to_array().map(|v| rounded(v, digits));
@@ -76,13 +76,13 @@ pub fn of_value(value: &Value, digits: usize) -> String {
     format!("({r}, {g}, {b})")
 }
 
-/// A number if red, green and blue are the same, and otherwise the three.
+/// A number if red, green and blue are equal, and otherwise all three.
 #[must_use]
 pub fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
     if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
 }
 
-/// A number, or the three that differ, with standard errors, and as many digits as those allow: `0.512 ± 0.003`.
+/// A number, or three if they differ, with standard errors and the digits that these allow: `0.512 ± 0.003`.
 #[must_use]
 pub fn measured(v: Vec3, error: Vec3) -> String {
     let all: [[String; 2]; 3] = std::array::from_fn(|i| with_error(v[i], error[i]));
@@ -92,7 +92,7 @@ pub fn measured(v: Vec3, error: Vec3) -> String {
     }
 }
 
-/// A colour as equations have it.
+/// A colour as used in equations.
 pub(super) fn colour(v: Vec3) -> Value {
     Value::colour(v.to_array().map(f64::from))
 }

@@ -1,29 +1,29 @@
-//! Two explanations of one point beside each other: the lines that belong together, and those that differ.
+//! Two explanations of one point side by side: matching lines, and their differences.
 
 use glam::DVec3;
 
 use super::{Line, agrees};
 
-/// Two integrals differ if they are more standard errors apart than this.
+/// Number of standard errors beyond which two integrals differ.
 const SURE: f64 = 2.0;
 
-/// A line of one explanation, the line of the other that defines the same, or both.
+/// A line of one explanation, the line of the other with the same definition, or both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The line of the first.
+    /// The line of the first explanation.
     pub a: Option<Line>,
-    /// That of the second.
+    /// The line of the second explanation.
     pub b: Option<Line>,
 }
 
 impl Pair {
-    /// True if one has no such line, another equation, or another value.
+    /// True if one line is missing, or if equations or values differ.
     #[must_use]
     pub fn differs(&self) -> bool {
         match (&self.a, &self.b) {
             (Some(a), Some(b)) => {
                 let same = match (&a.value, &b.value) {
-                    // What the noise of the samples may make is no difference.
+                    // A difference within the noise of the samples does not count.
                     (Some(x), Some(y)) if a.error.is_some() || b.error.is_some() => {
                         let [of_a, of_b] = [a, b].map(|line| line.error.unwrap_or_default().as_dvec3());
                         let reach = SURE * (of_a * of_a + of_b * of_b).map(f64::sqrt);
@@ -39,15 +39,15 @@ impl Pair {
         }
     }
 
-    /// What it defines.
+    /// The symbol that the lines define.
     #[must_use]
     pub fn defines(&self) -> &str {
         self.a.as_ref().or(self.b.as_ref()).map_or("", Line::defines)
     }
 }
 
-/// The lines of two explanations for one light, in pairs: in the order of the first, each line that only the second has behind
-/// the one that it follows there.
+/// The lines of two explanations for one light, in pairs: in the order of the first explanation, with each
+/// line found only in the second inserted after the line that it follows there.
 #[must_use]
 pub fn pairs(a: &[Line], b: &[Line]) -> Vec<Pair> {
     let is = |a: &Line, b: &Line| a.defines() == b.defines() && a.term == b.term;

@@ -1,4 +1,4 @@
-//! A point of a surface that is explained wherever the observer and its object are.
+//! A pinned point of a surface, explained wherever the observer and the object are.
 
 use glam::{Vec3, Vec4Swizzles};
 
@@ -12,48 +12,49 @@ use crate::{
     scene::{Object, Observer, Scene, observer::clip_from_room, rotation::rotation},
 };
 
-/// What is seen nearer than the point by less than this part of the object's size, or of the distance, is the surface of
-/// the point itself.
+/// Tolerance of visibility: a hit that is nearer than the point by less than this fraction of the object's
+/// size, or of the distance, is the surface of the point itself.
 const SURFACE: f32 = 1e-3;
 
-/// A point of the surface of an object, in the object's own coordinates: it moves, turns and grows with the object.
+/// A point on the surface of an object, in the object's own coordinates: it moves, turns and scales with the
+/// object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// The place.
+    /// Position.
     pub position: Vec3,
-    /// The normal of the surface there.
+    /// Surface normal at the position.
     pub normal: Vec3,
 }
 
 impl Anchor {
-    /// A point of the room, and the normal of the surface there, for an object that is where it is now.
+    /// The anchor of a point in the room, with its surface normal, for the object in its present position.
     #[must_use]
     pub fn of(object: &Object, position: Vec3, normal: Vec3) -> Self {
         let back = rotation(object.rotation).inverse();
         Self { position: back * (position - object.position) / object.size, normal: back * normal }
     }
 
-    /// Its place in the room.
+    /// Position in the room.
     #[must_use]
     pub fn place(&self, object: &Object) -> Vec3 {
         rotation(object.rotation) * (self.position * object.size) + object.position
     }
 }
 
-/// How the observer sees a point of a surface.
+/// The visibility of a point on a surface to the observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sight {
-    /// It is in the picture.
+    /// Visible in the picture.
     Clear,
-    /// It is beside the picture, or behind the observer.
+    /// Outside the picture, or behind the observer.
     Outside,
-    /// Its surface faces away.
+    /// On a surface that faces away.
     Away,
-    /// An object is in front of it, the one with this number in the scene.
+    /// Hidden behind the object with this index.
     Behind(usize),
 }
 
-/// The pixel of a picture of that size at which a point is, or else the nearest one and false.
+/// The pixel that contains a point and true, or the nearest pixel and false.
 fn pixel_of(observer: &Observer, size: [u32; 2], point: Vec3) -> ([u32; 2], bool) {
     let [width, height] = size.map(|side| side.max(1) as f32);
     let clip = clip_from_room(observer, width / height) * point.extend(1.0);
@@ -65,9 +66,9 @@ fn pixel_of(observer: &Observer, size: [u32; 2], point: Vec3) -> ([u32; 2], bool
 }
 
 impl Explainer {
-    /// Explains the point of an object's surface that is nearest to an anchor, as if a pixel showed it, and says how the
-    /// observer sees it. Its numbers are those of the point itself, not of the centre of the pixel that it lies in. `None`
-    /// if there is no such object, or if it has no surface.
+    /// Explains the surface point of an object that is nearest to an anchor, as if a pixel showed it, and
+    /// reports its visibility. The numbers are those of the point itself, not of the centre of the pixel that
+    /// contains it. `None` if the object does not exist or has no surface.
     pub fn point(
         &mut self,
         scene: &Scene,

@@ -1,4 +1,4 @@
-//! Equations with numbers in the place of their symbols.
+//! Equations with numbers substituted for their symbols.
 
 use super::numbers::of_value;
 use crate::text::{
@@ -6,15 +6,15 @@ use crate::text::{
     mathematics::{Atom, parse, same_symbol, write},
 };
 
-/// The symbols of an equation whose values are known.
+/// Symbols of an equation with known values.
 #[derive(Clone, Debug, Default)]
 pub struct Symbols {
     known: Vec<(String, String)>,
 }
 
 impl Symbols {
-    /// Symbols with their values, to so many significant digits. What has no unit that can be written, such as the square of an
-    /// angle, stays a symbol.
+    /// Symbols with their values, to this many significant digits. A symbol stays if its unit cannot be
+    /// written, such as the square of an angle.
     pub(super) fn of<'a>(values: impl Iterator<Item = (&'a str, Value)>, digits: usize) -> Self {
         let mut symbols = Self::default();
         for (name, value) in values.filter(|(_, value)| value.degrees < 2) {
@@ -23,15 +23,15 @@ impl Symbols {
         symbols
     }
 
-    /// Makes a symbol known, with its value as it is to be written: `k_d`, or a scalar product such as `N·L`. The first
-    /// value of a symbol is kept.
+    /// Adds a symbol with its value as written: `k_d`, or a scalar product such as `N·L`. The first value of
+    /// a symbol is kept.
     pub fn put(&mut self, symbol: &str, value: String) {
         if !symbol.is_empty() {
             self.known.push((symbol.to_owned(), value));
         }
     }
 
-    /// The symbol as it was made known, and its value.
+    /// The symbol as it was added, and its value.
     fn get(&self, symbol: &str) -> Option<(&str, &str)> {
         let known = self.known.iter().find(|(known, _)| same_symbol(known, symbol));
         known.map(|(known, value)| (known.as_str(), value.as_str()))
@@ -66,8 +66,8 @@ impl Symbols {
         None
     }
 
-    /// The name and the value of the symbol, function or scalar product that begins these atoms, and the number of its atoms. Brackets
-    /// around a scalar product alone are part of it.
+    /// The name and the value of the symbol, function or scalar product that begins these atoms, and the
+    /// number of its atoms. Brackets around a single scalar product belong to it.
     fn first(&self, atoms: &[Atom]) -> Option<((&str, &str), usize)> {
         match atoms {
             [open, a, dot, b, close, ..]
@@ -86,12 +86,12 @@ impl Symbols {
     }
 }
 
-/// An equation with numbers, and of each number in it, in their order, the symbol in whose place it stands.
+/// An equation with numbers, and the symbol that each number replaces, in order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Put {
     /// The equation with numbers.
     pub text: String,
-    /// The symbols of its numbers; none for a number of the equation itself. Powers are not counted.
+    /// The symbols of the numbers; `None` for a number of the equation itself. Powers are not counted.
     pub symbols: Vec<Option<String>>,
 }
 
@@ -103,19 +103,19 @@ impl Put {
     }
 }
 
-/// True for the digits of a number.
+/// True for a digit of a number.
 fn is_number(atom: &Atom) -> bool {
     atom.base().starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// An equation with the values of known symbols in their place; none if there is none of them. What stands before an
-/// equals sign stays.
+/// An equation with the values of known symbols substituted; `None` if it contains none of them. The left
+/// side stays unchanged.
 #[must_use]
 pub fn put_in(text: &str, symbols: &Symbols) -> Option<String> {
     put(text, symbols).map(|put| put.text)
 }
 
-/// The same, with the symbols of the numbers.
+/// Like [`put_in`], with the symbols of the numbers.
 #[must_use]
 pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
     let atoms = parse(text);
@@ -142,7 +142,7 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
             }
             let of_function = before.is_some_and(|atom| is_function(atom.base()));
             let raised = !atoms[last].sup().is_empty();
-            // (−0.5)(1 − s): a sign would take what follows with it.
+            // (−0.5)(1 − s): the sign would otherwise bind to what follows.
             let begun = atoms.get(last + 1).is_some_and(|next| next.base() == "(");
             let after_sign = out.text.trim_end().ends_with(['+', '−', '×', '/', '·']);
             let bracketed = value.starts_with('−') && (raised || after_sign || begun || of_function) || raised && value.ends_with('°') || applied
@@ -165,7 +165,7 @@ pub fn put(text: &str, symbols: &Symbols) -> Option<Put> {
     found.then_some(out)
 }
 
-/// The base of an atom and its index.
+/// The base of an atom, with its index.
 fn plain(atom: &Atom) -> String {
     let mut bare = atom.clone();
     if let Atom::Symbol { sup, .. } | Atom::Upright { sup, .. } = &mut bare {
@@ -174,7 +174,7 @@ fn plain(atom: &Atom) -> String {
     write(&[bare])
 }
 
-/// The power of an atom, and true if a symbol of it is known.
+/// The power of an atom, and true if it contains a known symbol.
 fn power(atom: &Atom, symbols: &Symbols) -> Option<(String, bool)> {
     let sup = Some(atom.sup()).filter(|sup| !sup.is_empty())?;
     let put = put_in(sup, symbols);

@@ -1,4 +1,4 @@
-//! The explanation in one sentence: which light gives the most of the pixel, and by which term.
+//! The explanation in one sentence: which light contributes most to the pixel, and by which term.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use glam::Vec3;
 use super::{Explanation, Lamp, Place, Seen};
 use crate::optics::{TermSelection, colour::luminance};
 
-/// Above this part, a term gives all of the light of a lamp.
+/// Fraction above which a term counts as all of a lamp's light.
 const ALL: f64 = 0.995;
 
-/// What lights give to a pixel, as luminances.
+/// The contributions of lights to a pixel, as luminances.
 #[derive(Default)]
 struct Given {
-    /// By the number of the light: the sum, and that of its ambient, diffuse and specular terms.
+    /// By index of the light: the sum, and the ambient, diffuse and specular terms.
     lights: BTreeMap<usize, [f64; 4]>,
 }
 
 impl Given {
-    /// The light of a pixel: with Gouraud shading, that of the vertices with their weights.
+    /// The light of a pixel: with Gouraud shading, the weighted light of the vertices.
     fn of(seen: &Seen) -> Self {
         let mut given = Self::default();
         for spot in &seen.spots {
@@ -39,7 +39,7 @@ impl Given {
     }
 }
 
-/// The luminance of some light, exact where it is grey; `NaN` if any part of it is no finite number.
+/// The luminance of light, exact for grey; `NaN` if any component is not finite.
 fn brightness(light: Vec3) -> f64 {
     match light {
         light if light.x == light.y && light.y == light.z => light.x.into(),
@@ -48,7 +48,7 @@ fn brightness(light: Vec3) -> f64 {
     }
 }
 
-/// The term that gives the most of the light of a lamp, in words.
+/// The term that contributes most of a lamp's light, in words.
 fn by_term(terms: [f64; 3]) -> Option<String> {
     let sum: f64 = terms.iter().sum();
     let parts = terms.map(|term| term / sum);
@@ -64,7 +64,7 @@ fn by_term(terms: [f64; 3]) -> Option<String> {
     }
 }
 
-/// The part of the light that the brightest lamp gives.
+/// The share of the brightest lamp.
 fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> String {
     let given = Given::of(seen).lights;
     if given.is_empty() {
@@ -102,9 +102,9 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
     format!("{} gives {part}{by}", name(*index))
 }
 
-/// The explanation in one sentence, or two: the colour of the pixel, the light that gives the most of it, and by which
-/// term. It begins with `subject`, what has the colour: "This pixel is". `name` gives the name of the light at a place in
-/// the list of the scene.
+/// The explanation in one or two sentences: the colour of the pixel, the light that contributes most, and by
+/// which term. It begins with `subject`, such as "This pixel is". `name` gives the name of the light with
+/// that index in the scene.
 ///
 /// ```
 /// use lights_camera_models::{explain, reference::Settings, registry::Registry, scene::Scene};

@@ -22,20 +22,20 @@ use crate::{
 };
 
 impl Explanation {
-    /// The explanation as a worked example in plain text: the equation, the same with numbers, light by light, and the
-    /// way from light to the code.
+    /// The explanation as a worked example in plain text: the equation, then with numbers, light by light,
+    /// and the way from light to the code.
     #[must_use]
     pub fn to_text(&self) -> String {
         self.written(Form::Text)
     }
 
-    /// The same as Markdown: a heading for each part, lists, and mathematics as code.
+    /// The explanation as Markdown: a heading for each part, lists, and mathematics as code.
     #[must_use]
     pub fn to_markdown(&self) -> String {
         self.written(Form::Markdown)
     }
 
-    /// The numbers of the scene that move the pixel most, as text or Markdown.
+    /// The numbers of the scene with the greatest influence on the pixel, as text or Markdown.
     #[must_use]
     pub fn influences_to_text(influences: &[Influence], markdown: bool) -> String {
         let form = if markdown { Form::Markdown } else { Form::Text };
@@ -65,7 +65,8 @@ impl Explanation {
         out.text
     }
 
-    /// What differs between the explanations of one pixel in two views, light by light, as text or Markdown.
+    /// The differences between the explanations of one pixel in two views, light by light, as text or
+    /// Markdown.
     #[must_use]
     pub fn differences_to_text(&self, other: &Self, names: [&str; 2], markdown: bool) -> String {
         let form = if markdown { Form::Markdown } else { Form::Text };
@@ -248,7 +249,8 @@ impl Explanation {
         }
     }
 
-    /// The direction of a light with extent that gives most, with the equation as for light from there.
+    /// The direction of a light with extent that contributes most, with the equation for light from that
+    /// direction.
     fn brightest(&self, out: &mut Writer, seen: &Seen, brightest: &Brightest) {
         out.line(2, "Of the directions that were sampled, the one that gives most:");
         directions(out, seen, &brightest.geometry);
@@ -298,7 +300,7 @@ impl Explanation {
             [self.error_of(|steps| steps.mapped), self.error_of(|steps| steps.encoded)];
         for (i, channel) in ["red", "green", "blue"].into_iter().enumerate() {
             let (linear, encoded) = (steps.mapped[i], steps.encoded[i]);
-            // As the display takes it: the formula of IEC 61966-2-1.
+            // The formula of IEC 61966-2-1, as used by the display.
             let x = if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) };
             let put = within(x, of_mapped.map(|error| error[i]), DIGITS);
             let numbers = match x {
@@ -323,7 +325,7 @@ impl Explanation {
     }
 }
 
-/// A line of the equation: as it is written, with numbers, and its value.
+/// A line of the equation: as written, with numbers, and its value.
 fn equation(out: &mut Writer, line: &Line) {
     let value = line.outcome(DIGITS);
     let about = line.quantity.map_or_else(String::new, |quantity| match quantity.source {
@@ -345,13 +347,13 @@ fn equation(out: &mut Writer, line: &Line) {
     }
 }
 
-/// A number with its sign and so many digits.
+/// A number with its sign and this many digits.
 fn signed(v: f32, digits: usize) -> String {
     let sign = if v > 0.0 { "+" } else { "" };
     format!("{sign}{}", rounded(v, digits))
 }
 
-/// A part of the scene as messages name it.
+/// A part of the scene as named in messages.
 fn named(list: &str, part: &Part) -> String {
     match &part.name {
         Some(name) => format!("{list}[{}] “{name}”", part.index),
@@ -433,8 +435,8 @@ fn directions(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
     angles(out, seen, geometry);
 }
 
-/// The angles of directions, by the symbols that equations have for them; those around the normal, and the tangent from which they
-/// are measured, where the model has them.
+/// The angles of directions, by their symbols in equations; azimuths, and the tangent from which they are
+/// measured, only where the model uses them.
 fn angles(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
     let d = seen.model.declaration;
     let texts = d.equation.iter().map(|part| part.text).chain(d.quantities.iter().map(|q| q.text));
@@ -483,7 +485,7 @@ fn arriving(out: &mut Writer, lit: &Lit) {
     };
     let intensity = rounded_number_or_triple(lit.intensity, DIGITS);
     let equation = lit.arrival();
-    // As many digits as the product of the numbers without their units takes.
+    // With as many digits as the product of the numbers without units needs.
     let value = colour(lit.intensity);
     let fits =
         |digits: &usize| reading(&numbers(*digits, false)).is_ok_and(|read| agrees(&read, &value, DIGITS));
@@ -501,16 +503,16 @@ fn arriving(out: &mut Writer, lit: &Lit) {
     }
 }
 
-/// The form of the text.
+/// Format of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
-    /// Lines with their indentation.
+    /// Indented lines.
     Text,
     /// Headings and nested lists.
     Markdown,
 }
 
-/// Lines with their indentation.
+/// Writes indented lines.
 struct Writer {
     text: String,
     form: Form,
@@ -523,17 +525,17 @@ impl Writer {
             (Form::Markdown, 0) => what.to_string(),
             (Form::Markdown, _) => format!("{:width$}- {what}", "", width = 2 * (depth - 1)),
         };
-        // Writing to a text does not fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(self.text, "{}", line.trim_end());
     }
 
-    /// Mathematics, with a sign before it and words behind it.
+    /// Writes mathematics, with a sign before it and words after it.
     fn mathematics(&mut self, depth: usize, before: &str, what: &str, behind: &str) {
         let quote = if self.form == Form::Markdown { "`" } else { "" };
         self.line(depth, format_args!("{quote}{before}{what}{quote}{behind}"));
     }
 
-    /// An empty line, which lists in Markdown need before them.
+    /// Writes an empty line, which Markdown needs before lists.
     fn gap(&mut self) {
         if self.form == Form::Markdown {
             self.text.push('\n');
@@ -553,7 +555,7 @@ impl Writer {
         self.gap();
     }
 
-    /// The title of a light, above its lines.
+    /// Writes the heading of a light.
     fn subheading(&mut self, what: impl std::fmt::Display) {
         self.line(0, "");
         match self.form {

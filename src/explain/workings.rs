@@ -1,9 +1,9 @@
-//! The equation of a model at a point, calculated from its text: the values of all quantities that it names, in the order
-//! in which a reader needs them.
+//! The equation of a model at a point, calculated from its text: the values of all quantities that it names,
+//! in a readable order.
 //!
-//! The terms themselves are those of the renderer. The quantities between the parameters and them follow from the
-//! definitions in the model's declaration, so that each line can be followed by hand; a test compares what they give with
-//! the terms, for every model.
+//! The terms themselves come from the renderer. The quantities between the parameters and the terms follow
+//! from the definitions in the model's declaration, so that each line can be followed by hand; a test
+//! compares the results with the terms, for every model.
 
 use std::collections::{HashMap, HashSet};
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// The most quantities of one equation, and the deepest chain of them.
+/// Maximum number of quantities in one equation, and of their nesting.
 const MOST: usize = 400;
 const DEEPEST: usize = 60;
 
@@ -27,45 +27,46 @@ const DEEPEST: usize = 60;
 pub(super) struct Definition {
     pub(super) term: Term,
     pub(super) text: &'static str,
-    /// Name and source of the quantity; none for a part of the equation.
+    /// Name and source of the quantity; `None` for a part of the equation.
     pub(super) quantity: Option<&'static Quantity>,
 }
 
 /// A quantity with its value.
 #[derive(Clone, Debug)]
 pub(super) struct Worked {
-    /// Its definition, with the arguments of a call in their places; its name alone if the model gives it.
+    /// The definition with the arguments of a call substituted; only the name if the model provides the
+    /// value.
     pub(super) text: String,
     pub(super) value: Value,
     pub(super) definition: Option<Definition>,
 }
 
-/// What is known at a point, and what followed from it.
+/// The known values at a point, and those derived from them.
 pub(super) struct Workings<'a> {
     model: &'a Model,
     geometry: Option<&'a Geometry>,
     definitions: Vec<Definition>,
     known: Vec<(String, Value)>,
-    /// Everything that was asked for, by its name without spaces and braces.
+    /// All requested quantities, by name without spaces and braces.
     found: HashMap<String, Result<Value, String>>,
     running: HashSet<String>,
-    /// Quantities in the order in which they were asked for.
+    /// Quantities in the order of their calculation.
     pub(super) worked: Vec<Worked>,
 }
 
-/// A name without what may be written or not.
+/// A name without optional characters.
 fn bare(name: &str) -> String {
     name.replace(['{', '}', ' '], "")
 }
 
-/// What stands before the equals sign of a definition, and behind it.
+/// The left and right sides of a definition.
 pub(super) fn sides(text: &str) -> Option<(&str, &str)> {
     let (head, body) = text.split_once('=')?;
-    // That of a condition is none: 1 if θ = 0 else 2.
+    // The equals sign of a condition does not count: 1 if θ = 0 else 2.
     (!head.contains(" if ")).then_some((head.trim(), body.trim()))
 }
 
-/// The name and the arguments of a head: `H(μ)`.
+/// The name and the arguments of a left side: `H(μ)`.
 fn signature(head: &str) -> (&str, Vec<&str>) {
     match head.split_once('(') {
         Some((name, rest)) => (name.trim(), rest.trim_end_matches(')').split(',').map(str::trim).collect()),
@@ -83,7 +84,7 @@ impl<'a> Workings<'a> {
         for Setting { parameter, value, linear } in &model.settings {
             let value = match (value, linear) {
                 (_, Some(linear)) => colour(*linear),
-                // Equations take angles as angles: σ = 20°.
+                // Equations use angles with units: σ = 20°.
                 (Parameter::Number(v), _) if parameter.unit == "°" => Value::angle(f64::from(*v)),
                 (Parameter::Number(v), _) => number(*v),
                 (Parameter::Integer(v), _) => Value::number(*v as f64),
@@ -120,14 +121,14 @@ impl<'a> Workings<'a> {
         }
     }
 
-    /// Symbols with values, for putting them in: what is given, and what was asked for.
+    /// Symbols with values, for substitution: given and calculated ones.
     pub(super) fn values(&self) -> impl Iterator<Item = (&str, Value)> {
         let found =
             self.found.iter().filter_map(|(name, value)| Some((name.as_str(), *value.as_ref().ok()?)));
         self.known.iter().map(|(name, value)| (name.as_str(), *value)).chain(found)
     }
 
-    /// The value of the right side of a definition.
+    /// The value of a definition's right side.
     pub(super) fn evaluate(&mut self, text: &str) -> Result<Value, String> {
         let body = sides(text).map_or(text, |(_, body)| body);
         Expression::read(body)?.value(self)
@@ -142,7 +143,7 @@ impl<'a> Workings<'a> {
         self.known.iter().find(known).map(|(_, value)| *value)
     }
 
-    /// The definition of a symbol, or of a function with so many arguments.
+    /// The definition of a symbol, or of a function with this many arguments.
     fn definition(&self, name: &str, arguments: usize) -> Option<(Definition, Vec<&'static str>)> {
         self.definitions.iter().find_map(|definition| {
             let (head, _) = sides(definition.text)?;
@@ -151,7 +152,7 @@ impl<'a> Workings<'a> {
         })
     }
 
-    /// A quantity by its name, `F_0` or `H(N·L)`, which is looked for once.
+    /// A quantity by name, `F_0` or `H(N·L)`, looked up only once.
     fn look_up(
         &mut self,
         name: String,
@@ -173,7 +174,7 @@ impl<'a> Workings<'a> {
         value
     }
 
-    /// Calculates a definition, and notes it before those that it needs.
+    /// Calculates a definition, and records it before those that it needs.
     fn work_out(&mut self, definition: Definition, text: String) -> Result<Value, String> {
         let at = self.worked.len();
         let value = self.evaluate(&text)?;
@@ -181,7 +182,7 @@ impl<'a> Workings<'a> {
         Ok(value)
     }
 
-    /// A quantity that the model itself gives.
+    /// A quantity that the model provides.
     fn ask_model(&mut self, symbol: &str, arguments: &[f32], name: &str) -> Result<Value, String> {
         let asked = mathematics::plain_symbol(symbol);
         let given = match self.geometry {
@@ -193,7 +194,7 @@ impl<'a> Workings<'a> {
         };
         let value = given.ok_or_else(|| format!("{name} is not defined"))?;
         let value = if value.x == value.y && value.y == value.z { number(value.x) } else { colour(value) };
-        // Of several under one symbol, that of the choices that are made.
+        // If several quantities share a symbol, the present choices select one.
         let mut quantities = self.definitions.iter().filter_map(|definition| definition.quantity);
         let quantity = quantities.find(|quantity| same_symbol(quantity.symbol(), symbol));
         let definition = quantity.map(|quantity| Definition {
@@ -239,7 +240,8 @@ impl Scope for Workings<'_> {
     }
 }
 
-/// An expression with arguments in the place of the parameters of a function; in brackets unless they are one thing.
+/// An expression with arguments substituted for the parameters of a function; in brackets if they consist of
+/// several parts.
 fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String {
     let mut out = Vec::new();
     for atom in mathematics::parse(body) {
@@ -249,7 +251,7 @@ fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String 
             (Some(i), atom) => {
                 let argument = mathematics::parse(&arguments[i]);
                 let alone = argument.len() == 1 && atom.sup().is_empty();
-                // A scalar product without a power binds as one symbol does.
+                // A scalar product without a power binds like a single symbol.
                 let product =
                     atom.sup().is_empty() && matches!(argument.as_slice(), [_, dot, _] if dot.base() == "·");
                 let upright = |base: &str, sup: String| Atom::Upright {

@@ -1,4 +1,4 @@
-//! A scene as a program: a copy of the running one with the scene inside.
+//! A scene as a program: a copy of the running program with the scene inside.
 
 use super::{
     Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path,
@@ -23,7 +23,7 @@ pub const FORM: Form = Form {
     make,
 };
 
-/// The size of the window where nobody chose one.
+/// Default size of the window.
 const USUAL: (u32, u32) = (1280, 720);
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
@@ -53,7 +53,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     Ok(Export { files: vec![file], notes: vec![system] })
 }
 
-/// The scene with a name, and with the files that it names in `files` instead of where they are on disk.
+/// The scene with a name, and with its file paths replaced by paths in `files`.
 fn with_files(request: &Request, files: &mut Vec<(String, Vec<u8>)>) -> Result<Scene, ExportError> {
     let mut scene = request.scene.clone();
     scene.name.get_or_insert_with(|| request.stem.to_owned());
@@ -73,7 +73,7 @@ fn with_files(request: &Request, files: &mut Vec<(String, Vec<u8>)>) -> Result<S
     refused.or(scene)
 }
 
-/// Takes the files that some values name along, each once; those that are part of every program stay.
+/// Adds the files named by some values, each once; files included in every program are left out.
 fn carry<'a>(
     values: &mut Values,
     parameters: impl IntoIterator<Item = &'a Parameter>,

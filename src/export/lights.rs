@@ -1,4 +1,4 @@
-//! The lights of a scene that are on, with the one record that holds what their types need.
+//! The active lights of a scene, with one record type that contains the fields needed by their types.
 
 use std::sync::Arc;
 
@@ -11,38 +11,38 @@ use crate::{
     scene::{Scene, record, shines_from_everywhere},
 };
 
-/// The lights of a scene that are on.
+/// The active lights of a scene.
 #[derive(Debug)]
 pub struct Lights<'a> {
     /// The types in use, in the order of the registry.
     pub types: Vec<&'a LightEntry>,
     /// The lights.
     pub rows: Vec<LightRow>,
-    /// The numbers of the files that they name, one file after the other.
+    /// The numbers of the files that they use, one file after the other.
     pub numbers: Vec<f32>,
-    /// True if some light comes equally from everywhere.
+    /// True if some light is uniform ambient light.
     pub uniform: bool,
 }
 
 /// A light.
 #[derive(Clone, Debug)]
 pub struct LightRow {
-    /// Its index in the scene.
+    /// Index in the scene.
     pub index: usize,
-    /// The index of its type in [`Lights::types`].
+    /// Index of the light's type in [`Lights::types`].
     pub light_type: usize,
-    /// What lights of all types have.
+    /// The fields shared by all types.
     pub record: LightRecord,
-    /// Its own parameters, without padding; for a file, the index of its first number.
+    /// The parameters of the light, without padding; for a file, the index of its first number.
     words: Vec<u32>,
 }
 
 /// A field of the record of a light.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LightField {
-    /// Its name.
+    /// Name of the field.
     pub name: String,
-    /// Its type in WGSL.
+    /// Type in WGSL.
     pub kind: &'static str,
     source: FieldSource,
 }
@@ -54,7 +54,7 @@ enum FieldSource {
     Direction,
     Intensity,
     Colour,
-    /// The words of a parameter of a type: the index of the type, the first word.
+    /// The words of a type's parameter: the index of the type, the first word.
     Parameter(usize, usize),
 }
 
@@ -96,7 +96,7 @@ impl<'a> Lights<'a> {
         self.types.iter().any(|entry| entry.declaration.extent)
     }
 
-    /// The fields that lights of these types may need, in an order that leaves few gaps.
+    /// The fields needed by lights of these types, ordered to leave few gaps.
     #[must_use]
     pub fn fields(&self) -> Vec<LightField> {
         use FieldSource::{Colour, Direction, Intensity, Position, Type};
@@ -119,7 +119,7 @@ impl<'a> Lights<'a> {
         fields
     }
 
-    /// The name of the field that holds a parameter of a type: its own, unless another field has that.
+    /// The name of the field for a parameter of a type: the parameter's own, unless another field has it.
     #[must_use]
     pub fn parameter_field(&self, light_type: usize, name: &str) -> String {
         let taken = ["position", "light_type", "direction", "intensity", "colour"].contains(&name);
@@ -131,13 +131,13 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// The words of a WGSL type.
+/// The size of a WGSL type, in words.
 #[must_use]
 pub fn size(kind: &str) -> usize {
     if kind == "vec3<f32>" { 3 } else { 1 }
 }
 
-/// The bytes of a record with these fields in WGSL.
+/// The size of a WGSL record with these fields, in bytes.
 #[must_use]
 pub fn stride(fields: &[LightField]) -> usize {
     let end = fields.iter().fold(0usize, |end, field| match size(field.kind) {
@@ -148,7 +148,7 @@ pub fn stride(fields: &[LightField]) -> usize {
 }
 
 impl LightRow {
-    /// The words of a field: zero where its type has no such parameter.
+    /// The words of a field: zero if the light's type lacks this parameter.
     #[must_use]
     pub fn words(&self, field: &LightField) -> Vec<u32> {
         let vector = |v: Vec3| v.to_array().map(f32::to_bits).to_vec();

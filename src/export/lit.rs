@@ -1,5 +1,4 @@
-//! A scene taken apart for export: the shaders that it needs, its materials, its meshes, and the objects that are drawn
-//! with them.
+//! A scene taken apart for export: its shaders, materials and meshes, and the objects drawn with them.
 
 use std::collections::HashMap;
 
@@ -34,11 +33,11 @@ use crate::{
 
 /// A scene taken apart.
 pub struct Lit<'a> {
-    /// The scene, and what it was taken apart for.
+    /// The scene, and the purpose for which it was taken apart.
     pub request: Request<'a>,
-    /// The lights that are on.
+    /// The active lights.
     pub lights: Lights<'a>,
-    /// One for each pair of reflection and shading model in use.
+    /// One for each pair of reflection and shading models in use.
     pub programs: Vec<Program<'a>>,
     /// The different materials.
     pub materials: Vec<Material>,
@@ -48,17 +47,17 @@ pub struct Lit<'a> {
     pub objects: Vec<Drawn>,
 }
 
-/// What was taken apart so far, to find it again.
+/// Known parts, for lookup.
 #[derive(Default)]
 struct Known {
     meshes: HashMap<(MeshKey, bool), usize>,
-    /// Those of the meshes.
+    /// Names of the meshes.
     names: Names,
     /// By program and values.
     materials: HashMap<(usize, String), usize>,
 }
 
-/// A shader, and the models that it is made of.
+/// A shader, and the models that it consists of.
 pub struct Program<'a> {
     /// The reflection model.
     pub model: &'a ModelEntry,
@@ -69,7 +68,7 @@ pub struct Program<'a> {
 }
 
 impl Program<'_> {
-    /// True if vertices know their polygon.
+    /// True if vertices contain data of their polygon.
     #[must_use]
     pub fn faces(&self) -> bool {
         self.shading.declaration.stage == Stage::Polygon
@@ -82,24 +81,24 @@ impl Program<'_> {
     }
 }
 
-/// A material: the parameters of objects that look alike.
+/// A material: the parameters of objects with the same appearance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The index of its shader.
+    /// Index of the shader.
     pub program: usize,
-    /// The values that the scene gives.
+    /// The values given in the scene.
     pub values: Values,
     /// The bytes of `Parameters`.
     pub parameters: Vec<u8>,
-    /// The bytes of `AlbedoCurve`; empty for shaders that read none.
+    /// The bytes of `AlbedoCurve`; empty for shaders that do not read it.
     pub curve: Vec<u8>,
-    /// The bytes of `material_lobes`; empty for shaders that read none.
+    /// The bytes of `material_lobes`; empty for shaders that do not read it.
     pub lobes: Vec<u8>,
-    /// The bytes of `ShadingParameters`; empty for shaders that read none.
+    /// The bytes of `ShadingParameters`; empty for shaders that do not read it.
     pub shading: Vec<u8>,
 }
 
-/// A mesh as the shaders want it.
+/// A mesh in the layout of the shaders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshData {
     /// A name for files: `sphere_32`.
@@ -110,12 +109,12 @@ pub struct MeshData {
     pub indices: Vec<u32>,
 }
 
-/// An attribute of vertices: three numbers for each.
+/// A vertex attribute: three numbers for each vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute {
-    /// Its name in the shader.
+    /// Name in the shader.
     pub name: &'static str,
-    /// Its values.
+    /// Values of the vertices.
     pub values: Vec<[f32; 3]>,
 }
 
@@ -126,7 +125,7 @@ impl MeshData {
         self.attributes.first().map_or(0, |a| a.values.len())
     }
 
-    /// The vertices, one after the other: each has its attributes in order, three floats each.
+    /// The vertices one after the other, each with its attributes in order, three floats each.
     #[must_use]
     pub fn interleaved(&self) -> Vec<u8> {
         let vertex = |i: usize| self.attributes.iter().flat_map(move |a| a.values[i]);
@@ -137,16 +136,16 @@ impl MeshData {
 /// An object of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
-    /// Its index in the scene.
+    /// Index in the scene.
     pub index: usize,
-    /// The index of its material.
+    /// Index of the material.
     pub material: usize,
-    /// The index of its mesh.
+    /// Index of the mesh.
     pub mesh: usize,
 }
 
 impl Drawn {
-    /// From its own coordinates to those of the room.
+    /// Transformation from the object's own coordinates to the room.
     #[must_use]
     pub fn room_from_object(&self, request: &Request) -> Mat4 {
         object_transform(&request.scene.objects[self.index]).to_matrix()
@@ -157,7 +156,7 @@ impl<'a> Lit<'a> {
     /// Takes a scene apart; `wanted` selects objects by index.
     ///
     /// # Errors
-    /// Parts that no form can hold: models and shapes that are not known.
+    /// Returns an error for parts that no form can contain: unknown models and shapes.
     pub fn of(request: Request<'a>, host: Host, wanted: impl Fn(usize) -> bool) -> Result<Self, ExportError> {
         let Request { scene, registry, .. } = request;
         let lights = Lights::of(scene, registry);
@@ -210,7 +209,7 @@ impl<'a> Lit<'a> {
             }
         };
         let values = self.values(program, object);
-        // Debug writes each number so that no two look alike.
+        // Debug distinguishes all numbers.
         let look = (program, format!("{values:?}"));
         let material = match known.materials.get(&look) {
             Some(material) => *material,
@@ -266,7 +265,7 @@ impl<'a> Lit<'a> {
         Material { program, values, parameters, curve, lobes, shading: own }
     }
 
-    /// What differs from the picture in the lab, if anything: sentences.
+    /// Sentences about differences from the picture in the lab.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let edited =
@@ -288,7 +287,7 @@ impl<'a> Lit<'a> {
         exposure_factor(self.request.scene.display.exposure)
     }
 
-    /// The light of the background, which tone mapping changes, and exposure does not.
+    /// The light of the background, which is changed by tone mapping, but not by exposure.
     #[must_use]
     pub fn background(&self) -> Vec3 {
         self.request.scene.display.tone_mapping.map(Encoding::Srgb.decode(BACKGROUND))

@@ -1,5 +1,5 @@
-//! What a program needs to know to draw with exported shaders: entry points, vertices, bindings with the offsets of
-//! every field, and the values of the scene in them.
+//! The information that a program needs to draw with exported shaders: entry points, vertices, bindings with
+//! the offsets of every field, and their values in the scene.
 
 use glam::Mat4;
 use naga::{AddressSpace, ArraySize, Module, ScalarKind, TypeInner};
@@ -50,7 +50,7 @@ fn view(lit: &Lit, aspect: f32) -> Vec<u8> {
     bytes
 }
 
-/// The members of a struct: name, byte offset; and the size of the struct.
+/// The members of a struct with name and byte offset; and the size of the struct.
 fn members(module: &Module, name: &str) -> Option<(Vec<(String, usize)>, usize)> {
     module.types.iter().find_map(|(_, ty)| match &ty.inner {
         TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
@@ -195,7 +195,7 @@ fn number(bytes: &[u8], at: usize, kind: ScalarKind) -> Json {
     let word = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
     match kind {
         ScalarKind::Uint | ScalarKind::Sint => Json::from(word),
-        // The shortest digits that give these bits back.
+        // The shortest digits that represent these bits exactly.
         _ => format!("{:?}", f32::from_bits(word)).parse::<f64>().map_or(Json::Null, Json::from),
     }
 }

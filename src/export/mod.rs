@@ -1,8 +1,9 @@
-//! Code out: a scene as a project, as shader files, as a page, as a program, as a scene for another renderer.
+//! Export of a scene: as a project, as shader files, as a web page, as a program, or as a scene for another
+//! renderer.
 //!
-//! Each form is one file here and one name in [`FORMS`]. A form turns a [`Request`] into an [`Export`], files in memory;
-//! [`write()`](write::write) puts them in their place, all or nothing. A scene that a form cannot hold is refused with
-//! all reasons.
+//! Each form is one file here and one entry in [`FORMS`]. A form turns a [`Request`] into an [`Export`],
+//! files in memory; [`write()`](write::write) writes them, all or nothing. A scene that a form cannot express
+//! is refused with all reasons.
 
 use std::path::PathBuf;
 
@@ -25,7 +26,7 @@ pub mod translate;
 pub mod view;
 pub mod write;
 
-/// All forms, in the order of lists: the one list.
+/// All forms, in the order of lists.
 pub const FORMS: &[&Form] = &[
     &bevy::BEVY,
     &html::HTML,
@@ -41,15 +42,15 @@ pub const FORMS: &[&Form] = &[
 /// A form of code.
 #[derive(Debug)]
 pub struct Form {
-    /// The name on the command line.
+    /// Name on the command line.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
     /// One sentence: the content, and how to use it.
     pub summary: &'static str,
-    /// The kind of its output.
+    /// Kind of output.
     pub makes: Makes,
-    /// True if it holds one object of the scene, and so needs the choice of one.
+    /// True if the form contains a single object of the scene, which must be chosen.
     pub of_object: bool,
     /// Makes the files.
     pub make: fn(&Request, &Progress) -> Result<Export, ExportError>,
@@ -60,7 +61,7 @@ pub struct Form {
 pub enum Makes {
     /// One file, with this extension, which may be empty.
     File(&'static str),
-    /// A folder of several files.
+    /// A folder of files.
     Folder,
 }
 
@@ -69,31 +70,32 @@ pub enum Makes {
 pub struct Request<'a> {
     /// The scene, which is valid.
     pub scene: &'a Scene,
-    /// The models, light types and shapes, with the sources of their shaders as they are drawn.
+    /// The models, light types and shapes, with their shader sources as drawn.
     pub registry: &'a Registry,
-    /// The name of the scene's file without extension; for names of files and packages.
+    /// Name of the scene's file without extension, for names of files and packages.
     pub stem: &'a str,
-    /// The size of pictures and windows in pixels.
+    /// Size of pictures and windows in pixels.
     pub size: (u32, u32),
-    /// The index of the object for forms that hold one; it exists.
+    /// Index of the object for forms that contain a single one; valid.
     pub object: usize,
-    /// The pixel of a picture of that size whose colour is explained, by forms that [explain](Form::explains) one.
+    /// The pixel of a picture of that size whose colour is explained, for forms that
+    /// [explain](Form::explains) one.
     pub point: Option<[u32; 2]>,
 }
 
 /// One file of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// Its path within the folder, with `/`; empty if the export is one file.
+    /// Path within the folder, with `/`; empty if the export is a single file.
     pub path: String,
-    /// Its content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
-    /// True if it is a program.
+    /// True for a program.
     pub executable: bool,
 }
 
 impl File {
-    /// A file with a text or other content.
+    /// A file with text or other content.
     #[must_use]
     pub fn new(path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { path: path.into(), bytes: bytes.into(), executable: false }
@@ -103,9 +105,9 @@ impl File {
 /// A finished export.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Export {
-    /// Its files; one without a path if it is a single file.
+    /// The files; a single one without a path if the export is not a folder.
     pub files: Vec<File>,
-    /// Sentences about differences from the picture in the lab, if there are any.
+    /// Sentences about differences from the picture in the lab.
     pub notes: Vec<String>,
 }
 
@@ -117,10 +119,10 @@ impl Export {
     }
 }
 
-/// The reason why there is no export.
+/// The reason why an export failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
-    /// The form has no counterpart for parts of the scene; a line for each, which names the part.
+    /// The form has no counterpart for parts of the scene; one line for each, naming the part.
     #[error("{}", .0.join("\n"))]
     Refused(Vec<String>),
     /// The user cancelled.
@@ -129,7 +131,7 @@ pub enum ExportError {
 }
 
 impl ExportError {
-    /// A refusal for one reason.
+    /// A refusal with a single reason.
     pub fn refused(reason: impl Into<String>) -> Self {
         Self::Refused(vec![reason.into()])
     }
@@ -141,23 +143,23 @@ impl From<Cancelled> for ExportError {
     }
 }
 
-/// The form with that id.
+/// The form with this id.
 #[must_use]
 pub fn form(id: &str) -> Option<&'static Form> {
     FORMS.iter().copied().find(|form| form.id == id)
 }
 
 impl Form {
-    /// True if it can explain the colour of a pixel.
+    /// True if the form can explain the colour of a pixel.
     #[must_use]
     pub fn explains(&self) -> bool {
         self.id == html::HTML.id
     }
 
-    /// The place of an export that the user gives no place for.
+    /// The default path of an export.
     #[must_use]
     pub fn default_path(&self, stem: &str) -> PathBuf {
-        /// The folder for exports.
+        /// Default folder of exports.
         const FOLDER: &str = "exports";
         let name = match self.makes {
             Makes::File("") => stem.to_owned(),

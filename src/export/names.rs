@@ -1,4 +1,4 @@
-//! Names that differ.
+//! Unique names.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,12 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Default)]
 pub(super) struct Names {
     given: BTreeSet<String>,
-    /// The last number of each name.
+    /// The last number used for each name.
     last: BTreeMap<String, usize>,
 }
 
 impl Names {
-    /// The name, or, if it is taken, the name with a number.
+    /// The name, with a number appended if it is taken.
     pub(super) fn unique(&mut self, name: String) -> String {
         let mut unique = name.clone();
         while !self.given.insert(unique.clone()) {

@@ -1,10 +1,10 @@
-//! A scene inside a program: the content that an exported program carries behind its own, and how it finds it.
+//! A scene inside a program: the data appended to an exported program, and how the program finds it.
 //!
-//! Every program made with this library has a `Place` in its data: 40 bytes that begin with a name. In a program as it
-//! was built they end with zeros. `pack` appends the content to a copy of the program and writes into that place where
-//! it begins, how long it is, and a checksum. So a program knows that it carries something without looking at its file,
-//! and notices when the end of the file was cut off or changed. Systems that run programs read only the parts that the
-//! beginning of the file lists, and ignore what follows.
+//! Every program made with this library contains a `Place`: 40 bytes that begin with a name. In a program as
+//! built they end with zeros. `pack` appends the data to a copy of the program and records in that place its
+//! offset, its length and a checksum. The program therefore knows that it carries data without reading its
+//! file, and notices when the end of the file was cut off or changed. Operating systems load only the parts
+//! listed at the beginning of the file, and ignore what follows.
 
 use std::{
     hint::black_box,
@@ -17,68 +17,68 @@ use serde::{Deserialize, Serialize};
 use crate::files::Shown as _;
 use crate::files::{self, FileError};
 
-/// The name with which the place begins.
+/// Length of the name at the start of the place.
 const NAME: usize = 16;
-/// The size of the place: name, beginning, length and checksum.
+/// Size of the place: name, offset, length and checksum.
 const SIZE: usize = NAME + 3 * 8;
-/// The place in this program. Never read but through [`own`], lest the compiler assumes its content.
+/// The place in this program. Read only by [`own`], lest the compiler assume its content.
 #[used]
 static OWN: [u8; SIZE] = *b"LCM scene place:\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0";
 
-/// The longest content: files are smaller, each within the limit of its format.
+/// Maximum length of the data: files are smaller, each within the limit of its format.
 const LONGEST: u64 = 1 << 32;
 
-/// What is written in a place.
+/// The contents of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
-    /// Where the content begins in the file: the length of the program alone.
+    /// Offset of the data in the file: the length of the program alone.
     begin: u64,
-    /// The length of the content.
+    /// Length of the data.
     length: u64,
-    /// [`checksum`] of the content.
+    /// [`checksum`] of the data.
     checksum: u64,
 }
 
-/// A scene and what it needs, as they travel inside a program.
+/// A scene and the files that it needs, as carried inside a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Payload {
-    /// The scene, as a scene file. It names other files by their paths in `files`.
+    /// The scene, as a scene file. It refers to other files by their paths in `files`.
     pub scene: Vec<u8>,
     /// Name and window.
     pub about: About,
-    /// The files that it needs, by their paths: `shaders/…`, `models/…`, and those that the scene names.
+    /// The files that it needs, by path: `shaders/…`, `models/…`, and those named in the scene.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Identifies the content.
+    /// Identifies the payload.
     pub checksum: u64,
 }
 
 /// The name of a scene inside a program, and the size of its window.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct About {
-    /// The name of the scene's file without extension.
+    /// Name of the scene's file without extension.
     pub stem: String,
-    /// The size of the window in pixels, unless it is the usual one.
+    /// Size of the window in pixels, unless it is the default.
     pub size: Option<[u32; 2]>,
 }
 
-/// The reason why a program cannot give its scene, or take one.
+/// The reason why a program cannot provide its scene, or receive one.
 #[derive(Debug, thiserror::Error)]
 pub enum PayloadError {
-    /// Its end was cut off or changed.
+    /// The end of the program was cut off or changed.
     #[error("the scene inside this program is damaged: {0}; export the program again")]
     Damaged(&'static str),
-    /// Its file cannot be read.
+    /// The file of the program cannot be read.
     #[error("the file of this program could not be read: {0}")]
     Unreadable(#[from] FileError),
-    /// Its files cannot be unpacked.
+    /// The files of the payload cannot be unpacked.
     #[error("the files inside this program could not be unpacked to {}: {error}", .within.shown())]
     Packed {
-        /// The folder for those of all programs.
+        /// The folder for the files of all programs.
         within: PathBuf,
         /// The reason.
         error: FileError,
     },
-    /// A file that was unpacked is gone.
+    /// An unpacked file is missing.
     #[error("{} has no {file}, which this program unpacked there; {}", .folder.shown(), unpacking(.folder))]
     Incomplete {
         /// The folder of this program's files.
@@ -86,29 +86,29 @@ pub enum PayloadError {
         /// The path of the file in it.
         file: String,
     },
-    /// There is no place in it.
+    /// The program contains no place for a scene.
     #[error("the file of this program was changed so that no scene can be put into it")]
     NoPlace,
 }
 
-/// The remedy for damaged files in the folder of a program.
+/// The remedy for damaged files in a program's folder.
 #[must_use]
 pub fn unpacking(folder: &Path) -> String {
     format!("delete the folder {}, and it is unpacked anew", folder.shown())
 }
 
-/// The scene file's path within the content.
+/// Path of the scene file within the payload.
 const SCENE: &str = "scene.json";
-/// The path of [`About`] within the content.
+/// Path of [`About`] within the payload.
 const ABOUT: &str = "about.json";
 
-/// The bytes of this program's own place, as the file has them.
+/// The bytes of this program's own place, as in the file.
 fn own() -> [u8; SIZE] {
     *black_box(&OWN)
 }
 
 impl Place {
-    /// `None` in a program as it was built.
+    /// The decoded place; `None` in a program as built.
     fn of(bytes: &[u8; SIZE]) -> Option<Self> {
         let (_, numbers) = bytes.split_at(NAME);
         let mut numbers = numbers.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
@@ -126,7 +126,7 @@ impl Place {
     }
 }
 
-/// FNV-1a, 64 bits: G. Fowler, L. C. Noll, K.-P. Vo. It notices accidents, not malice.
+/// FNV-1a, 64 bits: G. Fowler, L. C. Noll, K.-P. Vo. Detects accidents, not malice.
 fn checksum(bytes: &[u8]) -> u64 {
     bytes
         .iter()
@@ -136,7 +136,7 @@ fn checksum(bytes: &[u8]) -> u64 {
 /// The payload of this program, if it carries one.
 ///
 /// # Errors
-/// If it is damaged, or the program's file cannot be read.
+/// Returns an error if the payload is damaged, or the program's file cannot be read.
 pub fn inside() -> Result<Option<Payload>, PayloadError> {
     let Some(place) = Place::of(&own()) else { return Ok(None) };
     let Some(program) = files::program() else { return Err(PayloadError::Damaged("its file is unknown")) };
@@ -168,11 +168,10 @@ fn read(place: Place, content: &[u8]) -> Result<Payload, PayloadError> {
     Ok(payload)
 }
 
-/// The bytes of a program that carries a payload: those of this program with it. What this program carries itself is
-/// left behind.
+/// The bytes of a program with a payload: this program, without any payload that it carries, and the new one.
 ///
 /// # Errors
-/// If the file of this program cannot be read, or was changed beyond recognition.
+/// Returns an error if the file of this program cannot be read, or was changed beyond recognition.
 pub fn program_with(payload: &Payload) -> Result<Vec<u8>, PayloadError> {
     let program = files::program().ok_or(PayloadError::NoPlace)?;
     let alone = Place::of(&own()).map_or(LONGEST, |place| place.begin);
@@ -181,7 +180,7 @@ pub fn program_with(payload: &Payload) -> Result<Vec<u8>, PayloadError> {
     Ok(bytes)
 }
 
-/// Appends a payload to a program that has this place.
+/// Appends a payload to a program with this place.
 fn pack(program: &mut Vec<u8>, own: &[u8; SIZE], payload: &Payload) -> Result<(), PayloadError> {
     let name = &own[..NAME];
     let mut found = memmem::find_iter(program, name);
@@ -204,7 +203,7 @@ fn pack(program: &mut Vec<u8>, own: &[u8; SIZE], payload: &Payload) -> Result<()
     Ok(())
 }
 
-/// The files of a content; `None` if their lengths are wrong.
+/// The files of a payload; `None` if their lengths are wrong.
 fn unpack(mut content: &[u8]) -> Option<Vec<(String, Vec<u8>)>> {
     let next = |content: &mut &[u8]| {
         let (length, rest) = content.split_first_chunk::<8>()?;
@@ -221,11 +220,11 @@ fn unpack(mut content: &[u8]) -> Option<Vec<(String, Vec<u8>)>> {
 }
 
 impl Payload {
-    /// The folder where its files are, made on the first call with that payload; `None` if it has none. What the user
-    /// changed there stays.
+    /// The folder with the payload's files, created on the first call; `None` if it has no files. Changes
+    /// made there by the user are kept.
     ///
     /// # Errors
-    /// If the folder cannot be made, or one of the files is no longer in it.
+    /// Returns an error if the folder cannot be created, or one of the files is missing from it.
     pub fn folder(&self, within: &Path) -> Result<Option<PathBuf>, PayloadError> {
         if self.files.is_empty() {
             return Ok(None);
@@ -299,7 +298,7 @@ mod tests {
             content[i] ^= 1;
             let changed = PayloadError::Damaged("its content was changed");
             assert_eq!(read(place, &content).expect_err("changed").to_string(), changed.to_string());
-            // Even with a checksum to match there is no panic.
+            // Even with a matching checksum it does not panic.
             let _ = read(Place { checksum: checksum(&content), ..place }, &content);
         }
     }

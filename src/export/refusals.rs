@@ -3,7 +3,7 @@
 use super::ExportError;
 use crate::text::listed;
 
-/// Reasons with the parts of the scene that they are about.
+/// Reasons with the affected parts of the scene.
 #[derive(Default)]
 pub(super) struct Refusals(Vec<(String, Vec<String>)>);
 
@@ -16,10 +16,10 @@ impl Refusals {
         }
     }
 
-    /// What there is if there is no reason.
+    /// The result, if there are no reasons against it.
     ///
     /// # Errors
-    /// A line for each reason.
+    /// Returns one line for each reason.
     pub(super) fn or<T>(self, made: T) -> Result<T, ExportError> {
         if self.0.is_empty() {
             return Ok(made);
@@ -28,9 +28,9 @@ impl Refusals {
     }
 }
 
-/// `objects[0] and objects[2]: a reason`; of many parts, the first.
+/// `objects[0] and objects[2]: a reason`; only the first of many parts.
 fn line((reason, mut parts): (String, Vec<String>)) -> String {
-    /// The most parts that are named.
+    /// Maximum number of parts named.
     const NAMED: usize = 4;
     if parts.len() > NAMED + 1 {
         let others = parts.len() - NAMED;

@@ -63,15 +63,15 @@ const fn form(
     Form { id, name, summary, makes: Makes::Folder, of_object: true, make }
 }
 
-/// The files of a shader: the word for each in the manifest, its name, and its content.
+/// The files of a shader: the key of each in the manifest, its name, and its content.
 type Files = Vec<(&'static str, &'static str, Vec<u8>)>;
 /// Writes a shader in a language.
 type Write = fn(&str, &Module, &ModuleInfo) -> Result<Files, ExportError>;
 
-/// The host of shaders that stand alone.
+/// The host of self-contained shaders.
 ///
 /// # Errors
-/// If the scene's tone mapping is a table: these shaders have no textures.
+/// Returns an error if the scene's tone mapping uses a table: these shaders have no textures.
 pub fn alone(request: &Request) -> Result<Host, ExportError> {
     let display = request.scene.display;
     match display.tone_mapping {
@@ -88,7 +88,7 @@ pub fn alone(request: &Request) -> Result<Host, ExportError> {
     }
 }
 
-/// The scene of one object, taken apart for a shader that stands alone.
+/// The scene of one object, taken apart for a self-contained shader.
 fn lit<'a>(request: &Request<'a>) -> Result<Lit<'a>, ExportError> {
     let lit = Lit::of(*request, alone(request)?, |index| index == request.object)?;
     if lit.objects.is_empty() {
@@ -133,16 +133,16 @@ fn make(request: &Request, progress: &Progress, write: Write) -> Result<Export, 
     Ok(Export { files, notes: lit.notes() })
 }
 
-/// True if the form is the shader of an object in a language that is text.
+/// True if the form is the shader of an object in a text language.
 #[must_use]
 pub fn is_text(form: &Form) -> bool {
     form.of_object && form.id != SPIRV.id
 }
 
-/// The text of the shader of one object in a language that is text, for the clipboard.
+/// The text of the shader of one object in a text language, for the clipboard.
 ///
 /// # Errors
-/// As exporting it.
+/// Returns an error if exporting the shader fails.
 pub fn text(form: &Form, request: &Request) -> Result<String, ExportError> {
     let export = (form.make)(request, &Progress::NONE)?;
     let shaders = export.files.iter().filter(|file| file.path.starts_with("shader."));

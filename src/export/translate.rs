@@ -1,4 +1,4 @@
-//! Shaders in other languages, translated by naga.
+//! Translation of shaders into other languages by naga.
 
 use naga::{
     AddressSpace, Module, ResourceBinding, ShaderStage,
@@ -9,14 +9,14 @@ use naga::{
 
 use super::ExportError;
 
-/// The entry points of every exported shader, with their stages.
+/// The entry points of exported shaders, with their stages.
 pub const ENTRY_POINTS: [(&str, ShaderStage); 2] =
     [("vertex", ShaderStage::Vertex), ("fragment", ShaderStage::Fragment)];
 
-/// A GLSL shader of one stage.
+/// A GLSL shader for one stage.
 #[derive(Clone, Debug)]
 pub struct Glsl {
-    /// The text.
+    /// Source text.
     pub text: String,
     /// The uniform blocks: the binding in WGSL, and the name of the block.
     pub blocks: Vec<(u32, String)>,
@@ -26,7 +26,7 @@ fn failed(language: &str, error: impl std::fmt::Display) -> ExportError {
     ExportError::refused(format!("its shader could not be translated to {language}: {error}"))
 }
 
-/// The uniforms of a module with their bindings, in the order of these.
+/// The uniforms of a module with their bindings, in binding order.
 fn uniforms(module: &Module) -> Vec<(ResourceBinding, &str)> {
     let all = module.global_variables.iter().filter(|(_, global)| global.space == AddressSpace::Uniform);
     let mut all: Vec<_> =
@@ -35,11 +35,11 @@ fn uniforms(module: &Module) -> Vec<(ResourceBinding, &str)> {
     all
 }
 
-/// The shader of an entry point in GLSL: 4.50 for OpenGL and Vulkan, or ES 3.00 for WebGL 2, which has no numbers of
-/// bindings.
+/// The shader of an entry point in GLSL: 4.50 for OpenGL and Vulkan, or ES 3.00 for WebGL 2, which has no
+/// binding numbers.
 ///
 /// # Errors
-/// If naga cannot express it.
+/// Returns an error if naga cannot express the shader.
 pub fn glsl(
     module: &Module,
     info: &ModuleInfo,
@@ -48,7 +48,7 @@ pub fn glsl(
 ) -> Result<Glsl, ExportError> {
     let options = glsl::Options {
         version,
-        // Turns y over, or derivatives along it would have the other sign.
+        // Flips y; otherwise derivatives along it would have the opposite sign.
         writer_flags: glsl::WriterFlags::ADJUST_COORDINATE_SPACE,
         binding_map: uniforms(module)
             .into_iter()
@@ -75,7 +75,7 @@ pub fn glsl(
 /// Both stages in HLSL of shader model 6.0: constant buffer `bN` is binding N.
 ///
 /// # Errors
-/// If naga cannot express it.
+/// Returns an error if naga cannot express the shader.
 pub fn hlsl(module: &Module, info: &ModuleInfo) -> Result<String, ExportError> {
     let target = |binding: ResourceBinding| hlsl::BindTarget {
         space: 0,
@@ -95,10 +95,10 @@ pub fn hlsl(module: &Module, info: &ModuleInfo) -> Result<String, ExportError> {
     Ok(text)
 }
 
-/// Both stages in the Metal Shading Language 2.0: buffer N is binding N; vertices come as stage input.
+/// Both stages in the Metal Shading Language 2.0: buffer N is binding N; vertices are the stage input.
 ///
 /// # Errors
-/// If naga cannot express it.
+/// Returns an error if naga cannot express the shader.
 pub fn msl(module: &Module, info: &ModuleInfo) -> Result<String, ExportError> {
     let resources = msl::EntryPointResources {
         resources: uniforms(module)
@@ -127,7 +127,7 @@ pub fn msl(module: &Module, info: &ModuleInfo) -> Result<String, ExportError> {
 /// Both stages in SPIR-V 1.3, little-endian.
 ///
 /// # Errors
-/// If naga cannot express it.
+/// Returns an error if naga cannot express the shader.
 pub fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, ExportError> {
     let options = spv::Options {
         lang_version: (1, 3),

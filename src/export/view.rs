@@ -1,4 +1,4 @@
-//! The view of a scene that an export holds: most forms hold one.
+//! The view of a scene that an export contains: most forms contain one.
 
 use super::{Form, executable, html};
 use crate::{
@@ -8,8 +8,9 @@ use crate::{
     text::listed,
 };
 
-/// The scene that a form gets, and a sentence that says which view it is and how to get the others. Programs and pages
-/// hold all views unless one was asked for, and scenes without variants have only one: then there is nothing to say.
+/// The scene passed to a form, and a sentence that names its view and explains how to export the others.
+/// Programs and pages contain all views unless one was requested, and scenes without variants have only one:
+/// then no sentence is needed.
 #[must_use]
 pub fn exported(
     form: &Form,
@@ -44,7 +45,7 @@ pub fn exported(
     (seen, Some(note))
 }
 
-/// True if a form holds one view; programs and pages hold all.
+/// True if a form contains a single view; programs and pages contain all.
 #[must_use]
 pub fn holds_one(form: &Form) -> bool {
     form.id != executable::FORM.id && form.id != html::HTML.id

@@ -1,4 +1,4 @@
-//! Exports on disk: whole or absent, and never over something unasked.
+//! Writes exports to disk: whole or not at all, and never replacing anything without being asked.
 
 use std::{
     env, fs,
@@ -14,46 +14,46 @@ use crate::{
     scene::Scene,
 };
 
-/// The reason why an export is not on disk.
+/// The reason why an export was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// There is something already.
+    /// The place is already occupied.
     #[error("{} exists; it was not overwritten", .0.shown())]
     Exists(PathBuf),
-    /// It is of another kind than the export.
+    /// The existing item is of another kind than the export.
     #[error("{} {}; it was not overwritten", .0.shown(), .1)]
     OtherKind(PathBuf, &'static str),
-    /// It is the folder in which this program runs, or around it.
+    /// The place is the working folder of this program, or contains it.
     #[error("{} is the folder in which this program runs, or around it; name a new folder in it", .0.shown())]
     Here(PathBuf),
-    /// It is a folder of something else.
+    /// The place is a folder of something else.
     #[error("{} has no {}, so it is no export of this form; it was not overwritten", .0.shown(), .1)]
     Foreign(PathBuf, String),
-    /// It holds something that no export of this form has.
+    /// The folder contains something that no export of this form has.
     #[error("{} has {}, which is of no export of this form; it was not overwritten", .0.shown(), .1.shown())]
     Stranger(PathBuf, PathBuf),
-    /// It is a file of another kind.
+    /// The place holds a file of another kind.
     #[error("{} is a file of another kind than the export; it was not overwritten", .0.shown())]
     OtherFile(PathBuf),
-    /// Its name is longer than file systems take.
+    /// The name exceeds the limit of file systems.
     #[error("{} cannot be written: its name has {} bytes, and {NAME} is the limit", .0.shown(), .1)]
     Name(PathBuf, usize),
-    /// It is read by this command, or holds what is.
+    /// The place is, or contains, an input of this command.
     #[error(transparent)]
     Input(#[from] Refused),
-    /// Somebody else wrote there since it was examined.
+    /// The place changed after it was examined.
     #[error("somebody else wrote {} while this export was made; theirs was kept, and this one was not written", .0.shown())]
     Taken(PathBuf),
-    /// The system refuses.
+    /// The operating system reported an error.
     #[error("{} could not be written: {}", .0.shown(), .1)]
     System(PathBuf, FileError),
 }
 
-/// Most bytes of the name of a file, on all usual file systems.
+/// Maximum length of a file name on all common file systems, in bytes.
 const NAME: usize = 255;
 
-/// Everything that a command or the window reads: the files of scenes and what they name, those of models and shaders,
-/// and this program. No result may replace one: see [`files::spare`].
+/// Everything that a command or the window reads: scene files and the files named in them, models and
+/// shaders, and this program. No result may replace any of it: see [`files::spare`].
 #[must_use]
 pub fn inputs<'a>(
     files: impl IntoIterator<Item = &'a Path>,
@@ -61,17 +61,17 @@ pub fn inputs<'a>(
     registry: &Registry,
 ) -> Vec<PathBuf> {
     let named = scenes.into_iter().flat_map(Scene::files).filter_map(|file| file.path().map(Path::to_owned));
-    // By the name that people know it by.
+    // By its common name.
     let program = files::program().and_then(|program| fs::canonicalize(program).ok());
     let files = files.into_iter().map(Path::to_owned).chain(named);
     files.chain(registry.files_on_disk()).chain(program).collect()
 }
 
-/// Refuses a place that holds something, unless the user wants it replaced; inputs, and things of another kind, are
-/// never replaced. Called before anything is calculated. Returns what is there now, which [`write()`] expects.
+/// Refuses an occupied place unless the user wants it replaced; inputs, and things of another kind, are never
+/// replaced. Called before anything is calculated. Returns the present state, which [`write()`] expects.
 ///
 /// # Errors
-/// If an export must not be written there.
+/// Returns an error if an export must not be written there.
 pub fn may_write(
     form: &Form,
     place: &Path,
@@ -100,7 +100,7 @@ pub fn may_write(
         return Err(WriteError::Exists(place.to_owned()));
     }
     let whole = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
-    // A terminal would stay in the folder that was replaced, where there is nothing.
+    // A terminal would stay in the replaced folder, where nothing is left.
     if folder && env::current_dir().is_ok_and(|here| here.starts_with(&whole)) {
         return Err(WriteError::Here(place.to_owned()));
     }
@@ -108,17 +108,17 @@ pub fn may_write(
     Ok(before)
 }
 
-/// Writes an export, after [`may_write`], which said what was there. That is replaced only when everything is on disk;
-/// what somebody else wrote since stays.
+/// Writes an export, after [`may_write`] has returned the state of the place. That state is replaced only
+/// when everything is on disk; anything written there since by somebody else stays.
 ///
 /// # Errors
-/// If a folder of something else is there, somebody else wrote there, or the system refuses; then nothing is left, and
-/// what was there is unchanged.
+/// Returns an error if the place is a folder of something else, if somebody else wrote there, or if the
+/// operating system reports one. Nothing is then left behind, and the place is unchanged.
 pub fn write(export: &Export, place: &Path, before: &Before) -> Result<(), WriteError> {
     if Before::of(place) != *before {
         return Err(WriteError::Taken(place.to_owned()));
     }
-    // Whoever names a folder to put the export into must not lose what is in it.
+    // Naming a folder in order to put the export into it must not destroy its contents.
     if let [first, _, ..] = export.files.as_slice()
         && !is_empty(place)
         && !place.join(&first.path).is_file()
@@ -143,11 +143,11 @@ pub fn write(export: &Export, place: &Path, before: &Before) -> Result<(), Write
     })
 }
 
-/// The first bytes by which the kind of a file is known.
+/// Length of the prefix that identifies the kind of a file.
 const KIND: u64 = 4;
 
-/// Something below a folder that an earlier export cannot have left there, however the scene was then. Of a Cargo
-/// project, what cargo makes is nobody's loss.
+/// Something below a folder that an earlier export cannot have left there, whatever the scene was then. In a
+/// Cargo project, files made by cargo may be lost.
 fn stranger(all: &[File], place: &Path, below: &Path) -> Option<PathBuf> {
     let is = |name: &str| all.iter().any(|file| file.path == name);
     for entry in fs::read_dir(place.join(below)).ok()? {
@@ -161,7 +161,7 @@ fn stranger(all: &[File], place: &Path, below: &Path) -> Option<PathBuf> {
             if let Some(found) = stranger(all, place, &path) {
                 return Some(found);
             }
-            // An empty folder may be somebody's too.
+            // An empty folder may have another owner too.
             if all.iter().all(|file| !Path::new(&file.path).starts_with(&path)) {
                 return Some(path);
             }
@@ -180,7 +180,7 @@ fn stranger(all: &[File], place: &Path, below: &Path) -> Option<PathBuf> {
     None
 }
 
-/// True if nothing is there, or an empty folder.
+/// True if the place is free, or an empty folder.
 fn is_empty(place: &Path) -> bool {
     match fs::read_dir(place) {
         Ok(mut entries) => entries.next().is_none(),

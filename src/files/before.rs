@@ -11,24 +11,24 @@ use file_id::FileId;
 
 use super::follow;
 
-/// The longest wait for another process that is just writing to the same folder.
+/// Maximum wait for another process that is writing to the same folder.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The time between two attempts.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// What a place held when it was examined: nothing, or a certain file or folder.
+/// The state of a place when it was examined: nothing, or a certain file or folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Before(Option<Held>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Held {
     id: Option<FileId>,
-    /// The length and the time of the last change of a file; a folder is the same whatever happens in it.
+    /// Length and modification time of a file; folders compare equal regardless of their contents.
     content: Option<(u64, Option<SystemTime>)>,
 }
 
 impl Before {
-    /// What a place holds now, links followed.
+    /// The present state of a place, following links.
     #[must_use]
     pub fn of(path: &Path) -> Self {
         let place = follow(path).unwrap_or_else(|_| path.to_owned());
@@ -45,11 +45,12 @@ impl Before {
     }
 }
 
-/// The turn of this process to examine a place in a folder and to write there: other processes of this program wait.
+/// The turn of this process to examine a place in a folder and to write there: other instances of this
+/// program wait.
 pub(super) struct Turn(#[allow(dead_code, reason = "held, not read")] Option<File>);
 
 impl Turn {
-    /// Waits for it. Where folders cannot be locked, or somebody keeps the lock, it goes on without.
+    /// Waits for the turn. If folders cannot be locked, or somebody keeps the lock, it continues without.
     pub(super) fn in_folder(folder: &Path) -> Self {
         let begin = Instant::now();
         let Ok(folder) = File::open(folder) else { return Self(None) };
@@ -87,7 +88,7 @@ mod tests {
         assert_eq!(taken(write("two", &found)), [true, true]);
         assert_eq!(fs::read(&file)?, b"one");
         assert!(folder.join("one").exists() && !folder.join("two").exists());
-        // Whoever saw the first one and was told to replace it does so, once.
+        // Permission to replace the first file applies once.
         let found = [Before::of(&file), Before::of(&folder)];
         assert_eq!(taken(write("three", &found)), [false, false]);
         assert_eq!(taken(write("four", &found)), [true, true]);

@@ -1,4 +1,4 @@
-//! Replacing files, all or nothing.
+//! Replaces files, all or nothing.
 
 use std::{
     fs::{self, File, Metadata},
@@ -18,21 +18,22 @@ use super::{
     tidy,
 };
 
-/// Writes a document, replacing any that exists: all or nothing, and on disk when this returns. Links are followed;
-/// mode, owner, group and hard links are kept where the system allows it.
+/// Writes a document, replacing any existing one: all or nothing, and on disk when this returns. Links are
+/// followed; mode, owner, group and hard links are kept where the system allows it.
 ///
 /// # Errors
-/// If the path leads to anything but a regular file, or it cannot be written.
+/// Returns an error if the path leads to anything but a regular file, or the document cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes)?;
     draft.replace()
 }
 
-/// Writes several documents, each as [`write()`] does; none takes its place before all are on disk.
+/// Writes several documents, each as [`write()`] does; none is put in place before all are on disk.
 ///
 /// # Errors
-/// As [`write()`]. If one cannot be written there, as on a full disk, nothing is changed.
+/// Returns the errors of [`write()`]. If one document cannot be written, as on a full disk, nothing is
+/// changed.
 pub fn write_all<'a>(documents: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<(), FileError> {
     let draft = |(path, bytes): (PathBuf, &[u8])| -> Result<Draft, FileError> {
         let mut draft = Draft::new(&path)?;
@@ -47,23 +48,23 @@ pub fn write_all<'a>(documents: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -
 /// Writes a new document, as [`write()`] does.
 ///
 /// # Errors
-/// [`io::ErrorKind::AlreadyExists`] if there is a file, and as [`write()`].
+/// Returns [`io::ErrorKind::AlreadyExists`] if the file exists, and the errors of [`write()`].
 pub fn create(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes)?;
     draft.create()
 }
 
-/// The new content of a file, not yet in its place. Dropping it deletes it.
+/// The new content of a file, not yet in place. Dropping it deletes it.
 #[derive(Debug)]
 pub struct Draft {
-    /// The destination, links followed.
+    /// The destination, with links resolved.
     target: PathBuf,
     file: NamedTempFile,
     living: Living,
-    /// True if it must be on disk before it takes its place.
+    /// True if the content must be on disk before it is put in place.
     synced: bool,
-    /// True if it becomes a program.
+    /// True for a program.
     executable: bool,
 }
 
@@ -71,17 +72,17 @@ impl Draft {
     /// An empty draft of a document, after [`tidy`] in its folder.
     ///
     /// # Errors
-    /// If the path leads to anything but a regular file, or nothing can be written in its folder.
+    /// Returns an error if the path leads to anything but a regular file, or its folder is not writable.
     pub fn new(path: &Path) -> Result<Self, FileError> {
         let draft = Self::beside(path, true)?;
         let _ = tidy(folder_of(&draft.target));
         Ok(draft)
     }
 
-    /// An empty draft of something that can be calculated again, so nobody need wait for the disk.
+    /// An empty draft of something that can be calculated again, without waiting for the disk.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn fleeting(path: &Path) -> Result<Self, FileError> {
         Self::beside(path, false)
     }
@@ -94,7 +95,7 @@ impl Draft {
         #[cfg(unix)]
         if is_new {
             use std::os::unix::fs::PermissionsExt as _;
-            // The mode of any new file, before the umask.
+            // The mode of new files, before the umask.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         #[cfg(not(unix))]
@@ -117,17 +118,17 @@ impl Draft {
         Ok(Self { target, file, living, synced, executable: false })
     }
 
-    /// The same draft, of a program.
+    /// Makes the draft executable.
     #[must_use]
     pub fn executable(mut self) -> Self {
         self.executable = true;
         self
     }
 
-    /// Puts it in its place, if nothing is there yet.
+    /// Puts the draft in place, if the place is free.
     ///
     /// # Errors
-    /// [`io::ErrorKind::AlreadyExists`] if there is something, and any error of the system.
+    /// Returns [`io::ErrorKind::AlreadyExists`] if the place is taken, and any error of the operating system.
     pub fn create(mut self) -> Result<(), FileError> {
         if self.executable {
             make_executable(self.file.as_file())?;
@@ -135,7 +136,7 @@ impl Draft {
         self.sync()?;
         let Self { target, file, living: _living, synced, .. } = self;
         let step = living::step();
-        // The file stays open, and so locked, until its folder is on disk.
+        // The file stays open, and thus locked, until its folder is on disk.
         let persisted = file.persist_noclobber(&target);
         drop(step);
         let _file = persisted.map_err(|e| e.error)?;
@@ -143,11 +144,11 @@ impl Draft {
         Ok(())
     }
 
-    /// Puts it in its place, if what is there is still what was there before: with nothing there as
-    /// [`create`](Self::create), otherwise as [`replace`](Self::replace).
+    /// Puts the draft in place, if the place is unchanged: as [`create`](Self::create) if it was free,
+    /// otherwise as [`replace`](Self::replace).
     ///
     /// # Errors
-    /// [`FileError::Taken`] if something else is there by now, and as those.
+    /// Returns [`FileError::Taken`] if the place has changed, and the errors of those methods.
     pub fn replace_if(self, before: &Before) -> Result<(), FileError> {
         let _turn = Turn::in_folder(folder_of(&self.target));
         if *before != Before::of(&self.target) {
@@ -162,11 +163,11 @@ impl Draft {
         })
     }
 
-    /// Puts it in its place, replacing any file there.
+    /// Puts the draft in place, replacing any file there.
     ///
     /// # Errors
-    /// If there is anything but a regular file, and any error of the system. Unless it is [`FileError::Unfinished`],
-    /// the old file is unchanged.
+    /// Returns an error if the place holds anything but a regular file, and any error of the operating
+    /// system. Unless it is [`FileError::Unfinished`], the old file is unchanged.
     pub fn replace(mut self) -> Result<(), FileError> {
         let old = existing(&self.target)?;
         if let Some(old) = &old {
@@ -191,8 +192,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Overwrites the existing file. That can be interrupted, so until it is done the draft is kept under a name that
-    /// is not treated as litter.
+    /// Overwrites the existing file. This can be interrupted, so until it is done the draft is kept under a
+    /// name that is not treated as litter.
     fn overwrite(mut self, mut place: File, old: &Metadata) -> Result<(), FileError> {
         self.synced = true;
         self.sync()?;
@@ -231,7 +232,7 @@ impl Write for Draft {
     }
 }
 
-/// Lets everyone run a file who may read it.
+/// Makes a file executable for everyone who may read it.
 #[cfg_attr(not(unix), allow(unused_variables))]
 pub(super) fn make_executable(file: &File) -> io::Result<()> {
     #[cfg(unix)]
@@ -243,8 +244,8 @@ pub(super) fn make_executable(file: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes an open file equal to another, and waits until that is on disk. Until then its content is a prefix of the
-/// other's.
+/// Makes an open file equal to another, and waits until it is on disk. Until then its content is a prefix of
+/// the other's.
 pub(super) fn fill(from: &mut File, place: &mut File) -> io::Result<()> {
     place.set_len(0)?;
     io::copy(from, place)?;
@@ -260,7 +261,7 @@ fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
     }
 }
 
-/// Opens a file to overwrite it, if this user may and it is still the one examined before.
+/// Opens a file for overwriting, if permitted and if it is still the file examined before.
 pub(super) fn open_to_overwrite(target: &Path, old: &Metadata) -> Option<File> {
     let file = options().write(true).open(target).ok()?;
     let now = file.metadata().ok()?;
@@ -289,7 +290,7 @@ fn take_after(file: &File, old: &Metadata) -> bool {
     true
 }
 
-/// The number of names of a file.
+/// The number of hard links of a file.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn links(metadata: &Metadata) -> u64 {
     #[cfg(unix)]
@@ -300,8 +301,8 @@ fn links(metadata: &Metadata) -> u64 {
     1
 }
 
-/// A new name is safe once its folder is on disk too. Not every file system can do this; the file itself is complete
-/// either way.
+/// Syncs the folder of a new name. Not every file system supports this; the file itself is complete either
+/// way.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn sync_folder(file: &Path, synced: bool) {
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Replacing folders, all or nothing.
+//! Replaces folders, all or nothing.
 
 use std::{
     ffi::OsStr,
@@ -19,26 +19,27 @@ use super::{
     tidy,
 };
 
-/// The new content of a folder, not yet in its place. Dropping it deletes it.
+/// The new content of a folder, not yet in place. Dropping it deletes it.
 ///
-/// It is made beside its place, in a folder called `.lcm-XXXXXX.tmp` like other drafts. The file `lock` in that folder
-/// is locked while its process lives, `new` is the new content, and `old/NAME` what it replaces, from the first of two
-/// renames to the end: [`tidy`] puts it back if the process was killed between them.
+/// The draft is made next to its destination, in a folder called `.lcm-XXXXXX.tmp` like other drafts. Its
+/// file `lock` is locked while its process lives, `new` is the new content, and `old/NAME` is the replaced
+/// folder, from the first of two renames to the end: [`tidy`] restores it if the process was killed between
+/// them.
 #[derive(Debug)]
 pub struct FolderDraft {
     // Dropped first: not every system deletes open files.
     _lock: File,
-    /// The destination, links followed.
+    /// The destination, with links resolved.
     target: PathBuf,
     folder: TempDir,
     _living: Living,
 }
 
 impl FolderDraft {
-    /// An empty draft, after [`tidy`] in the folder around it.
+    /// An empty draft, after [`tidy`] in the enclosing folder.
     ///
     /// # Errors
-    /// If the path leads to anything but a folder, or nothing can be written beside it.
+    /// Returns an error if the path leads to anything but a folder, or the enclosing folder is not writable.
     pub fn new(path: &Path) -> Result<Self, FileError> {
         let target = follow(path)?;
         if fs::symlink_metadata(&target).is_ok_and(|there| !there.is_dir()) {
@@ -68,7 +69,7 @@ impl FolderDraft {
     /// Adds a file; `path` is its path within the folder, with `/`.
     ///
     /// # Errors
-    /// If the path leads out of the folder, or cannot be written.
+    /// Returns an error if the path leads out of the folder, or cannot be written.
     pub fn add(&self, path: &str, bytes: &[u8], executable: bool) -> io::Result<()> {
         let within = Path::new(path);
         if path.is_empty() || !within.components().all(|part| matches!(part, Component::Normal(_))) {
@@ -82,29 +83,30 @@ impl FolderDraft {
         if executable { make_executable(&File::open(&path)?) } else { Ok(()) }
     }
 
-    /// Puts it in its place, replacing any folder there.
+    /// Puts the draft in place, replacing any folder there.
     ///
     /// # Errors
-    /// If there is anything but a folder, and any error of the system; then what was there is unchanged.
+    /// Returns an error if the place holds anything but a folder, and any error of the operating system; the
+    /// place is then unchanged.
     pub fn replace(mut self) -> io::Result<()> {
         let step = living::step();
         let exchanged = self.exchange();
-        // Dropping the draft is a step of its own.
+        // Dropping the draft is a separate step.
         drop(step);
         exchanged
     }
 
-    /// Puts it in its place, if what is there is still what was there before.
+    /// Puts the draft in place, if the place is unchanged.
     ///
     /// # Errors
-    /// [`FileError::Taken`] if something else is there by now, and as [`replace`](Self::replace).
+    /// Returns [`FileError::Taken`] if the place has changed, and the errors of [`replace`](Self::replace).
     pub fn replace_if(self, before: &Before) -> Result<(), FileError> {
         let _turn = Turn::in_folder(folder_of(&self.target));
         let same = *before == Before::of(&self.target);
         if same { Ok(self.replace()?) } else { Err(FileError::Taken) }
     }
 
-    /// Two renames, or one.
+    /// Moves the old folder away, if any, and the new one into place.
     fn exchange(&mut self) -> io::Result<()> {
         let new = self.folder.path().join(litter::NEW);
         match fs::symlink_metadata(&self.target) {
@@ -121,28 +123,29 @@ impl FolderDraft {
         fs::rename(&self.target, &old)?;
         let exchanged = fs::rename(&new, &self.target);
         if exchanged.is_err() && fs::rename(&old, &self.target).is_err() {
-            // What was there must not be deleted with the draft; tidying puts it back when it can.
+            // The old folder must not be deleted with the draft; tidying restores it when possible.
             self.folder.disable_cleanup(true);
         }
         exchanged
     }
 }
 
-/// Writes something into a folder, which is made first, with those around it. If that fails, the new ones go again.
+/// Writes something into a folder, which is created first, with its parents. If writing fails, the new
+/// folders are removed.
 ///
 /// # Errors
-/// If the folder cannot be made, and those of writing.
+/// Returns an error if the folder cannot be created, and the errors of `write`.
 pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let new: Vec<_> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
     if let Some(file) = folder.ancestors().find(|path| path.exists()).filter(|path| !path.is_dir()) {
         let message = format!("{} is not a folder", file.shown());
         return Err(io::Error::new(io::ErrorKind::NotADirectory, message).into());
     }
-    // Known until the end, in case this process is ended meanwhile.
+    // Recorded until the end, in case this process is terminated meanwhile.
     let known = |folder: &&Path| Living::making(|| Ok(()), |()| Temporary::Folder((*folder).to_owned()));
     let _living = new.iter().map(known).collect::<Result<Vec<_>, _>>()?;
     fs::create_dir_all(folder).map_err(E::from).and_then(|()| write()).inspect_err(|_| {
-        // Only empty ones go.
+        // Only empty folders are removed.
         new.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     })
 }
@@ -158,7 +161,7 @@ mod tests {
         names
     }
 
-    /// A draft whose process was killed: its lock is gone, and it is not.
+    /// A draft whose process was killed: the lock is gone, but the draft is not.
     fn killed(draft: FolderDraft) -> PathBuf {
         let FolderDraft { folder, .. } = draft;
         folder.keep()
@@ -183,7 +186,7 @@ mod tests {
             assert_eq!(mode("deep/er/file")? & 0o100, 0o100);
             assert_eq!(mode("two.txt")? & 0o111, 0);
         }
-        // Dropped, it leaves nothing.
+        // Dropping it leaves nothing.
         FolderDraft::new(&place)?.add("x", b"", false)?;
         assert_eq!(names(around.path()), ["made"]);
         Ok(())

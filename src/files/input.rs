@@ -10,7 +10,7 @@ use std::{
 
 use super::{FileError, Kind, options, read};
 
-/// The longest wait for a writer of a named pipe.
+/// Maximum wait for a writer of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The time between two attempts to read.
 const PAUSE: Duration = Duration::from_millis(5);
@@ -21,11 +21,13 @@ pub fn is_stream(path: &Path) -> bool {
     super::kind(path).is_ok_and(|kind| matches!(kind, Kind::Pipe | Kind::Device))
 }
 
-/// The content of a path from the command line: as [`read`], but it may also be a stream, such as `/dev/stdin` or a
-/// shell's `<(…)`. It waits for processes that write to the stream, but not for one that might start to.
+/// The content of a path from the command line: as [`read`], but streams such as `/dev/stdin` or a shell's
+/// `<(…)` are allowed too. It waits for processes that write to the stream, but not for one that might start
+/// to.
 ///
 /// # Errors
-/// If it is neither a file nor a stream, nobody writes to it, it has more than `limit` bytes, or it cannot be read.
+/// Returns an error if the path is neither a file nor a stream, if the stream has no writer, if there are
+/// more than `limit` bytes, or if it cannot be read.
 pub fn read_input(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let kind = Kind::of(fs::metadata(path)?.file_type());
     match kind {
@@ -74,7 +76,7 @@ fn read_all(mut from: impl Read, limit: u64, patience: Duration) -> Result<Vec<u
             Ok(0) if bytes.is_empty() && begin.elapsed() < patience => thread::sleep(PAUSE),
             Ok(0) => return Ok(bytes),
             Ok(n) => bytes.extend_from_slice(&piece[..n]),
-            // A writer exists, but has nothing to say yet.
+            // A writer exists, but has not written anything yet.
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => thread::sleep(PAUSE),
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
             Err(e) => return Err(e.into()),

@@ -1,14 +1,14 @@
-//! Paths that stay in a folder.
+//! Paths confined to a folder.
 
 use std::path::{Component, Path, PathBuf};
 
 use super::FileError;
 
-/// Where a path leads, links followed, if that is in a folder or below it. Of a path that leads out of it by its name,
-/// nothing is looked at.
+/// The target of a path, with links resolved, if it is in or below a folder. Nothing is accessed if the path
+/// leads out of the folder by its name.
 ///
 /// # Errors
-/// [`FileError::Outside`], or there is nothing.
+/// Returns [`FileError::Outside`], or an error if the target does not exist.
 pub fn inside(folder: &Path, path: &Path) -> Result<PathBuf, FileError> {
     let outside = || FileError::Outside(folder.to_owned());
     if !plain(path)?.starts_with(plain(folder)?) {
@@ -18,7 +18,7 @@ pub fn inside(folder: &Path, path: &Path) -> Result<PathBuf, FileError> {
     if end.starts_with(folder.canonicalize()?) { Ok(end) } else { Err(outside()) }
 }
 
-/// A path from the root on, without `.` and `..`, by its name alone.
+/// The absolute path without `.` and `..`, by name alone.
 fn plain(path: &Path) -> Result<PathBuf, FileError> {
     let mut plain = PathBuf::new();
     for component in std::path::absolute(path)?.components() {
@@ -53,7 +53,7 @@ mod tests {
         for name in
             ["m.obj", "./m.obj", "below/m.obj", "below/../m.obj", "../scene/m.obj", "nowhere/../m.obj"]
         {
-            // The last one leads nowhere for the operating system.
+            // The last one is invalid for the operating system.
             let expected = if name.starts_with("nowhere") { "missing" } else { "inside" };
             assert_eq!(of(name), expected, "{name}");
         }

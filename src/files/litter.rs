@@ -14,32 +14,32 @@ use super::{
     is_same, options, read, read_start,
 };
 
-/// The file in the draft of a folder that is locked while its process lives.
+/// File in the draft of a folder that is locked while its process lives.
 pub(super) const LOCK: &str = "lock";
-/// The new content in the draft of a folder.
+/// Name of the new content in the draft of a folder.
 pub(super) const NEW: &str = "new";
-/// The folder in the draft of a folder with what it replaces, under its name.
+/// Folder in the draft of a folder that holds the replaced folder, under its name.
 pub(super) const OLD: &str = "old";
 
-/// The prefix of all temporary files. The dot hides them from programs that watch the folder.
+/// Prefix of all temporary files. The dot hides them from programs that watch the folder.
 pub(super) const PREFIX: &str = ".lcm-";
-/// The suffix of a draft.
+/// Suffix of a draft.
 pub(super) const DRAFT: &str = ".tmp";
-/// The suffix of the whole copy of a file that is being overwritten.
+/// Suffix of the complete copy of a file that is being overwritten.
 const WHOLE: &str = ".whole";
-/// The length of the random part of a name.
+/// Length of the random part of a name.
 const RANDOM: usize = 6;
-/// Files named by older versions have no lock; no write takes this long.
+/// Age above which drafts of older versions, which have no lock, are abandoned; no write takes this long.
 const LONG: Duration = Duration::from_secs(60);
-/// No document is larger.
+/// Maximum size of a document.
 const LARGEST: u64 = 64 << 20;
 
-/// A file whose overwriting was cut short when its process ended.
+/// A file whose overwriting was interrupted when its process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfinished {
-    /// The copy with the whole content.
+    /// The copy with the complete content.
     pub copy: PathBuf,
-    /// The file, if it is still there.
+    /// The file, if it still exists.
     pub file: Option<PathBuf>,
 }
 
@@ -61,7 +61,7 @@ impl std::fmt::Display for Unfinished {
     }
 }
 
-/// The name of the whole copy of a file during overwriting.
+/// The name of the complete copy of a file during overwriting.
 #[cfg_attr(not(unix), allow(unused_variables))]
 pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
     #[cfg(unix)]
@@ -83,7 +83,7 @@ fn changed(file: &Metadata) -> u64 {
 enum Name {
     /// A draft, locked while its process lives.
     Draft,
-    /// The whole copy of the file with that inode and modification time.
+    /// The complete copy of the file with this inode and modification time.
     Whole(u64, u64),
     /// A draft of a scene by an older version.
     OldScene,
@@ -117,8 +117,8 @@ impl Name {
     }
 }
 
-/// Removes drafts abandoned by their processes from a folder, and finishes interrupted overwriting. Returns those that
-/// could not be finished.
+/// Removes abandoned drafts from a folder, and finishes interrupted overwriting. Returns those that could not
+/// be finished.
 #[must_use]
 pub fn tidy(folder: &Path) -> Vec<Unfinished> {
     let mut unfinished = Vec::new();
@@ -138,35 +138,37 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
     unfinished
 }
 
-/// A regular file that no other process has locked, locked; never a link.
+/// Opens and locks a regular file, never a link, unless another process has locked it.
 fn left(path: &Path) -> Option<File> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;
     }
     let file = options().read(true).open(path).ok()?;
     file.try_lock().ok()?;
-    // It may have been renamed before the lock was taken, and another file may have its name.
+    // It may have been renamed before it was locked, and another file may have its name.
     let there = fs::symlink_metadata(path).ok()?;
     (there.is_file() && is_same(&there, &file.metadata().ok()?)).then_some(file)
 }
 
 fn remove_if_left(path: &Path) {
     if let Some(_lock) = left(path) {
-        // A file that cannot be removed is no news: the next tidying tries again.
+        // Failure to remove a file is not reported: the next tidying tries again.
         let _ = fs::remove_file(path);
     }
 }
 
-/// Removes the draft of a folder. What it was about to replace is put back first, if nothing has taken its place.
+/// Removes the draft of a folder, if abandoned. The folder that it was about to replace is restored first,
+/// unless its place is taken.
 fn remove_folder_if_left(path: &Path) {
-    // One without a lock is that of a process killed at once, or of somebody else, who may have put something in it.
+    // A draft without a lock belongs to a process killed early, or to somebody else, who may have put
+    // something in it.
     let Some(lock) = left(&path.join(LOCK)) else { return };
     // Not every system deletes open files.
     drop(lock);
     remove_draft(path);
 }
 
-/// Removes the draft of a folder that nobody works on, as [`remove_folder_if_left`] does.
+/// Removes the abandoned draft of a folder, as [`remove_folder_if_left`] does.
 pub(super) fn remove_draft(path: &Path) {
     let old = fs::read_dir(path.join(OLD)).ok().and_then(|mut entries| entries.next());
     if let Some(old) = old {
@@ -179,7 +181,7 @@ pub(super) fn remove_draft(path: &Path) {
     let _ = fs::remove_dir_all(path);
 }
 
-/// Makes something temporary with a file that is locked while this process lives.
+/// Creates something temporary with a file that is locked while this process lives.
 pub(super) fn locked<T>(
     mut make: impl FnMut() -> io::Result<T>,
     lock: impl Fn(&T) -> (&File, PathBuf),
@@ -192,7 +194,7 @@ pub(super) fn locked<T>(
         let locked = match file.try_lock() {
             Ok(()) => true,
             Err(TryLockError::WouldBlock) => false,
-            // Not every file system has locks; there nobody tidies up.
+            // Not every file system has locks; those are never tidied.
             Err(TryLockError::Error(_)) => true,
         };
         let there = fs::symlink_metadata(path);
@@ -213,7 +215,7 @@ fn remove_if_old(path: &Path, beginning: &[u8]) {
     }
 }
 
-/// Finishes overwriting a file, if it was interrupted and unchanged since.
+/// Finishes overwriting a file, if it was interrupted and is unchanged since.
 fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinished> {
     // Locked: another process is working on it.
     let mut lock = left(copy)?;
@@ -226,8 +228,8 @@ fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinishe
         Err(_) => return None,
     };
     if there != wanted {
-        // Only the effect of the interruption itself is undone, and only among files of one owner: in a folder that
-        // everyone may write to, the copy could come from anybody.
+        // Only the effect of the interruption itself is undone, and only among files of one owner: in a
+        // world-writable folder, the copy could come from anybody.
         let begun = wanted.starts_with(&there) || changed(&metadata) == time;
         let interrupted = begun && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
         let place = interrupted.then(|| open_to_overwrite(&file, &metadata)).flatten();
@@ -241,7 +243,7 @@ fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinishe
     None
 }
 
-/// The regular file of a folder with that inode.
+/// The regular file in a folder with this inode.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn with_inode(folder: &Path, inode: u64) -> Option<(PathBuf, Metadata)> {
     #[cfg(unix)]

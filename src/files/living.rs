@@ -1,4 +1,4 @@
-//! The temporary files of this process, which go when a signal ends it.
+//! The temporary files of this process, which are removed when a signal ends it.
 
 use std::{
     fs, io,
@@ -10,31 +10,32 @@ use std::{
 
 use super::litter;
 
-/// The longest wait for a write that hangs, before the process ends without cleaning up.
+/// Maximum wait for a write that hangs, before the process ends without cleaning up.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// The time between two looks at it.
+/// The time between two checks.
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// Held during every step that makes, renames or fills something temporary, so that the end never falls between two.
+/// Held during every step that creates, renames or fills something temporary, so that the process never ends
+/// between two of these.
 static LIVING: Mutex<Vec<Temporary>> = Mutex::new(Vec::new());
 
-/// Something that is there only while this process works.
+/// A temporary item that exists only while this process works on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Temporary {
     /// The draft of a file.
     File(PathBuf),
-    /// The draft of a folder.
+    /// A folder that stays if something is written into it.
     Draft(PathBuf),
     /// A folder that stays if something is written into it.
     Folder(PathBuf),
 }
 
-/// A temporary thing, known until this is dropped.
+/// A temporary item, registered until this is dropped.
 #[derive(Debug)]
 pub(super) struct Living(Temporary);
 
 impl Living {
-    /// Makes something temporary.
+    /// Creates something temporary.
     pub(super) fn making<T>(
         make: impl FnOnce() -> io::Result<T>,
         temporary: impl FnOnce(&T) -> Temporary,
@@ -56,13 +57,14 @@ impl Drop for Living {
     }
 }
 
-/// One step with something temporary, which the end of the process waits for. Once the end has begun, nobody gets one.
+/// A step with something temporary, for which the end of the process waits. Once the end has begun, no step
+/// starts.
 pub(super) fn step() -> MutexGuard<'static, Vec<Temporary>> {
     LIVING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes all temporary files of this process, which is about to end: no other thread can make or finish one after
-/// this.
+/// Removes all temporary files of this process, which is about to end: after this, no other thread can create
+/// or finish one.
 pub fn give_up() {
     let begin = Instant::now();
     let mut living = loop {
@@ -73,7 +75,8 @@ pub fn give_up() {
             Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),
         }
     };
-    // What cannot be removed is left to the next tidying. Folders, which hold the rest, come last, inner ones first.
+    // Items that cannot be removed are left to the next tidying. Folders come last, inner ones first, since
+    // they contain the rest.
     for temporary in living.iter() {
         match temporary {
             Temporary::File(path) => drop(fs::remove_file(path)),
@@ -89,7 +92,7 @@ pub fn give_up() {
         })
         .collect();
     folders.sort_by_key(|path| std::cmp::Reverse(path.components().count()));
-    // Only empty ones go.
+    // Only empty folders are removed.
     folders.iter().for_each(|path| drop(fs::remove_dir(path)));
     std::mem::forget(living);
 }

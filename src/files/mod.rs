@@ -1,36 +1,36 @@
-//! The one guard between the program and files: all reading and writing goes through here, and nothing else in the
-//! program opens a file.
+//! All access to files: the program reads and writes files only through this module.
 //!
-//! To read:
+//! Reading:
 //! - [`read`]`(path, limit)`: the content of a regular file, links followed. It never waits: pipes, devices,
 //!   sockets and folders are refused before they are opened, and so are files larger than the limit.
-//! - [`read_start`]: its first bytes; [`read_range`]: some in the middle.
-//! - [`identity`]: tells a file from all others.
-//! - [`inside`]: tells whether a path leads out of a folder.
+//! - [`read_start`]: the first bytes of a file; [`read_range`]: bytes from a position on.
+//! - [`identity`]: identifies a file, whatever paths lead to it.
+//! - [`inside`]: checks that a path does not lead out of a folder.
 //! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!
-//! To write:
-//! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: the same for a new
-//!   file; [`write_all`]: the same for several; [`Draft`]: the same in steps. They keep mode, owner, group, links and
-//!   hard links, and refuse pipes, devices and sockets.
+//! Writing:
+//! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: a new
+//!   document; [`write_all`]: several documents; [`Draft`]: a document in steps. They keep mode, owner,
+//!   group, links and hard links, and refuse pipes, devices and sockets.
 //! - [`FolderDraft`]: a folder of files, all or nothing.
-//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called before it is
-//!   calculated.
-//! - [`spare`]: refuses a result that would replace an input: the one rule for all that writes results.
-//! - [`Before`]: what a place held when it was examined, so that what somebody else writes there meanwhile is kept.
-//! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted writes.
-//! - [`give_up`]: removes the temporary files of this process, which a signal ends.
+//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called
+//!   before it is calculated.
+//! - [`spare`]: refuses a result that would replace an input; used by everything that writes results.
+//! - [`Before`]: the state of a place when it was examined, so that anything written there meanwhile is kept.
+//! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted
+//!   writes.
+//! - [`give_up`]: removes the temporary files of this process when a signal ends it.
 //!
-//! To report:
-//! - [`words()`]: a failure of the system without its number.
-//! - [`printable`]: a text without the characters that a terminal would act on, and [`printable_json`] the same for
-//!   programs; [`Shown`]: a path on one line.
+//! Reporting:
+//! - [`words()`]: an error of the operating system without its number.
+//! - [`printable`]: a text without characters that a terminal would act on, and [`printable_json`], which
+//!   keeps JSON valid; [`Shown`]: a path on one line.
 //!
 //! # How a file is replaced
 //!
-//! The new content is first written to a file beside the old one, called `.lcm-XXXXXX.tmp` whatever the other's name,
-//! so that names of any length work. It is locked while its process lives. Usually it is then renamed, so there is
-//! never half a file.
+//! The new content is first written to a file next to the old one, called `.lcm-XXXXXX.tmp` whatever the
+//! other's name, so that names of any length work. It is locked while its process lives. Usually it is then
+//! renamed, so a half-written file never exists.
 //!
 //! Renaming gives the name to another file. Where that would separate hard links, or give the file an owner or group
 //! that this user may not restore, and where this user may write to the file, its content is overwritten instead.
@@ -72,7 +72,7 @@ pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use words::words;
 
-/// The kind of file that a path leads to, or other thing.
+/// The kind of file or other item to which a path leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A regular file.
@@ -129,30 +129,30 @@ impl fmt::Display for Kind {
     }
 }
 
-/// A failure to read or write a file. Its text follows the file name: "c.json could not be read: …".
+/// An error in reading or writing a file. Its text follows the file name: "c.json could not be read: …".
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The path leads to something other than a regular file.
     #[error("it is {0}, but it must be a file")]
     Kind(Kind),
-    /// It is larger than the limit of the caller.
+    /// The file exceeds the caller's limit.
     #[error("it is larger than {}", size(*.0))]
     TooLarge(u64),
-    /// It was only partly overwritten; the new content is complete in another file.
+    /// The file was only partly overwritten; the new content is complete in another file.
     #[error("{}; it is incomplete now; its complete new content is in {}", words(.error), .copy.shown())]
     Unfinished {
-        /// The file that holds the whole content.
+        /// The file with the complete content.
         copy: PathBuf,
-        /// The failure of the operating system.
+        /// The error of the operating system.
         error: io::Error,
     },
-    /// Something else is there than when its place was examined.
+    /// The place has changed since it was examined.
     #[error("somebody else wrote there meanwhile")]
     Taken,
-    /// It is not in the folder in which it must be.
+    /// The path is not in the folder in which it must be.
     #[error("it is outside the folder {}", .0.shown())]
     Outside(PathBuf),
-    /// A failure of the operating system.
+    /// An error of the operating system.
     #[error("{}", words(.0))]
     Io(#[from] io::Error),
 }
@@ -175,15 +175,15 @@ impl From<FileError> for io::Error {
     }
 }
 
-/// A limit as shown to people.
+/// A limit as displayed.
 fn size(bytes: u64) -> String {
     if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
 }
 
-/// The kind of file that a path leads to, links followed.
+/// The kind of file to which a path leads, links followed.
 ///
 /// # Errors
-/// If there is nothing, or it cannot be examined.
+/// Returns an error if the path does not exist, or cannot be examined.
 pub fn kind(path: &Path) -> io::Result<Kind> {
     Ok(Kind::of(fs::metadata(path)?.file_type()))
 }
@@ -191,7 +191,8 @@ pub fn kind(path: &Path) -> io::Result<Kind> {
 /// The content of a regular file, links followed.
 ///
 /// # Errors
-/// If it is not a regular file, is larger than `limit` bytes, or cannot be read.
+/// Returns an error if the path is not a regular file, or if the file is larger than `limit` bytes or cannot
+/// be read.
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let (file, length) = open_to_read(path)?;
     if length > limit {
@@ -203,18 +204,18 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
 }
 
-/// The first bytes of a regular file, links followed: as many as requested, or all there are.
+/// The first bytes of a regular file, links followed: as many as requested, or all of a shorter file.
 ///
 /// # Errors
-/// If it is not a regular file or cannot be read.
+/// Returns an error if the path is not a regular file, or cannot be read.
 pub fn read_start(path: &Path, length: u64) -> Result<Vec<u8>, FileError> {
     read_range(path, 0, length)
 }
 
-/// Bytes of a regular file from a position on, links followed: as many as requested, or all there are.
+/// Bytes of a regular file from a position on, links followed: as many as requested, or all that remain.
 ///
 /// # Errors
-/// If it is not a regular file or cannot be read.
+/// Returns an error if the path is not a regular file, or cannot be read.
 pub fn read_range(path: &Path, from: u64, length: u64) -> Result<Vec<u8>, FileError> {
     let (mut file, _) = open_to_read(path)?;
     file.seek(SeekFrom::Start(from))?;
@@ -223,15 +224,15 @@ pub fn read_range(path: &Path, from: u64, length: u64) -> Result<Vec<u8>, FileEr
     Ok(bytes)
 }
 
-/// The file of the running program, to start it again or to copy it.
+/// The file of the running program, for starting it again or copying it.
 #[must_use]
 pub fn program() -> Option<PathBuf> {
-    // This name stays valid when the file is replaced or removed, as by a new build.
+    // This name stays valid when the file is replaced or removed, for example by a new build.
     let own = PathBuf::from("/proc/self/exe");
     if cfg!(target_os = "linux") && own.exists() { Some(own) } else { env::current_exe().ok() }
 }
 
-/// Opens a regular file, and returns its claimed length.
+/// Opens a regular file, and returns its reported length.
 fn open_to_read(path: &Path) -> Result<(File, u64), FileError> {
     // Opening alone can have effects: a pipe waits for a writer, a tape is rewound.
     regular(&fs::metadata(path)?)?;
@@ -242,7 +243,7 @@ fn open_to_read(path: &Path) -> Result<(File, u64), FileError> {
     Ok((file, metadata.len()))
 }
 
-/// Options that keep opening from waiting, and a terminal from becoming this process's controlling one.
+/// Options that prevent waiting on opening, and a terminal from becoming this process's controlling terminal.
 fn options() -> OpenOptions {
     let mut options = OpenOptions::new();
     #[cfg(unix)]
@@ -259,7 +260,7 @@ pub fn same(a: &Path, b: &Path) -> bool {
     matches!((file_id::get_file_id(a), file_id::get_file_id(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// What tells a file from all others, whatever paths lead to it.
+/// Identifies a file, whatever paths lead to it.
 pub type Identity = file_id::FileId;
 
 /// The identity of a regular file, links followed, and its length in bytes.
@@ -270,24 +271,24 @@ pub fn identity(path: &Path) -> Option<(Identity, u64)> {
     Some((file_id::get_file_id(path).ok()?, metadata.len()))
 }
 
-/// The end of a path, links followed; nothing need exist there.
+/// The end of a path, links followed; it need not exist.
 ///
 /// # Errors
-/// If links form a circle.
+/// Returns an error if links form a cycle.
 pub fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut at = path.to_owned();
     // The limit of Linux.
     for _ in 0..40 {
         match fs::read_link(&at) {
             Ok(target) => at = at.parent().unwrap_or(Path::new("")).join(target),
-            // Not a link, or nothing there.
+            // Not a link, or nonexistent.
             Err(_) => return Ok(at),
         }
     }
     Err(io::Error::other("too many links, each leading to the next"))
 }
 
-/// The folder of a file.
+/// The folder that contains a file.
 #[must_use]
 pub fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))

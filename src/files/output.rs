@@ -11,12 +11,12 @@ use std::{
 use super::shown::Shown as _;
 use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
 
-/// The longest wait for a reader of a named pipe.
+/// Maximum wait for a reader of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// The time between two attempts to write.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// The first bytes of the files of a format.
+/// The first bytes of files of a format.
 #[derive(Clone, Copy, Debug)]
 pub struct Signature {
     /// The name of the format: "a PNG file".
@@ -26,20 +26,20 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// True if a path leads to a regular file that begins so.
+    /// True if a path leads to a regular file with this signature.
     #[must_use]
     pub fn begins(&self, path: &Path) -> bool {
         read_start(path, self.begins.len() as u64).is_ok_and(|start| start == self.begins)
     }
 }
 
-/// Pictures.
+/// PNG pictures.
 pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n\x1a\n" };
 
 /// The reason why an output must not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum Refused {
-    /// It is one of the inputs, or a folder that holds one.
+    /// The output is one of the inputs, or a folder that contains one.
     #[error("{} {}; it was not overwritten", .output.shown(), overlap(.output, .input))]
     Input {
         /// The output.
@@ -47,7 +47,7 @@ pub enum Refused {
         /// The input that is the same file, or in the folder.
         input: PathBuf,
     },
-    /// There is a file of another format.
+    /// The existing file has another format.
     #[error("{} exists and is not {what}; it was not overwritten", .output.shown())]
     Foreign {
         /// The output.
@@ -66,7 +66,7 @@ pub enum Refused {
 }
 
 fn overlap(output: &Path, input: &Path) -> String {
-    // The program is known by its whole path.
+    // The program is named by its whole path.
     if matches!((path::absolute(output), path::absolute(input)), (Ok(output), Ok(input)) if output == input) {
         "is read by this command".to_owned()
     } else if output.is_dir() {
@@ -76,13 +76,13 @@ fn overlap(output: &Path, input: &Path) -> String {
     }
 }
 
-/// Refuses a result that would replace an input of its command, by whatever path, link or hard link, or a folder around
-/// one. Everything that writes results asks this before it begins.
+/// Refuses a result that would replace an input of its command, by whatever path, link or hard link, or a
+/// folder that contains one. Everything that writes results calls this first.
 ///
 /// # Errors
-/// If it would.
+/// Returns an error if the result would replace an input.
 pub fn spare<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Refused> {
-    // What a shell opened for this process is the shell's concern.
+    // Files opened by the shell for this process are the shell's responsibility.
     if descriptor(output).is_some() {
         return Ok(());
     }
@@ -97,17 +97,18 @@ pub fn spare<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> R
     }
 }
 
-/// Checks that a result may be written to a path. An existing file must be of the same format, so that nothing else is
-/// lost, and must not be an input, not even by way of links. An empty file or a device has nothing to lose.
+/// Checks that a result may be written to a path. An existing file must have the same format, so that nothing
+/// else is lost, and must not be an input, not even through links. An empty file or a device has nothing to
+/// lose.
 ///
 /// # Errors
-/// If it may not.
+/// Returns an error if the result must not be written there.
 pub fn may_overwrite<'a>(
     output: &Path,
     sort: Signature,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Refused> {
-    // Writing nowhere loses nothing; other problems show in writing.
+    // Nothing is lost if the path cannot be resolved; other problems appear on writing.
     if !kind(output).is_ok_and(|kind| kind == Kind::File) || descriptor(output).is_some() {
         return Ok(());
     }
@@ -123,7 +124,7 @@ pub fn may_overwrite<'a>(
 /// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a pipe.
 #[derive(Debug)]
 pub enum Output {
-    /// A file; [`finish`](Self::finish) puts it in its place.
+    /// A file; [`finish`](Self::finish) puts it in place.
     File(Draft),
     /// Standard output.
     Standard(io::Stdout),
@@ -132,12 +133,13 @@ pub enum Output {
 }
 
 impl Output {
-    /// Opens it. A pipe gets some time to find a reader.
+    /// Opens a destination. A pipe gets some time to find a reader.
     ///
     /// # Errors
-    /// If it is a folder or a socket, nobody reads from it, or it cannot be written to.
+    /// Returns an error if the path is a folder or a socket, if a pipe has no reader, or if it cannot be
+    /// written to.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        // An inherited descriptor is written to directly, even if it leads to a file: that may hold more.
+        // An inherited descriptor is written to directly, even if it leads to a file, which may hold more.
         if descriptor(path) == Some("1") {
             return Ok(Self::Standard(io::stdout()));
         }
@@ -152,7 +154,7 @@ impl Output {
     /// Finishes writing.
     ///
     /// # Errors
-    /// Any failure of the system.
+    /// Returns any error of the operating system.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.flush()?;
         match self {

@@ -1,4 +1,4 @@
-//! Texts made safe to show.
+//! Makes texts safe to display.
 
 use std::{
     borrow::Cow,
@@ -6,15 +6,15 @@ use std::{
     path::Path,
 };
 
-/// A text without the characters that a terminal would act on instead of showing them: control characters other than
-/// line ends and tabs, those that change the direction of writing, and those that end a line unseen, are written as
-/// escapes such as `\u{1b}`. File names may hold all of these.
+/// A text without characters that a terminal would act on instead of displaying: control characters except
+/// line ends and tabs, those that change the text direction, and invisible line ends become escapes such as
+/// `\u{1b}`. File names may contain all of these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |shown, c| write!(shown, "{}", c.escape_default()))
 }
 
-/// The same of a text in JSON, whose strings have escapes such as `\u001b` and stay the same.
+/// Like [`printable`], for JSON, whose strings have escapes such as `\u001b` and keep their value.
 #[must_use]
 pub fn printable_json(text: &str) -> Cow<'_, str> {
     escaped(text, |shown, c| {
@@ -40,7 +40,7 @@ fn escaped(text: &str, escape: impl Fn(&mut String, char) -> fmt::Result) -> Cow
 
 /// Paths in messages.
 pub trait Shown {
-    /// The path on one line: a file whose name holds line ends forges no lines of a message.
+    /// The path on one line: line ends in a file name cannot forge lines of a message.
     fn shown(&self) -> OnOneLine<'_>;
 }
 

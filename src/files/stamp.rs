@@ -1,4 +1,4 @@
-//! Telling whether a file is the same as before without reading it.
+//! Detects changes of a file without reading it.
 
 use std::{
     fs,
@@ -6,10 +6,10 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The time for which clocks of file systems may stand still.
+/// The time for which the clocks of file systems may stand still.
 const COARSE: Duration = Duration::from_millis(100);
 
-/// The length and the time of the last change of a file.
+/// The length and the modification time of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
     length: u64,
@@ -17,7 +17,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// The stamp of a file that has not just changed: whoever changes it from now on changes its stamp.
+    /// The stamp of a file that has not just changed: any later change also changes its stamp.
     #[must_use]
     pub fn settled(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;

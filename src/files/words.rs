@@ -1,12 +1,12 @@
-//! Failures of the operating system in words.
+//! Errors of the operating system in words.
 
 use std::io::{self, ErrorKind};
 
-/// A failure without its number, and where the system's words help nobody, in others.
+/// An error without its number, rephrased where the system's words are unhelpful.
 #[must_use]
 pub fn words(error: &io::Error) -> String {
     let said = error.to_string();
-    // Those with a number are the system's, even if a library adds the path of a draft behind it.
+    // Errors with a number come from the system, even if a library appends the path of a draft.
     let Some((system, _)) = said.split_once(" (os error ") else { return said };
     let own = match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder",
@@ -44,7 +44,7 @@ mod tests {
         }
         let of_draft = tempfile::tempfile_in("/proc").expect_err("nobody makes files there");
         assert_eq!(words(&of_draft), "there is no such file or folder");
-        // Our own are as they are.
+        // This program's own errors stay unchanged.
         let own = io::Error::new(ErrorKind::NotADirectory, "it is not a folder");
         assert_eq!(words(&own), "it is not a folder");
     }

@@ -17,30 +17,30 @@ use crate::{
 
 /// The kinds of blocks.
 const KINDS: [&str; 7] = ["equation", "scene", "view", "point", "predict", "do", "find"];
-/// The most answers to a question: they have the keys 1 to 9.
+/// Maximum number of answers to a question: their keys are 1 to 9.
 const MOST_ANSWERS: usize = 9;
 
-/// A step, and the bytes of what is checked once its scene is known.
+/// A step, and the bytes of the parts that are checked once its scene is known.
 #[derive(Debug, Default)]
 pub(super) struct Draft {
     pub(super) step: Step,
     /// The byte of its heading.
     pub(super) at: usize,
     pub(super) is_empty: bool,
-    /// The values of a block `view`, by setting.
+    /// The values of a `view` block, by setting.
     pub(super) settings: Vec<(&'static str, usize)>,
-    /// The controls of a block `point`.
+    /// The controls of a `point` block.
     pub(super) points: Vec<usize>,
-    /// Texts that should name parts of the scene, and do not.
+    /// Texts that should name parts of the scene, but do not.
     pub(super) misnamed: Vec<(usize, String)>,
-    /// The condition of the task.
+    /// Byte of the task's condition.
     pub(super) until: Option<usize>,
-    /// True if the block `scene` could not be read.
+    /// True if the `scene` block could not be read.
     pub(super) is_lost: bool,
     pub(super) kinds: Vec<&'static str>,
 }
 
-/// Reads a block with what stands behind its opening fence.
+/// Reads a block with the text after its opening fence.
 pub(super) fn read(
     info: &str,
     at: usize,
@@ -127,7 +127,7 @@ pub(super) fn read(
     }
 }
 
-/// The lines of a block that has one thing in each, as many as there may be.
+/// The lines of a block with one entry per line, up to the limit.
 fn settings<'a>(body: Piece<'a>, problems: &mut Problems) -> Vec<Line<'a>> {
     let all = lines(body.text, body.at).filter(|line| !line.text.trim().is_empty());
     let mut lines: Vec<_> = all.take(MAX_LINES + 1).collect();
@@ -138,7 +138,7 @@ fn settings<'a>(body: Piece<'a>, problems: &mut Problems) -> Vec<Line<'a>> {
     lines
 }
 
-/// The byte of a bracket of an equation without its other one, and a sentence. Intervals may mix ( and [.
+/// The byte of an unmatched bracket in an equation, and a sentence. Intervals may mix ( and [.
 fn brackets(equation: &str) -> Option<(usize, &'static str)> {
     let mut open = Vec::new();
     for (at, c) in equation.char_indices() {
@@ -154,7 +154,7 @@ fn brackets(equation: &str) -> Option<(usize, &'static str)> {
     open.last().map(|(at, _)| (*at, "this bracket is never closed"))
 }
 
-/// The mark of an answer, and true if it is right.
+/// The marker of an answer, and true if the answer is right.
 fn mark(text: &str) -> Option<(usize, bool)> {
     [("[ ]", false), ("[]", false), ("[x]", true), ("[X]", true)]
         .into_iter()
@@ -220,7 +220,7 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     (problems.count() == before).then_some(Task::Predict { question: text, answers })
 }
 
-/// The part of a task that a word was meant for.
+/// The part of a task that a word probably stands for.
 fn part_meant(word: &str) -> Option<&'static str> {
     const MEANT: [(&str, &str); 10] = [
         ("until", "until"),
@@ -242,7 +242,7 @@ fn part_meant(word: &str) -> Option<&'static str> {
 fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> Option<Goal> {
     const PARTS: [&str; 2] = ["until", "hint"];
     let before = problems.count();
-    // Each part goes on until the next begins; the text comes first.
+    // Each part continues until the next begins; the text comes first.
     let mut parts: Vec<(&str, usize, usize)> = vec![("", 0, 0)];
     for line in lines(body.text, body.at) {
         let piece = line.piece();
@@ -283,7 +283,7 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
         }
         return None;
     };
-    // A condition has no colon: a line with one was meant for another part.
+    // Conditions contain no colon: a line with one was meant for another part.
     if let Some((key, _)) = lines(written.text, written.at).skip(1).find_map(|line| pair(&line)) {
         let meant = part_meant(key.text).map_or_else(String::new, |part| format!("; did you mean {part}:?"));
         problems.at(key.at, format!("a task has no {}; it has until and hint{meant}", quoted(key.text)));
@@ -299,7 +299,7 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
     }
 }
 
-/// The part that a control is, if it is one.
+/// The part of the scene that a control names, if any.
 pub(super) fn part(control: &Control) -> Option<&super::PartName> {
     match control {
         Control::Part(part) => Some(part),

@@ -1,4 +1,5 @@
-//! The steps one after the other, with the scenes in which they begin: parts, views and conditions that do not fit.
+//! Checks the steps in order, with the scenes in which they begin: parts, views and conditions that do not
+//! fit.
 
 use super::{
     Block, Situation, Task, WindowFacts,
@@ -9,13 +10,13 @@ use super::{
 };
 use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plural};
 
-/// Checks all steps from the scene of the start on.
+/// Checks all steps, starting with the initial scene.
 pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, problems: &mut Problems) {
     let mut scene = start.clone();
     let mut window = WindowFacts::default();
     let mut known = Knowledge::at_the_beginning();
     for draft in drafts {
-        // Without the scene that is meant, everything after it would seem wrong.
+        // Without the intended scene, everything after it would seem wrong.
         if draft.is_lost {
             return;
         }
@@ -57,7 +58,7 @@ fn step(
     let place = |setting: &str| {
         draft.settings.iter().find(|(known, _)| *known == setting).map_or(draft.at, |(_, at)| *at)
     };
-    // The names of the scene were not known where the part was read.
+    // The names in the scene were not known where the part was read.
     for (at, written) in &draft.misnamed {
         if let Some(near) = controls::nearest_part(written, scene) {
             problems.add(*at, &format!("; did you mean {near}?"));

@@ -1,4 +1,4 @@
-//! The controls that a lesson can point at, and the parts of a scene that it can name.
+//! The controls that a lesson can highlight, and the parts of a scene that it can name.
 
 use super::{problem::Problems, words::Piece};
 use crate::{
@@ -11,7 +11,8 @@ use crate::{
 /// A control of the window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// The knob of a parameter, by its name in scene files; `exposure` and the other settings of the display too.
+    /// The control of a parameter, by its name in scene files; also `exposure` and the other display
+    /// settings.
     Knob(String),
     /// A menu of the window: one of [`MENUS`].
     Menu(String),
@@ -29,7 +30,7 @@ pub const MENUS: &[&str] = &["File", "Edit", "View", "Help"];
 pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 /// The tabs below the picture, by id.
 pub const TABS: &[&str] = &["explain", "plots", "messages"];
-/// The knobs that belong to no declared parameter.
+/// Controls that do not belong to a declared parameter.
 pub const KNOBS: &[&str] = &[
     "exposure",
     "tone_mapping",
@@ -59,7 +60,7 @@ pub enum PartName {
 /// One of several parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// By its number in the list, from 1.
+    /// By position in the list, from 1.
     Number(usize),
     /// By its name.
     Name(String),
@@ -75,7 +76,7 @@ impl Which {
 }
 
 impl PartName {
-    /// The part in a scene, if it has it.
+    /// The part in a scene, if it exists.
     #[must_use]
     pub fn find(&self, scene: &Scene) -> Option<Selection> {
         match self {
@@ -90,7 +91,7 @@ impl PartName {
         }
     }
 
-    /// The parts of that kind in a scene, for messages.
+    /// The parts of this kind in a scene, for messages.
     pub(super) fn known(&self, scene: &Scene) -> String {
         let list = |count: usize, what: &str, names: Vec<&str>| {
             let names: Vec<_> = names.iter().take(6).map(|name| quoted(name)).collect();
@@ -135,7 +136,7 @@ impl PartName {
     }
 }
 
-/// The part of a scene whose name is nearest to a text that names none, as it must be written.
+/// The part of a scene with the most similar name to an unknown one, as it must be written.
 pub(super) fn nearest_part(written: &str, scene: &Scene) -> Option<String> {
     let word = |text: &str| -> Option<usize> { text.find(char::is_whitespace) };
     let bare = match word(written).map(|end| (&written[..end], written[end..].trim())) {
@@ -160,7 +161,7 @@ pub(super) fn parameters(registry: &Registry) -> Vec<&'static str> {
     registry.material_parameters().chain(lights).chain(shapes).map(|p| p.name).collect()
 }
 
-/// Reads a line of a block `point`; a part comes with its byte, to be looked for in the scene.
+/// Reads a line of a `point` block; a part is returned with its byte, to be looked up in the scene.
 pub(super) fn control(
     key: Piece,
     value: Piece,
@@ -171,7 +172,7 @@ pub(super) fn control(
         let found = known.iter().find(|known| **known == value.text).map(|known| (*known).to_owned());
         if found.is_none() {
             let near = did_you_mean(value.text, known.iter().map(|k| (*k, *k)));
-            // Of parameters there are too many to name.
+            // There are too many parameters to name.
             let all = if known.len() > 12 {
                 String::new()
             } else {

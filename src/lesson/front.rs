@@ -9,7 +9,7 @@ use crate::text::{did_you_mean, quoted};
 
 /// The keys, in the order of the documentation.
 const KEYS: [&str; 4] = ["title", "summary", "minutes", "scene"];
-/// The longest lesson, minutes.
+/// Longest lesson, in minutes.
 const LONGEST: u32 = 120;
 
 /// The front matter.

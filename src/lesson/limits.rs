@@ -1,24 +1,25 @@
-//! The limits of lessons. With them every lesson of [`MAX_FILE_BYTES`] is read in two seconds and shown without delay,
-//! whatever is in it.
+//! The limits of lessons. They ensure that any lesson up to [`MAX_FILE_BYTES`] is read within two seconds and
+//! shown without delay, whatever its content.
 //!
-//! Equations have limits of their own, [`LONGEST_LINE`](crate::text::mathematics::LONGEST_LINE) and
-//! [`MAX_DEPTH`](crate::text::mathematics::MAX_DEPTH), and so have the scenes that a lesson names.
+//! Equations have separate limits, [`LONGEST_LINE`](crate::text::mathematics::LONGEST_LINE) and
+//! [`MAX_DEPTH`](crate::text::mathematics::MAX_DEPTH), and so do the scenes that a lesson names.
 
-/// Larger files are refused before they are read. The longest shipped lesson is a hundredth of this.
+/// Maximum size of a file; larger files are refused before they are read. The longest shipped lesson has a
+/// hundredth of it.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
-/// The most steps.
+/// Maximum number of steps.
 pub const MAX_STEPS: usize = 100;
-/// The longest title of a lesson or a step, and the longest summary, characters.
+/// Maximum length of the title of a lesson or a step, and of the summary, in characters.
 pub const LONGEST_TITLE: usize = 300;
-/// The most text of a step with its equations and its task, characters: about ten pages.
+/// Maximum length of a step's text with its equations and its task, in characters: about ten pages.
 pub const LONGEST_STEP: usize = 20_000;
-/// The longest condition, characters.
+/// Maximum length of a condition, in characters.
 pub const LONGEST_CONDITION: usize = 1000;
-/// The most comparisons in a condition: each may take milliseconds to evaluate.
+/// Maximum number of comparisons in a condition: each may take milliseconds to evaluate.
 pub const MAX_COMPARISONS: usize = 16;
-/// The deepest brackets and negations of a condition.
+/// Maximum nesting of brackets and negations in a condition.
 pub const DEEPEST_CONDITION: usize = 24;
-/// The most lines of a block `view` or `point`, and the most values that a block `scene` sets.
+/// Maximum number of lines in a `view` or `point` block, and of values set by a `scene` block.
 pub const MAX_LINES: usize = 100;
-/// The most problems reported; the lesson is read no further.
+/// Maximum number of problems reported; the rest of the lesson is not read.
 pub const MAX_PROBLEMS: usize = 200;

@@ -1,4 +1,5 @@
-//! From Markdown to steps: headings, paragraphs, lists and fenced blocks, all else is refused with its place.
+//! Converts Markdown to steps: headings, paragraphs, lists and fenced blocks. Everything else is refused with
+//! its position.
 
 use std::{ops::Range, path::Path};
 
@@ -14,10 +15,10 @@ use super::{
 };
 use crate::registry::Registry;
 
-/// Lists within lists are no deeper than this.
+/// Maximum nesting of lists.
 const DEEPEST_LIST: usize = 3;
 
-/// Markdown beyond CommonMark: recognised, so that it is refused instead of shown as signs.
+/// Markdown beyond CommonMark: recognised in order to be refused instead of shown literally.
 fn options() -> Options {
     Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH
 }
@@ -27,7 +28,7 @@ fn options() -> Options {
 struct Runs {
     runs: Vec<Run>,
     styles: Vec<RunStyle>,
-    /// The row of equal signs that was looked at last, and true if it was said to be stray.
+    /// The last row of identical signs, and true if it was reported as stray.
     row: (Range<usize>, bool),
 }
 
@@ -44,14 +45,14 @@ impl Runs {
         std::mem::take(&mut self.runs)
     }
 
-    /// Says a sign of emphasis that stands in a text as it is; once for a row of them.
+    /// Reports an emphasis sign that appears literally in a text, once for a row of them.
     fn check(&mut self, event: &Event, whole: Piece, range: &Range<usize>, problems: &mut Problems) {
         let Some(text) = whole.text.get(range.clone()).filter(|_| matches!(event, Event::Text(_))) else {
             return;
         };
         for (inside, sign) in text.match_indices(['*', '`']) {
             let at = range.start + inside;
-            // A row may be as long as the text, and each of its signs an event of its own.
+            // A row may be as long as the text, with an event for each of its signs.
             if self.row.0.contains(&at) {
                 continue;
             }
@@ -66,7 +67,7 @@ impl Runs {
         }
     }
 
-    /// Takes text and styles; false for everything else.
+    /// Handles text and styles; false for everything else.
     fn takes(&mut self, event: &Event) -> bool {
         let style = self.styles.last().copied().unwrap_or_default();
         match event {
@@ -107,7 +108,8 @@ fn refusal(event: &Event) -> &'static str {
     }
 }
 
-/// The row of equal signs of emphasis around a byte, and true if it has no meaning as it stands. `2 * 3` is meant.
+/// The row of identical emphasis signs around a byte, and true if it has no meaning there. `2 * 3` is
+/// intended.
 fn row(whole: &str, at: usize, sign: &str) -> (Range<usize>, bool) {
     let word = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
     let space = |c: Option<char>| c.is_none_or(char::is_whitespace);
@@ -118,7 +120,7 @@ fn row(whole: &str, at: usize, sign: &str) -> (Range<usize>, bool) {
     (start..end, !is_meant)
 }
 
-/// Reads a text that is one paragraph: a question, an answer, a hint.
+/// Reads a text of one paragraph: a question, an answer, a hint.
 pub(super) fn inline(piece: Piece, problems: &mut Problems) -> Vec<Run> {
     let mut runs = Runs::default();
     let (mut skipped, mut paragraphs) = (0usize, 0);
@@ -158,11 +160,11 @@ struct Reader<'a, 'p, 'q> {
     problems: &'p mut Problems<'q>,
     steps: Vec<Draft>,
     runs: Runs,
-    /// The lists around the place, with the number of the next item.
+    /// The enclosing lists, with the number of the next item.
     lists: Vec<Option<u64>>,
-    /// The items around the place: their numbers, and true once they have their text.
+    /// The enclosing items: their numbers, and true once they have text.
     items: Vec<(Option<u64>, bool)>,
-    /// Said once.
+    /// True once a missing heading has been reported.
     headless: bool,
 }
 
@@ -186,7 +188,7 @@ pub(super) fn steps(
         headless: false,
     };
     let parser = Parser::new_ext(&whole[from..], options());
-    // They are shown nowhere, not even as events.
+    // Link definitions are shown nowhere, not even as events.
     let definitions = parser.reference_definitions().iter().map(|(_, d)| d.span.start);
     let definitions: Vec<_> = definitions.take(MAX_PROBLEMS).collect();
     for start in definitions {
@@ -209,7 +211,7 @@ pub(super) fn steps(
             _ => {
                 let refused = reader.event(&event, from + range.start, from + range.end);
                 if let Some(draft) = reader.steps.last_mut().filter(|_| refused) {
-                    // What was refused was meant to be there.
+                    // The refused content was meant to be there.
                     draft.is_empty = false;
                 }
                 skipped = usize::from(refused && matches!(event, Event::Start(_)));
@@ -241,11 +243,11 @@ pub(super) fn steps(
     steps
 }
 
-/// The characters of everything that a step shows.
+/// The number of characters shown by a step.
 fn length(step: &Step) -> usize {
     let of = |runs: &[Run]| runs.iter().map(|run| run.text.chars().count()).sum::<usize>();
     let blocks = step.blocks.iter().map(|block| match block {
-        // An empty line takes room, too.
+        // An empty line takes space too.
         Block::Paragraph(runs) | Block::Item { runs, .. } => 1 + of(runs),
         Block::Equation(text) => 1 + text.chars().count(),
         Block::Task => 0,
@@ -261,7 +263,7 @@ fn length(step: &Step) -> usize {
 }
 
 impl Reader<'_, '_, '_> {
-    /// The step around the place.
+    /// The current step.
     fn step(&mut self, at: usize) -> Option<&mut Draft> {
         if self.steps.is_empty() && !std::mem::replace(&mut self.headless, true) {
             self.problems.at(at, "there is text before the first step; begin the step with ## and its name");
@@ -277,7 +279,7 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// Takes the text of the innermost item.
+    /// Stores the text of the innermost item.
     fn item(&mut self, at: usize) {
         let runs = self.runs.take();
         if runs.is_empty() {
@@ -293,7 +295,7 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// Takes an event from one byte to another. True if it was refused, with everything in it.
+    /// Handles an event from one byte to another. True if it was refused, with everything in it.
     fn event(&mut self, event: &Event, at: usize, end: usize) -> bool {
         self.runs.check(event, Piece { at: 0, text: self.whole }, &(at..end), self.problems);
         if self.runs.takes(event) {
@@ -315,7 +317,7 @@ impl Reader<'_, '_, '_> {
                 if let Some(problem) = problem {
                     self.problems.at(at, problem);
                     if is_marked {
-                        // Meant as a step: its blocks are not those of the step before.
+                        // Intended as a step: its blocks do not belong to the step before.
                         if let Some(before) = self.steps.last_mut() {
                             before.is_empty = false;
                         }
@@ -384,7 +386,7 @@ impl Reader<'_, '_, '_> {
         false
     }
 
-    /// Takes a block of code.
+    /// Reads a code block.
     fn block(&mut self, kind: &pulldown_cmark::CodeBlockKind, at: usize, end: usize) {
         let pulldown_cmark::CodeBlockKind::Fenced(info) = kind else {
             self.problems.at(at, "text with four spaces before it is a block of no kind; remove the spaces");
@@ -409,7 +411,7 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// The lines between the fences of a block, if there are both.
+/// The lines between the fences of a block, if both exist.
 fn fenced(block: Piece) -> Option<Piece> {
     let first = block.text.find('\n')? + 1;
     let opening = block.text.trim_start();

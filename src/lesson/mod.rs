@@ -1,5 +1,6 @@
-//! Lessons: text with equations, scene states, and steps with a task that a condition checks. Markdown with a few fenced
-//! blocks of our own; no window: the panel shows what this module reads, and asks it whether a task is done.
+//! Lessons: text with equations, scene states, and steps with tasks checked by conditions. Written in
+//! Markdown with a few fenced blocks of our own. Independent of the window: the panel displays lessons read
+//! here, and asks this module whether a task is done.
 //!
 //! ```
 //! use lights_camera_models::{lesson::Lesson, registry::Registry};
@@ -41,52 +42,52 @@ pub use window::SETTINGS;
 /// A lesson.
 #[derive(Clone, Debug)]
 pub struct Lesson {
-    /// The name of its file or folder, without `.md`: progress is kept by it.
+    /// Name of the file or folder, without `.md`; identifies the learner's progress.
     pub id: String,
-    /// Its title.
+    /// Title.
     pub title: String,
-    /// One sentence: its content.
+    /// One sentence: the content.
     pub summary: String,
-    /// The time that it takes, minutes.
+    /// Duration in minutes.
     pub minutes: Option<u32>,
     /// The scene before the first step.
     pub start: Arc<Scene>,
-    /// The steps, one at least.
+    /// The steps; at least one.
     pub steps: Vec<Step>,
 }
 
 /// A step of a lesson.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// Its heading.
+    /// Heading.
     pub title: String,
-    /// Its text, in order.
+    /// Text, in order.
     pub blocks: Vec<Block>,
-    /// The change of the scene on entering it.
+    /// The change of the scene on entering the step.
     pub scene: Option<SceneChange>,
-    /// The change of the window on entering it.
+    /// The change of the window on entering the step.
     pub window: WindowChange,
-    /// The controls that are highlighted while it is shown.
+    /// The controls that are highlighted during the step.
     pub points: Vec<Control>,
-    /// The task of the learner; [`Block::Task`] is its place among the blocks.
+    /// The task of the learner; [`Block::Task`] marks its position among the blocks.
     pub task: Option<Task>,
 }
 
-/// A piece of a step.
+/// A part of a step's content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Block {
     /// A paragraph.
     Paragraph(Vec<Run>),
     /// An item of a list.
     Item {
-        /// Its number, in numbered lists.
+        /// Number, in numbered lists.
         number: Option<u64>,
-        /// 0 for a list, 1 for a list within it.
+        /// Nesting: 0 for a list, 1 for a list within it.
         depth: usize,
-        /// Its text.
+        /// Text of the item.
         runs: Vec<Run>,
     },
-    /// An equation, a line of it per line, in the notation of the models' equations.
+    /// An equation, in the notation of the models' equations, possibly with several lines.
     Equation(String),
     /// The task of the step.
     Task,
@@ -95,39 +96,39 @@ pub enum Block {
 /// Text in one style.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// The text; a line break only where one is meant.
+    /// The text; line breaks only where intended.
     pub text: String,
-    /// Its style.
+    /// Style.
     pub style: RunStyle,
 }
 
 /// The style of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RunStyle {
-    /// Plain.
+    /// Plain text.
     #[default]
     Plain,
-    /// Emphasised.
+    /// Emphasised text.
     Emphasis,
     /// A key or the name of a menu.
     Strong,
-    /// As it is typed.
+    /// Code, as typed.
     Code,
 }
 
 /// The task of a step.
 #[derive(Clone, Debug)]
 pub enum Task {
-    /// Answers a question before the answer can be seen.
+    /// Answer a question before the answer can be seen.
     Predict {
         /// The question.
         question: Vec<Run>,
-        /// The answers, two at least, of which one at least is right and one wrong.
+        /// At least two answers, of which at least one is right and one wrong.
         answers: Vec<AnswerChoice>,
     },
-    /// Changes something.
+    /// Change something.
     Do(Goal),
-    /// Finds something.
+    /// Find something.
     Find(Goal),
 }
 
@@ -136,39 +137,39 @@ pub enum Task {
 pub struct AnswerChoice {
     /// The answer.
     pub text: Vec<Run>,
-    /// True if it is right.
+    /// True if the answer is right.
     pub right: bool,
-    /// The comment for those who choose it.
+    /// Comment shown to those who choose the answer.
     pub feedback: Vec<Run>,
 }
 
 /// Something to reach.
 #[derive(Clone, Debug)]
 pub struct Goal {
-    /// The task in words.
+    /// Task in words.
     pub text: Vec<Run>,
-    /// The task is done once this holds.
+    /// Condition that completes the task.
     pub until: Condition,
-    /// Help for those who ask for it.
+    /// Hint, shown on request.
     pub hint: Option<Vec<Run>>,
 }
 
-/// The change of the window on entering a step. What is `None` stays as it is.
+/// The change of the window on entering a step. `None` leaves a setting unchanged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WindowChange {
     /// The debug channel of the active view; `Some(None)` shows the picture.
     pub channel: Option<Option<DebugChannel>>,
-    /// The terms of the equation that are shown.
+    /// The displayed terms of the equation.
     pub terms: Option<TermSelection>,
-    /// True if the panel *Explain* is shown, false if it is not.
+    /// True to show the *Explain* panel, false to hide it.
     pub explain: Option<bool>,
-    /// The plot that is shown; `Some(None)` shows none.
+    /// The displayed plot; `Some(None)` hides plots.
     pub plots: Option<Option<Kind>>,
     /// The active view: 0 is the scene, 1 view B.
     pub active: Option<usize>,
     /// The selected part.
     pub select: Option<PartName>,
-    /// The pinned pixel, as fractions of the picture from the left and from the top; `Some(None)` lets go of it.
+    /// The pinned pixel, as fractions of the picture from the left and the top; `Some(None)` unpins it.
     pub pin: Option<Option<[f32; 2]>>,
 }
 
@@ -176,16 +177,16 @@ impl Lesson {
     /// Reads a lesson: a Markdown file, or a folder with `lesson.md` and the scenes that it names.
     ///
     /// # Errors
-    /// Every problem, in the order of the file.
+    /// Returns every problem, in the order of the file.
     pub fn read(path: &Path, registry: &Registry) -> Result<Self, Vec<Problem>> {
         read::file(path, registry)
     }
 
-    /// Reads a lesson from text. `name` becomes its [`id`](Self::id); scenes that it names are looked for in the folder,
-    /// then among those shipped.
+    /// Reads a lesson from text. `name` becomes its [`id`](Self::id). Scenes are looked up in the folder,
+    /// then among the shipped scenes.
     ///
     /// # Errors
-    /// Every problem, in the order of the text.
+    /// Returns every problem, in the order of the text.
     pub fn from_text(
         text: &str,
         name: &str,
@@ -195,10 +196,11 @@ impl Lesson {
         read::text(text, name, folder, registry)
     }
 
-    /// The scene on entering a step, as those before it leave it if the learner changes nothing.
+    /// The scene on entering a step, if the learner changes nothing in the earlier steps.
     ///
     /// # Errors
-    /// If there is no such step, or its scene breaks a rule: with another registry than the one it was read with.
+    /// Returns an error if the step does not exist, or if its scene breaks a rule because the registry is not
+    /// the one with which the lesson was read.
     pub fn state(&self, step: usize, registry: &Registry) -> Result<Scene, String> {
         let Some(until) = self.steps.get(..=step) else {
             return Err(format!("the lesson has {} steps; there is no step {}", self.steps.len(), step + 1));
@@ -218,7 +220,7 @@ impl Lesson {
 }
 
 impl Task {
-    /// The goal, of tasks that a condition checks.
+    /// The goal of a task with a condition.
     #[must_use]
     pub fn goal(&self) -> Option<&Goal> {
         match self {
@@ -228,13 +230,13 @@ impl Task {
     }
 }
 
-/// The text of some runs, without their styles.
+/// The text of runs, without styles.
 #[must_use]
 pub fn plain(runs: &[Run]) -> String {
     runs.iter().map(|run| run.text.as_str()).collect()
 }
 
-/// The word for the kind of a selection, in conditions.
+/// The word for a kind of selection in conditions.
 fn kind_of(selection: Selection) -> &'static str {
     match selection {
         Selection::Room => "room",

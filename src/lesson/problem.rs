@@ -1,4 +1,4 @@
-//! The problems of a lesson: each is a sentence with its place and the line that it is about.
+//! The problems of a lesson: each is a sentence with its position and the affected line.
 
 use std::fmt;
 
@@ -14,18 +14,18 @@ use crate::{
 /// A problem of a lesson.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Problem {
-    /// Its position in the file; none if it is about the whole file.
+    /// Position in the file; `None` for the whole file.
     #[serde(flatten)]
     pub place: Option<Place>,
     /// The mistake and the remedy.
     pub message: String,
-    /// The line of its place.
+    /// The line at that position.
     #[serde(skip)]
     pub source: String,
 }
 
 impl Problem {
-    /// A problem of a file as a whole.
+    /// A problem with a file as a whole.
     #[must_use]
     pub fn of_file(message: impl Into<String>) -> Self {
         Self { place: None, message: message.into(), source: String::new() }
@@ -62,7 +62,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The problems found so far in a text, by their bytes.
+/// The problems found so far in a text, by byte.
 pub(super) struct Problems<'a> {
     text: &'a str,
     found: Vec<(usize, String)>,
@@ -78,7 +78,7 @@ impl<'a> Problems<'a> {
         self.found.push((at, message.into()));
     }
 
-    /// Adds words to the problem that was found last at a byte.
+    /// Appends words to the last problem found at a byte.
     pub(super) fn add(&mut self, at: usize, words: &str) {
         if let Some((_, message)) = self.found.iter_mut().rev().find(|(found, _)| *found == at) {
             message.push_str(words);
@@ -89,7 +89,7 @@ impl<'a> Problems<'a> {
         self.found.is_empty()
     }
 
-    /// True if more are of no help to anybody.
+    /// True if further problems would not help.
     pub(super) fn are_enough(&self) -> bool {
         self.found.len() >= MAX_PROBLEMS
     }
@@ -98,7 +98,7 @@ impl<'a> Problems<'a> {
         self.found.len()
     }
 
-    /// All of them, in the order of the text.
+    /// All problems, in textual order.
     pub(super) fn finish(mut self) -> Vec<Problem> {
         self.found.sort_by_key(|(at, _)| *at);
         self.found.dedup();

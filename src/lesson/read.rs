@@ -1,4 +1,4 @@
-//! From a file or a text to a lesson, with every problem at once.
+//! Reads a lesson from a file or a text, reporting all problems at once.
 
 use std::{
     borrow::Cow,
@@ -13,7 +13,7 @@ use crate::{
     scene::{Scene, encoding, error::LoadError},
 };
 
-/// The file of a lesson that is a folder.
+/// Name of the lesson file in a folder.
 const IN_FOLDER: &str = "lesson.md";
 
 /// Reads a lesson from a file or a folder.
@@ -21,7 +21,7 @@ pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Probl
     let is_folder = files::kind(path).is_ok_and(|kind| kind == Kind::Folder);
     let file: Cow<Path> = if is_folder { path.join(IN_FOLDER).into() } else { path.into() };
     let whole = |message: String| vec![Problem::of_file(message)];
-    // A folder may come from anybody: its files are those in it.
+    // A folder may come from anybody: only files within it are read.
     let place = if is_folder { files::inside(path, &file) } else { Ok(file.to_path_buf()) };
     let bytes = place.and_then(|place| files::read(&place, MAX_FILE_BYTES)).map_err(|error| {
         whole(match error {
@@ -48,7 +48,7 @@ pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Probl
         }
         error => whole(error.to_string()),
     })?;
-    // The name of "." says nothing.
+    // The name "." has no meaning.
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let named = if is_folder { absolute.file_name() } else { absolute.file_stem() };
     let id = named.unwrap_or_default().to_string_lossy();
@@ -81,7 +81,7 @@ pub(super) fn text(
     };
     let drafts = markdown::steps(whole, front.end, folder, registry, &mut problems);
     let start = Arc::new(start);
-    // Without the scene that is meant, everything about it would seem wrong.
+    // Without the intended scene, everything about it would seem wrong.
     if is_known && !problems.are_enough() {
         check::steps(&start, &drafts, registry, &mut problems);
     }

@@ -1,4 +1,4 @@
-//! The shipped lessons, built into the program, so that it needs no folder beside it.
+//! The shipped lessons, built into the program, so that it needs no folder next to it.
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ macro_rules! texts {
     };
 }
 
-/// In the order in which they build on each other.
+/// Texts of the lessons, each building on those before it.
 pub const TEXTS: &[(&str, &str)] = texts![
     "01_reflection_models",
     "02_three_terms",
@@ -25,9 +25,9 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "10_a_material_under_the_sky",
 ];
 
-/// All of them, in the order of lists.
+/// All shipped lessons, in the order of lists.
 pub static LESSONS: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
     let registry = Registry::builtin();
-    // A test reads each without a problem.
+    // A test reads each without problems.
     TEXTS.iter().filter_map(|(name, text)| Lesson::from_text(text, name, None, &registry).ok()).collect()
 });

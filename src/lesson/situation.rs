@@ -5,20 +5,21 @@ use crate::{
     registry::Registry, scene::Scene,
 };
 
-/// The state of the window in which a condition holds or does not.
+/// The state of the window in which a condition is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// The scene of the active view: [`Scene::seen`].
     pub scene: &'a Scene,
-    /// The models, lights and shapes.
+    /// Registered models, lights and shapes.
     pub registry: &'a Registry,
     /// The selected part.
     pub selection: Selection,
     /// Facts about the window.
     pub window: WindowFacts,
-    /// The explanation of the pinned pixel, or of the pixel under the pointer if none is pinned, if there is one yet.
+    /// The explanation of the pinned pixel, or of the pixel under the pointer if none is pinned; `None` until
+    /// it is calculated.
     pub probe: Option<&'a Explanation>,
-    /// True if a pixel is pinned: quantities of pixels are those of a pinned one alone.
+    /// True if a pixel is pinned: quantities of pixels refer only to a pinned one.
     pub pinned: bool,
 }
 
@@ -31,12 +32,12 @@ pub struct WindowFacts {
     pub active: usize,
     /// The debug channel of the active view.
     pub channel: Option<DebugChannel>,
-    /// The terms that are shown.
+    /// The displayed terms.
     pub terms: TermSelection,
-    /// The plot, if the panel *Plots* is in sight.
+    /// The plot, if the *Plots* panel is visible.
     pub plots: Option<Kind>,
-    /// True if the panel *Explain* is in sight.
+    /// True if the *Explain* panel is visible.
     pub explain: bool,
-    /// True while the picture is presented.
+    /// True in presentation mode.
     pub presenting: bool,
 }

@@ -1,4 +1,4 @@
-//! The scene on entering a step: values of scene files that are set one after the other, and checked like a file.
+//! The scene on entering a step: values of scene files, set one after the other and checked like a file.
 
 use std::{
     io::ErrorKind,
@@ -26,39 +26,39 @@ use crate::{
     text::{did_you_mean, quoted, sentence, shortened},
 };
 
-/// The name of the scene in the reader of scene files, which decides on the format by it.
+/// Name of the scene in the reader of scene files, which determines its format.
 const NAME: &str = "step.json";
 
 /// The change of the scene on entering a step.
 #[derive(Clone, Debug, Default)]
 pub struct SceneChange {
     operations: Vec<Operation>,
-    /// The folder of the files that the scene names.
+    /// The folder of the files named in the scene.
     folder: PathBuf,
 }
 
 #[derive(Clone, Debug)]
 struct Operation {
-    /// Its byte in the lesson.
+    /// Byte of the change in the lesson.
     at: usize,
     what: What,
 }
 
 #[derive(Clone, Debug)]
 enum What {
-    /// Another scene takes the place of what was there.
+    /// Replaces the scene.
     Open(Arc<Scene>),
-    /// A value; null removes it.
+    /// Sets a value; null removes it.
     Set(Path, Json),
 }
 
 impl SceneChange {
-    /// True if another scene takes the place of what was there.
+    /// True if another scene replaces the present one.
     pub(super) fn opens(&self) -> bool {
         self.operations.iter().any(|operation| matches!(operation.what, What::Open(_)))
     }
 
-    /// The paths that it sets.
+    /// The paths of the values set.
     pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
         self.operations.iter().filter_map(|operation| match &operation.what {
             What::Set(path, _) => Some(path),
@@ -69,13 +69,13 @@ impl SceneChange {
     /// The scene after the change.
     ///
     /// # Errors
-    /// If it breaks a rule of scenes.
+    /// Returns an error if the scene breaks a rule.
     pub fn apply(&self, scene: &Scene, registry: &Registry) -> Result<Scene, String> {
         self.applied(scene, registry)
             .map_err(|problems| problems.into_iter().map(|(_, what)| what).collect::<Vec<_>>().join("\n"))
     }
 
-    /// The same, with the bytes of the problems.
+    /// The scene after the change, or the problems with their bytes.
     pub(super) fn applied(&self, scene: &Scene, registry: &Registry) -> Result<Scene, Vec<(usize, String)>> {
         let opened = self.operations.iter().rposition(|o| matches!(o.what, What::Open(_)));
         let base = match opened.map(|i| &self.operations[i].what) {
@@ -158,7 +158,7 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
     }
 }
 
-/// The scene of a name in a lesson: a file in its folder, else a shipped one.
+/// The scene with a name in a lesson: a file in its folder, or else a shipped scene.
 pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
     let outside = || {
         let name = quoted(name);
@@ -195,7 +195,7 @@ pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -
     })
 }
 
-/// Reads a path such as `objects[0].material.alpha`; the byte of the first mistake in it.
+/// Reads a path such as `objects[0].material.alpha`, or returns the byte of the first mistake.
 pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
     let mut path = Path::root();
     let mut at = 0;
@@ -234,7 +234,7 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
     Ok(path)
 }
 
-/// Reads the body of a block `scene`.
+/// Reads the body of a `scene` block.
 pub(super) fn read(
     body: Piece,
     folder: Option<&FilePath>,
@@ -243,7 +243,7 @@ pub(super) fn read(
 ) -> SceneChange {
     let mut change =
         SceneChange { operations: Vec::new(), folder: folder.map(FilePath::to_owned).unwrap_or_default() };
-    // A value goes on over lines that begin with no path.
+    // A value continues over lines that do not begin with a path.
     let mut statements: Vec<(usize, usize)> = Vec::new();
     for line in lines(body.text, body.at) {
         let piece = line.piece();
@@ -286,7 +286,7 @@ pub(super) fn read(
             continue;
         }
         let equals = piece.text.find('=');
-        // As in a block view.
+        // As in a `view` block.
         let colon = piece.text.find(':').filter(|colon| equals.is_none_or(|equals| *colon < equals));
         if let Some(colon) = colon.filter(|colon| path(piece.text[..*colon].trim_end()).is_ok()) {
             let value = piece.text[colon + 1..].trim();
@@ -314,7 +314,7 @@ pub(super) fn read(
     change
 }
 
-/// A value as in scene files, or the byte of a mistake and the remedy.
+/// A value as in scene files, or the byte of a mistake, with the remedy.
 fn json(piece: Piece) -> Result<Json, (usize, String)> {
     if piece.text.is_empty() {
         return Err((piece.at, "the value is missing; write it as in a scene file".to_owned()));

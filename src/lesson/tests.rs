@@ -9,7 +9,7 @@ fn read(text: &str) -> Result<Lesson, Vec<Problem>> {
     Lesson::from_text(text, "test", None, &Registry::builtin())
 }
 
-/// A lesson of these steps.
+/// A lesson with these steps.
 fn with(steps: &str) -> String {
     format!("---\ntitle: T\nsummary: S.\n---\n\n{steps}")
 }
@@ -148,7 +148,7 @@ fn a_lesson_is_read_with_all_its_parts() {
     assert_eq!(answers.iter().map(|a| a.right).collect::<Vec<_>>(), [false, true]);
     assert_eq!(plain(&answers[1].text), "The right, that is near.");
     assert_eq!(plain(&answers[1].feedback), "Yes.");
-    // The scene of a step is that of the one before, changed.
+    // The scene of a step is the previous one with changes.
     let [first, second, third] = [0, 1, 2].map(|step| lesson.state(step, &registry).expect("legal"));
     assert_eq!(first, *lesson.start);
     assert_eq!(second.objects[0].material.0["alpha"], crate::parameter::Value::Integer(20));
@@ -343,7 +343,7 @@ fn names_that_are_near_are_offered() {
     assert!(far.len() == 1 && far[0].ends_with("its name in quotes"), "{far:?}");
 }
 
-/// A learner is taken to change only what the tasks name.
+/// The learner is assumed to change only values named in tasks.
 #[test]
 fn a_task_that_is_done_before_it_begins_is_found_in_later_steps_too() {
     let task = |kind: &str, until: &str| format!("```{kind}\nX.\nuntil: {until}\n```\n");
@@ -381,13 +381,13 @@ fn a_task_that_is_done_before_it_begins_is_found_in_later_steps_too() {
         let first_task = format!("{select}\n{}", task(kind, first));
         assert_eq!(two(&first_task, "", &task("do", then)), is_done, "{first}; {then}");
     }
-    // Knobs and curves need the selection, which a click may have changed.
+    // Parameters and curves depend on the selection, which a click may have changed.
     let first = format!("{select}\n{}", task("do", "knob.alpha > 300"));
     assert!(!two(&first, "", &task("do", "knob.k_s = 0.5")));
     assert!(two(&first, &format!("{select}\n"), &task("do", "knob.k_s = 0.5")));
     assert!(!two(&first, &format!("{select}\n"), &task("do", "knob.alpha = 32")));
     assert!(!two(&first, &format!("{select}\n"), &task("do", "curve.peak >= 0")));
-    // What a step sets is known again.
+    // Values set by a step are known again.
     let size = task("do", "scene.objects[0].size > 3");
     let set = "```scene\nobjects[0].size = 4\n```\n\n";
     assert!(two(&size, set, &task("do", "scene.objects[0].size = 4")));
@@ -428,7 +428,7 @@ fn mistakes_of_the_whole_text_are_said_too() {
             &format!("---\ntitle: T\nsummary: S.\nscene: x.json\n---\n{step}"),
             &["4:8: the scene \"x.json\" is not among"],
         ),
-        // Twice: the second is a heading by its line.
+        // Twice: the second is a heading because of its line.
         (
             &format!("---\ntitle: T\nsummary: S.\n---\n\n---\ntitle: T\n---\n\n{step}"),
             &["6:1: rules are not shown", "7:1: a line of - or = below text"],
@@ -443,7 +443,7 @@ fn mistakes_of_the_whole_text_are_said_too() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
-    // Whatever the ends of lines, and with a byte order mark.
+    // With any line ends, and with a byte order mark.
     let lines = WHOLE.replace('\n', "\r\n");
     let other = read(&format!("\u{feff}{lines}")).expect("sound");
     let one = read(WHOLE).expect("sound");
@@ -495,7 +495,7 @@ fn files_that_are_no_lessons_are_refused_in_words() {
     );
     fs::write(at("zero.md"), b"---\n\0").expect("writable");
     assert!(said(&at("zero.md")).starts_with("2:1: not UTF-8 text: there is a zero byte"));
-    // A folder with its own scene, which comes before a shipped one of its name.
+    // A folder with its own scene, which takes precedence over a shipped scene of the same name.
     let own = crate::scene::save::to_json(
         &Scene { name: Some("Own".to_owned()), ..Scene::default() },
         None,
@@ -541,7 +541,8 @@ fn a_lesson_can_be_read_as_text() {
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }
 
-/// Pieces of lessons are cut out, doubled and mixed: nothing panics, and every problem has a place in the text.
+/// Pieces of lessons are removed, doubled and mixed: nothing panics, and every problem has a position in the
+/// text.
 #[test]
 fn broken_lessons_never_panic() {
     let mut texts: Vec<String> = TEXTS.iter().map(|(_, text)| (*text).to_owned()).collect();

@@ -1,13 +1,13 @@
-//! A lesson as plain text, for terminals and for reading it before class.
+//! A lesson as plain text, for terminals and for reading before class.
 
 use std::fmt::Write as _;
 
 use super::{Block, Lesson, Run, RunStyle, Task};
 
-/// The width of a line.
+/// Line width.
 const WIDTH: usize = 80;
 
-/// Text with the signs of Markdown for its styles.
+/// Text with Markdown signs for styles.
 fn marked(runs: &[Run]) -> String {
     let marked = |run: &Run| match run.style {
         RunStyle::Plain => run.text.clone(),
@@ -18,7 +18,7 @@ fn marked(runs: &[Run]) -> String {
     runs.iter().map(marked).collect()
 }
 
-/// Adds text in lines of [`WIDTH`]: the first after `first`, the others after `rest`.
+/// Appends text in lines of [`WIDTH`]: the first prefixed with `first`, the others with `rest`.
 fn wrap(text: &str, first: &str, rest: &str, to: &mut String) {
     let mut begin = first;
     for paragraph in text.split('\n') {

@@ -1,4 +1,4 @@
-//! The block `view`: the window on entering a step.
+//! The `view` block: the window on entering a step.
 
 use super::{
     PartName,
@@ -29,7 +29,7 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// A word of a list, or what is wrong with it.
+/// A word from a list; reports an unknown one.
 fn one_of<T>(key: &str, value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T>
 where
     T: Clone,
@@ -46,7 +46,7 @@ where
     found.map(|(_, meaning)| meaning.clone())
 }
 
-/// Reads a line of a block `view`. The bytes of parts and views are kept, to be looked for in the scene.
+/// Reads a line of a `view` block. Keeps the bytes of parts and views, to be looked up in the scene.
 pub(super) fn setting(
     line: &Line,
     given: &mut Vec<&'static str>,

@@ -1,30 +1,30 @@
-//! Pieces of a text that know their place: lines, and the pairs `KEY: VALUE`.
+//! Parts of a text with their positions: lines, and pairs `KEY: VALUE`.
 
-/// A piece of a text.
+/// A part of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Piece<'a> {
-    /// Its first byte in the whole text.
+    /// First byte in the whole text.
     pub(super) at: usize,
     pub(super) text: &'a str,
 }
 
 impl<'a> Piece<'a> {
-    /// Without white space at both ends.
+    /// The piece without white space at both ends.
     pub(super) fn trimmed(self) -> Self {
         let text = self.text.trim_start();
         if text.is_empty() {
-            // The place where something is missing.
+            // The position where something is missing.
             return Self { at: self.at, text };
         }
         Self { at: self.at + self.text.len() - text.len(), text: text.trim_end() }
     }
 
-    /// The part from one byte to another, counted from its first.
+    /// The part from one byte to another, counted from the start of the piece.
     pub(super) fn part(self, from: usize, to: usize) -> Self {
         Self { at: self.at + from, text: self.text.get(from..to).unwrap_or_default() }
     }
 
-    /// The byte after it.
+    /// The byte after the piece.
     pub(super) fn end(self) -> usize {
         self.at + self.text.len()
     }
@@ -33,10 +33,10 @@ impl<'a> Piece<'a> {
 /// A line without its end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<'a> {
-    /// Its first byte.
+    /// First byte of the line.
     pub(super) at: usize,
     pub(super) text: &'a str,
-    /// The first byte of the next line.
+    /// First byte of the next line.
     pub(super) end: usize,
 }
 
@@ -46,7 +46,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// The lines of a piece of a text that begins at a byte of it.
+/// The lines of a piece of text that starts at this byte.
 pub(super) fn lines(text: &str, at: usize) -> impl Iterator<Item = Line<'_>> {
     let mut next = at;
     text.split_inclusive('\n').map(move |line| {

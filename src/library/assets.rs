@@ -1,4 +1,4 @@
-//! The folders of shaders and custom models: finding and reading them, and writing copies to edit.
+//! The folders of shaders and custom models: locating and reading them, and exporting copies for editing.
 
 use std::{
     collections::BTreeSet,
@@ -17,10 +17,10 @@ use crate::{
     shader::{Source, check::ShaderProblem, compose},
 };
 
-/// The environment variable that names another folder for the user's data.
+/// Environment variable with an alternative folder for the user's data.
 pub const DATA_VARIABLE: &str = "LCM_DATA_DIR";
 
-/// The models that are shipped as files: name and text of each.
+/// The shipped example models: name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = &[
     (
         "charlie_sheen.wgsl",
@@ -29,46 +29,46 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("gooch.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"))),
 ];
 
-/// A problem of a folder.
+/// A problem with a folder.
 #[derive(Debug, Error)]
 pub enum AssetError {
-    /// It has no shaders.
+    /// The folder contains no shaders.
     #[error("--assets is {}, but {rule}", .folder.shown())]
     NoShaders {
         /// The folder.
         folder: PathBuf,
-        /// The rule for it, and perhaps the folder that is meant.
+        /// The rule for the folder, and perhaps the intended one.
         rule: String,
     },
-    /// It is a file.
+    /// The path is a file.
     #[error("--models is {}, but it must be a folder", .0.shown())]
     NotAFolder(PathBuf),
-    /// It, or something in it, could not be written.
+    /// The folder, or something in it, could not be written.
     #[error("{} could not be written: {}", .path.shown(), words(.error))]
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// The error of the system.
+        /// Error of the operating system.
         error: io::Error,
     },
 }
 
-/// The surroundings of the process, in which folders are looked for when none is named.
+/// The environment of the process, in which folders are looked for if none is given.
 #[derive(Clone, Debug, Default)]
 struct Surroundings {
-    /// The folders that hold `assets`, in the order in which they are tried.
+    /// The folders that may contain `assets`, in the order in which they are tried.
     roots: Vec<PathBuf>,
     /// The folder of the user's data.
     data: Option<PathBuf>,
 }
 
-/// The folder that an environment variable names.
+/// The folder named by an environment variable.
 fn folder(variable: &str) -> Option<PathBuf> {
     env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
 }
 
-/// The folder of the user's data: the one that [`DATA_VARIABLE`] names, else the usual place of the operating
-/// system; `None` when there is neither.
+/// The folder of the user's data: from [`DATA_VARIABLE`], or else the operating system's default; `None`
+/// without either.
 #[must_use]
 pub fn data_folder() -> Option<PathBuf> {
     let usual = || Some(directories::ProjectDirs::from("", "", crate::program::LAB)?.data_dir().to_owned());
@@ -86,14 +86,14 @@ impl Surroundings {
 impl Folders {
     /// Finds the folders.
     ///
-    /// Shaders are those of `assets/shaders` where `assets` is the folder that is named; else that below
-    /// `$BEVY_ASSET_ROOT`, below `$CARGO_MANIFEST_DIR` (as `cargo run` sets it) or beside the program, whichever
-    /// is there first; else the built-in ones. Custom models are those of the folder that is named, else of `models`
-    /// beside the shaders, else of `models` in the user's data (`$LCM_DATA_DIR`, or where the operating system
-    /// has them).
+    /// Shaders come from `assets/shaders` if `assets` is given; otherwise from the first of that folder below
+    /// `$BEVY_ASSET_ROOT`, below `$CARGO_MANIFEST_DIR` (set by `cargo run`) or next to the program that
+    /// exists; otherwise the built-in shaders are used. Custom models come from `models` if given; otherwise
+    /// from the folder `models` next to the shaders, or else in the user's data (`$LCM_DATA_DIR`, or the
+    /// default of the operating system).
     ///
     /// # Errors
-    /// When the folder that is named has no shaders, or that of the models is a file.
+    /// Returns an error if the given folder contains no shaders, or if the model folder is a file.
     pub fn find(assets: Option<&Path>, models: Option<&Path>) -> Result<Self, AssetError> {
         Self::find_in(assets, models, &Surroundings::of_process())
     }
@@ -117,7 +117,7 @@ impl Folders {
     }
 }
 
-/// The shaders of a folder that was named.
+/// The shaders of a given folder.
 fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
     let shaders = folder.join("shaders");
     if shaders.is_dir() {
@@ -140,8 +140,8 @@ fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
     })
 }
 
-/// Every file that shaders are made of, with its built-in text: what all models need, models, light types and
-/// shading models. Without custom models.
+/// All shader files with their built-in text, except custom models: shared files, models, light types and
+/// shading models.
 #[must_use]
 pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
     let models =
@@ -156,21 +156,21 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
         .collect()
 }
 
-/// Reads the shaders of a folder into a registry, as far as they differ from the built-in ones; they are checked when
-/// they are used. Files that no built-in shader has the name of are for `#import`.
+/// Reads the shaders in a folder into a registry, where they differ from the built-in ones; they are checked
+/// when used. Files without a built-in counterpart are available to `#import`.
 ///
 /// # Errors
-/// The files that could not be read.
+/// Returns the files that could not be read.
 pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
     registry.set_shader_folder(folder);
     read_texts(folder, registry, |_| true)
 }
 
-/// Reads the shaders of the folders of other crates, as [`read_shaders`] does. Files with the names of ours are theirs
-/// alone.
+/// Reads the shaders in the folders of other crates, as [`read_shaders`] does. There, files with the names of
+/// built-in ones belong to those crates.
 ///
 /// # Errors
-/// The files that could not be read.
+/// Returns the files that could not be read.
 pub fn read_extensions(registry: &mut Registry) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
     let ours = shipped(registry);
     let folders = registry.folders().extensions.clone();
@@ -179,7 +179,7 @@ pub fn read_extensions(registry: &mut Registry) -> Result<(), Vec<(PathBuf, Shad
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// The source paths of the shaders that ship with this crate.
+/// The source paths of the shaders shipped with this crate.
 pub(super) fn shipped(registry: &Registry) -> BTreeSet<&'static str> {
     built_in_sources(registry).iter().map(|s| s.path).filter(|path| !registry.is_foreign(path)).collect()
 }
@@ -201,7 +201,7 @@ fn read_texts(
         }
         match file::read(&path, &name) {
             Ok(text) => {
-                // A checkout may have other line ends than the program was built with.
+                // A checkout may have other line ends than the built program.
                 let same = |s: &Source| s.path == name && s.text.lines().eq(text.lines());
                 if built_in.iter().any(same) {
                     registry.sources_mut().forget(&name);
@@ -215,7 +215,7 @@ fn read_texts(
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// The WGSL files below a folder, in order.
+/// Collects the WGSL files below a folder, in order.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut entries: Vec<_> = entries.flatten().map(|e| e.path()).collect();
@@ -233,22 +233,22 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The outcome of an export.
+/// The result of an export.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exported {
-    /// Files that were written.
+    /// Files written.
     pub written: Vec<PathBuf>,
-    /// Files that are there and differ: they were left alone.
+    /// Existing files that differ, and were left unchanged.
     pub kept: Vec<PathBuf>,
-    /// The number of files that were there already, the same.
+    /// Number of existing, identical files.
     pub same: usize,
 }
 
-/// Writes the built-in shaders below `shaders` in a folder, and the example models below `models`, so that they
-/// can be edited: `--assets FOLDER` reads them. A file that is there and differs stays as it is.
+/// Writes the built-in shaders below `shaders` in a folder, and the example models below `models`, for
+/// editing with `--assets FOLDER`. Existing files that differ are left unchanged.
 ///
 /// # Errors
-/// When a folder or a file could not be written.
+/// Returns an error if a folder or a file could not be written.
 pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError> {
     let shaders = folder.join("shaders");
     let sources = built_in_sources(registry).into_iter().map(|s| (shaders.join(s.path), s.text));
@@ -278,11 +278,11 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     Ok(exported)
 }
 
-/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none. If that fails, no new
-/// folder stays.
+/// Writes a new file, all or nothing, creating its folder if necessary. On failure, the new folder is
+/// removed.
 ///
 /// # Errors
-/// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
+/// Returns [`io::ErrorKind::AlreadyExists`] if the file exists; it is left unchanged.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = files::folder_of(path);
     let mut made = false;
@@ -292,7 +292,7 @@ pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     });
     written.map_err(|error| match made {
         true => error.into(),
-        // A file in the place of the folder must not look as if the file itself were there.
+        // A file in place of the folder must not be reported as if the file itself existed.
         false => io::Error::other(format!("the folder {} could not be made: {error}", folder.shown())),
     })
 }
@@ -326,7 +326,7 @@ mod tests {
             ..Folders::default()
         };
         assert_eq!(named, expected);
-        // Without any there are the built-in ones, and models in the user's data.
+        // Without any of them: the built-in shaders, and models in the user's data.
         let none = Folders::find_in(None, None, &surroundings(&[], &data)).expect("there");
         assert_eq!(none, Folders { models: Some(data.join("models")), ..Folders::default() });
         Ok(())

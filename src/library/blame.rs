@@ -1,4 +1,4 @@
-//! Problems that show in a file that nobody edited, led back to the one that was.
+//! Traces problems in unedited files back to the edited ones.
 
 use super::Library;
 use crate::{
@@ -8,8 +8,8 @@ use crate::{
 };
 
 impl Library {
-    /// Names the file that was edited where a problem shows in another one: one that is empty, or where something is
-    /// used that is not there any more.
+    /// Names the edited file that causes a problem in another one: it is empty, or no longer declares
+    /// something used there.
     #[must_use]
     pub fn blamed(
         &self,

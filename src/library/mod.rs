@@ -1,10 +1,10 @@
-//! The shader library: the files of shaders and custom models as they come and change. It reads them, knows the text of
-//! each that was good last, and the problems of those that cannot be used.
+//! The shader library: keeps track of shader files and custom models as they change. It reads them, remembers
+//! the last valid text of each, and the problems of the invalid ones.
 //!
-//! The texts that are drawn with and the folders are held by the [`Registry`](crate::registry::Registry), which the
-//! library keeps up to date; it holds only the texts that are not drawn with. [`Library`] is in `texts`, problems in
-//! `problem` and `blame`, what panels are told in [`status`], reading on a thread in [`reading`],
-//! the texts that replace broken ones in [`stand_in`].
+//! The texts in use and the folders are in the [`Registry`](crate::registry::Registry), which the library
+//! keeps up to date; the library itself holds only texts that are not in use. [`Library`] is in `texts`,
+//! problems in `problem` and `blame`, the state shown in panels in [`status`], reading on a thread in
+//! [`reading`], the fallbacks for broken texts in [`stand_in`].
 
 pub mod assets;
 mod blame;

@@ -1,11 +1,11 @@
-//! The age of problems: young ones are not reported.
+//! The age of problems: recent ones are not reported.
 
 use std::time::{Duration, Instant};
 
-/// The age at which a problem is reported: many editors empty a file before they write it.
+/// Minimum age of a reported problem: many editors empty a file before they write it.
 pub const GRACE: Duration = Duration::from_millis(300);
 
-/// A problem, or several at once, and since when.
+/// One or several problems, and the time since when they exist.
 #[derive(Clone, Debug)]
 pub struct Problem<T> {
     /// The problem.
@@ -14,18 +14,18 @@ pub struct Problem<T> {
 }
 
 impl<T: PartialEq> Problem<T> {
-    /// A problem that is new.
+    /// A new problem.
     pub fn new(what: T) -> Self {
         Self { what, since: Instant::now() }
     }
 
-    /// A problem that is found where there was one before: the same one keeps its age.
+    /// A problem found after another one: if they are equal, it keeps its age.
     pub fn after(before: Option<&Self>, what: T) -> Self {
         let since = before.filter(|before| before.what == what).map_or_else(Instant::now, |b| b.since);
         Self { what, since }
     }
 
-    /// True if it is old enough to be reported.
+    /// True if the problem is old enough to be reported.
     #[must_use]
     pub fn has_settled(&self) -> bool {
         self.since.elapsed() >= GRACE

@@ -1,4 +1,4 @@
-//! Reading custom models: at once, or on a thread of its own where a window must not wait for it.
+//! Reads custom models: immediately, or on a separate thread if a window must not wait.
 
 use std::{
     collections::BTreeMap,
@@ -17,24 +17,24 @@ use crate::{
     shader::{check::ShaderProblem, compose::Sources},
 };
 
-/// The shortest time between two calls of `wake`: many models are taken together.
+/// Minimum interval between calls of `wake`: many models are handled together.
 const PACE: Duration = Duration::from_millis(100);
 
 /// A model to read.
 pub struct Job {
-    /// The source path, as messages name it.
+    /// Source path, as in messages.
     pub source: String,
     /// The file on disk.
     pub file: PathBuf,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// The texts and models to read it with.
+    /// The texts and models with which it is read.
     pub registry: Registry,
-    /// The texts to read it with if a file that all models share has a mistake.
+    /// The texts to use instead if a shared file has an error.
     pub lenient: Sources,
 }
 
-/// A model that was read, or why it cannot be.
+/// The result of reading a model.
 pub struct Done {
     /// See [`Job::source`].
     pub source: String,
@@ -51,7 +51,7 @@ impl Job {
         if let Err(problems) = &result
             && problems.iter().any(|p| !p.file.starts_with(MODELS))
         {
-            // The mistake is in a file that all models share, and is reported there.
+            // The error is in a shared file, and is reported there.
             *registry.sources_mut() = lenient;
             result = custom::read(&file, &text, &registry);
         }
@@ -71,10 +71,10 @@ impl Job {
     }
 }
 
-/// Reads models, one after the other.
+/// Reads models one after the other.
 #[derive(Default)]
 pub struct Reader {
-    /// The work of a thread of its own; without one, models are read at once.
+    /// The state of a separate thread; without one, models are read immediately.
     thread: Option<Arc<Shared>>,
 }
 
@@ -86,7 +86,7 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    /// By file: a newer text replaces an older one.
+    /// Jobs by file: a newer text replaces an older one.
     jobs: BTreeMap<String, Job>,
     reading: Option<String>,
     done: Vec<Done>,
@@ -100,7 +100,7 @@ impl Shared {
 }
 
 impl Reader {
-    /// A reader with a thread of its own, which calls `wake` after each model.
+    /// A reader with a separate thread, which calls `wake` after each model.
     pub fn apart(wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
@@ -131,11 +131,11 @@ impl Reader {
                 }
             }
         });
-        // Without a thread, models are read at once.
+        // Without a thread, models are read immediately.
         Self { thread: started.ok().map(|_| shared) }
     }
 
-    /// Reads a model: the outcome, or none if that comes later.
+    /// Reads a model, and returns the result, or `None` if it comes later.
     pub fn read(&self, job: Job) -> Option<Done> {
         let Some(shared) = &self.thread else { return Some(job.done()) };
         shared.lock().jobs.insert(job.source.clone(), job);
@@ -143,12 +143,12 @@ impl Reader {
         None
     }
 
-    /// The models that were read meanwhile.
+    /// The models read meanwhile.
     pub fn finished(&self) -> Vec<Done> {
         self.thread.as_ref().map_or_else(Vec::new, |shared| std::mem::take(&mut shared.lock().done))
     }
 
-    /// True while a model waits to be read, or for its outcome to be taken.
+    /// True while a model waits to be read, or its result to be collected.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.thread.as_ref().is_some_and(|shared| {
@@ -157,7 +157,7 @@ impl Reader {
         })
     }
 
-    /// True while the thread works, and will wake who waits.
+    /// True while the thread works, and will call `wake`.
     #[must_use]
     pub fn is_reading(&self) -> bool {
         self.thread.as_ref().is_some_and(|shared| {

@@ -1,4 +1,4 @@
-//! Stand-ins: what is drawn with instead of WGSL that another crate compiled in and that is no good.
+//! Fallback shaders, used when the WGSL of another crate is invalid.
 
 use crate::{
     custom,
@@ -7,8 +7,8 @@ use crate::{
     shading::ShadingEntry,
 };
 
-/// The paths of the parts that a shader is composed of, each with the text that can stand in for it: grey Lambert, an
-/// interpolated normal, and darkness.
+/// The paths of the parts of a shader, each with its fallback: grey Lambert, an interpolated normal, and
+/// darkness.
 #[must_use]
 pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> Vec<(&'static str, String)> {
     let dark = |light: &LightEntry| {

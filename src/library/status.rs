@@ -1,23 +1,23 @@
-//! The status of the shaders for people: the folders in which they are edited, their problems, and the models that the
-//! picture shows in an older version.
+//! The status of the shaders for display: the folders in which they are edited, their problems, and the
+//! models that the picture shows in an older version.
 
 use std::path::PathBuf;
 
 use crate::{registry::Folders, shader::check::ShaderProblem, text::listed};
 
-/// The folders of the shaders, and their problems. Made anew by the renderer when something changed.
+/// The shader folders and their problems. Updated by the renderer when something changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShaderStatus {
-    /// The folders, as the registry has them.
+    /// Folders, as in the registry.
     pub folders: Folders,
-    /// The problems.
+    /// Problems.
     pub troubles: Vec<Trouble>,
-    /// The last change that came through.
+    /// The last change that took effect.
     pub last: Option<Reloaded>,
 }
 
 impl ShaderStatus {
-    /// The names of the models of which the picture shows the last good version, each once.
+    /// The names of the models that the picture shows in their last valid version, each once.
     #[must_use]
     pub fn stale(&self) -> Vec<&str> {
         let mut names: Vec<_> =
@@ -28,31 +28,32 @@ impl ShaderStatus {
     }
 }
 
-/// A problem of a shader, and its consequence for the picture.
+/// A problem with a shader, and its effect on the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trouble {
-    /// The problem and its place.
+    /// The problem and its position.
     pub problem: ShaderProblem,
-    /// The file to open, if it is one on disk.
+    /// The file to open, if it is on disk.
     pub path: Option<PathBuf>,
-    /// The names of the models that are on the picture in their last good version because of it. Empty
-    /// when nothing on the picture depends on the file.
+    /// The names of the models that the picture shows in their last valid version because of the problem.
+    /// Empty if nothing in the picture depends on the file.
     pub stale: Vec<String>,
 }
 
-/// A change that came through.
+/// A change that took effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reloaded {
-    /// The file, as messages name it.
+    /// Name of the file, as in messages.
     pub file: String,
-    /// The time from the news of the change to the new shader, milliseconds.
+    /// Time from the notification of the change to the new shader, in milliseconds.
     pub milliseconds: f32,
 }
 
-/// Behind the name of a model of which there is no good version: grey Lambert is drawn instead.
+/// Appended to the name of a model without a valid version: grey Lambert is drawn instead.
 pub const STAND_IN: &str = " (a grey stand-in)";
 
-/// What the picture shows instead of these models: "the last good version of A and B", "a grey stand-in for A".
+/// A description of what the picture shows instead of these models: "the last good version of A and B", "a
+/// grey stand-in for A".
 #[must_use]
 pub fn shown_instead(names: &[impl AsRef<str>]) -> String {
     let bare: Option<Vec<_>> = names.iter().map(|name| name.as_ref().strip_suffix(STAND_IN)).collect();

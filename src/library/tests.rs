@@ -1,4 +1,4 @@
-//! Tests of the library without a GPU: whatever would be tried is adopted.
+//! Tests of the library without a GPU: models to try are adopted directly.
 
 use std::{fs, io};
 
@@ -36,7 +36,7 @@ impl Bench {
         Ok(Self { library: Library::default(), registry, folder })
     }
 
-    /// Looks at a file; true if it is to be tried again what is made of it.
+    /// Looks at a file; true if shaders made of it must be tried again.
     fn look(&mut self, path: &str) -> bool {
         let file = self.folder.path().join(path);
         self.library.look_at(&file, &mut self.registry, |_| true).is_some()
@@ -52,7 +52,7 @@ impl Bench {
         self.look(path)
     }
 
-    /// Adopts what arrives; the number of models.
+    /// Adopts the arriving models, and returns their number.
     fn adopt(&mut self) -> usize {
         let arriving = self.library.next_arriving(usize::MAX);
         let count = arriving.len();
@@ -107,7 +107,7 @@ fn a_file_is_missed_only_if_something_was_made_of_it() -> io::Result<()> {
     bench.save("shaders/loop.wgsl", loop_text());
     assert!(bench.library.take_news());
     assert_eq!(bench.problems(), [""; 0]);
-    // One that was never right.
+    // A model that was never valid.
     bench.save("models/odd.wgsl", "/* lcm { */");
     assert_eq!(bench.problems().len(), 1);
     bench.delete("models/odd.wgsl");
@@ -127,13 +127,13 @@ fn a_custom_model_is_held_here_until_it_is_drawn_with() -> io::Result<()> {
     assert_eq!(bench.library.pending("models/matt.wgsl"), None, "the registry has it");
     bench.look("models/matt.wgsl");
     assert_eq!(bench.adopt(), 0, "nothing changed since");
-    // A mistake leaves what is drawn with.
+    // An error leaves the text in use unchanged.
     bench.save("models/matt.wgsl", &matt(0.5).replace("vec3(0.5)", "vec4(0.5)"));
     assert_eq!((bench.adopt(), bench.problems().len()), (0, 1));
     assert_eq!(bench.text("models/matt.wgsl"), Some(matt(0.25).as_str()));
     bench.save("models/matt.wgsl", &matt(0.25));
     assert_eq!((bench.adopt(), bench.problems().len()), (1, 0), "the good version mends it");
-    // Back to the text that is drawn with, before the other one was tried.
+    // Back to the text in use, before the other one was tried.
     bench.save("models/matt.wgsl", &matt(0.75));
     bench.save("models/matt.wgsl", &matt(0.25));
     assert_eq!(bench.adopt(), 0, "the file says what is drawn");

@@ -1,4 +1,4 @@
-//! The texts of files: read when they change, handed to the registry when they can be drawn with.
+//! The texts of files: read when they change, and passed to the registry when they are valid.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -22,31 +22,32 @@ use crate::{
     },
 };
 
-/// The files of shaders and custom models as they come and change.
+/// The texts of shader files and custom models as they change.
 ///
-/// A shader file's text goes into the registry at once, and the shaders that are made of it are tried. A custom model
-/// is read, then tried by whoever draws, and goes into the registry when it can be drawn with: parameters and text
-/// together.
+/// The text of a shader file goes into the registry at once, and the shaders that contain it are tried. A
+/// custom model is read, then tried by the renderer, and goes into the registry when it is valid: parameters
+/// and text together.
 #[derive(Default)]
 pub struct Library {
-    /// The text of each file as it was last drawn with.
+    /// The last valid text of each file.
     good: Sources,
-    /// The texts of custom models that are being read, wait to be tried, or have mistakes.
+    /// The texts of custom models that are being read, wait to be tried, or have errors.
     pending: Sources,
     reader: Reader,
-    /// Custom models that were read and are still to be tried.
+    /// Custom models that were read and must still be tried.
     arriving: Vec<CustomModel>,
-    /// Files that cannot be read and custom models with mistakes, by source path.
+    /// Unreadable files and custom models with errors, by source path.
     unusable: BTreeMap<String, Problem<Vec<ShaderProblem>>>,
-    /// The file that changed last, and when that became known.
+    /// The file that changed last, and the time of the notification.
     change: Option<(String, Instant)>,
-    /// True if the unusable files are others than at the last [`take_news`](Self::take_news).
+    /// True if the unusable files have changed since the last [`take_news`](Self::take_news).
     news: bool,
 }
 
 impl Library {
-    /// Reads a file that may have changed; others than shaders are passed over. Returns the source path of a shader
-    /// file, or of one that models share, if it has another text now. `drawn` tells by id which models were drawn.
+    /// Reads a file that may have changed; ignores files other than shaders. Returns the source path of a
+    /// shader file or a shared file if its text changed. `drawn` returns true for the ids of models that were
+    /// drawn.
     pub fn look_at(
         &mut self,
         file: &Path,
@@ -94,7 +95,8 @@ impl Library {
         None
     }
 
-    /// Another text of a file goes into the registry. Returns its source path if it is not the one that is known.
+    /// Stores a changed text of a file in the registry. Returns its source path if it differs from the known
+    /// text.
     fn change(
         &mut self,
         source: String,
@@ -117,8 +119,8 @@ impl Library {
         Some(source)
     }
 
-    /// Reads the custom models again that a change of another file may mend or change. Those that only share its
-    /// functions need it if the CPU calculates their response to uniform light, and they were drawn.
+    /// Reads the custom models again that a change of another file may fix or alter. Models that only share
+    /// its functions need it if the CPU calculates their response to uniform light, and they were drawn.
     fn read_again(&mut self, changed: &str, registry: &mut Registry, drawn: impl Fn(&str) -> bool) {
         let concerned = |model: &ModelEntry| {
             let composed = compose_evaluation(registry.sources(), model);
@@ -148,7 +150,7 @@ impl Library {
         }
     }
 
-    /// Reads a custom model. One with a mistake leaves what is known of it as it was.
+    /// Reads a custom model. Errors leave the known version unchanged.
     fn read_pending(&mut self, source: &str, registry: &mut Registry) {
         let Some((file, text)) = registry.folders().file_of(source).zip(self.pending.get(source)) else {
             return;
@@ -166,7 +168,7 @@ impl Library {
         }
     }
 
-    /// Takes the outcome of reading a custom model, unless its file has another text by now.
+    /// Handles the result of reading a custom model, unless its file has changed again.
     fn take_read(&mut self, done: Done, registry: &mut Registry) {
         if self.pending.get(&done.source) != Some(done.text.as_str()) {
             return;
@@ -180,15 +182,15 @@ impl Library {
         }
     }
 
-    /// Takes the outcomes of the thread that reads custom models.
+    /// Handles the results of the thread that reads custom models.
     pub fn take_finished(&mut self, registry: &mut Registry) {
         for done in self.reader.finished() {
             self.take_read(done, registry);
         }
     }
 
-    /// The files of models that are used and of which only the declaration is known, but for those that are being read
-    /// or have a mistake.
+    /// The files of used models of which only the declaration is known, except those being read or with
+    /// errors.
     pub fn wanted<'a>(&self, used: impl Iterator<Item = &'a str>, registry: &Registry) -> Vec<PathBuf> {
         let is_new = |file: &Path| {
             let source = registry.folders().source_of(file);
@@ -198,13 +200,13 @@ impl Library {
         registry.wants_reading(used).filter(|file| is_new(file)).map(Path::to_owned).collect()
     }
 
-    /// The next custom models to be tried, at most so many. Each is then to be [adopted](Self::adopt),
+    /// The next custom models to try, up to this number. Each must then be [adopted](Self::adopt),
     /// [refused](Self::refuse) or [kept for later](Self::try_later).
     pub fn next_arriving(&mut self, most: usize) -> Vec<CustomModel> {
         self.arriving.drain(..most.min(self.arriving.len())).collect()
     }
 
-    /// A custom model can be drawn with.
+    /// Accepts a custom model that is valid.
     pub fn adopt(&mut self, model: CustomModel, registry: &mut Registry) {
         let source = model.entry.declaration.wgsl.path;
         self.mend(source);
@@ -212,8 +214,8 @@ impl Library {
         registry.put_custom_model(model);
     }
 
-    /// A custom model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
-    /// a stand-in.
+    /// Rejects a custom model with errors. A new model with a valid declaration can still be selected, and is
+    /// drawn with the fallback.
     pub fn refuse(&mut self, source: &str, problems: Vec<ShaderProblem>, registry: &mut Registry) {
         if let Some((file, text)) = registry.folders().file_of(source).zip(self.pending.get(source))
             && custom::id_of(&file).is_some_and(|id| registry.custom_file(id).is_none())
@@ -229,7 +231,7 @@ impl Library {
         self.arriving.push(model);
     }
 
-    /// True while a model of which only the declaration was known is read or tried.
+    /// True while a model known only by its declaration is being read or tried.
     #[must_use]
     pub fn is_arriving(&self, model: &ModelEntry, registry: &Registry) -> bool {
         let source = model.declaration.wgsl.path;
@@ -238,12 +240,12 @@ impl Library {
             && !self.unusable.contains_key(source)
     }
 
-    /// Has custom models read on a thread of its own, which calls `wake`.
+    /// Moves the reading of custom models to a separate thread, which calls `wake`.
     pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
         self.reader = Reader::apart(wake);
     }
 
-    /// True while a thread reads custom models; it wakes who waits.
+    /// True while a thread reads custom models, and will call `wake`.
     #[must_use]
     pub fn is_reading(&self) -> bool {
         self.reader.is_reading()
@@ -255,23 +257,23 @@ impl Library {
         self.reader.is_busy() || !self.arriving.is_empty()
     }
 
-    /// The text of a custom model that is not drawn with.
+    /// The text of a custom model that is not in use.
     pub(super) fn pending(&self, source: &str) -> Option<&str> {
         self.pending.get(source)
     }
 
-    /// Notes that the files of a composed source can be drawn with as they are.
+    /// Records that the files of a composed source are valid.
     pub fn note_good(&mut self, composed: &Composed, registry: &Registry) {
         composed.map.files().for_each(|source| self.good.copy_from(registry.sources(), source));
     }
 
-    /// The texts as they were last drawn with.
+    /// The last valid texts.
     #[must_use]
     pub fn good(&self) -> &Sources {
         &self.good
     }
 
-    /// The texts as they are, but of the files that all models share as they were last drawn with.
+    /// The present texts, but with the last valid version of shared files.
     #[must_use]
     pub fn lenient(&self, registry: &Registry) -> Sources {
         let mut sources = registry.sources().clone();
@@ -281,7 +283,7 @@ impl Library {
         sources
     }
 
-    /// True if a composed source holds only texts that ship with this crate, which tests have tried.
+    /// True if a composed source contains only texts shipped with this crate, which are covered by tests.
     #[must_use]
     pub fn is_built_in(&self, composed: &Composed, registry: &Registry) -> bool {
         let edited =
@@ -296,19 +298,19 @@ impl Library {
         self.change.as_ref().map(|(source, _)| source.as_str())
     }
 
-    /// The last change as one that came through just now.
+    /// The last change, marked as having taken effect now.
     #[must_use]
     pub fn reloaded(&self) -> Option<Reloaded> {
         let (file, since) = self.change.as_ref()?;
         Some(Reloaded { file: file.clone(), milliseconds: since.elapsed().as_secs_f32() * 1e3 })
     }
 
-    /// The files that cannot be used, by source path.
+    /// The unusable files, by source path.
     pub fn unusable(&self) -> impl Iterator<Item = (&str, &Problem<Vec<ShaderProblem>>)> {
         self.unusable.iter().map(|(source, problem)| (source.as_str(), problem))
     }
 
-    /// The source paths of unusable files that are not on disk, nor built in.
+    /// The source paths of unusable files that are neither on disk nor built in.
     pub fn gone(&self, registry: &Registry) -> impl Iterator<Item = &str> {
         let is_gone = |source: &str| registry.folders().file_of(source).is_some_and(|file| !file.exists());
         self.unusable
@@ -317,19 +319,19 @@ impl Library {
             .filter(move |source| is_gone(source) && built_in(registry, source).is_none())
     }
 
-    /// Lets go of a file that is gone, and of the model in it.
+    /// Forgets a missing file, and the model in it.
     pub fn forget(&mut self, source: &str, registry: &mut Registry) {
         registry.remove_model(model_of(source).unwrap_or_default());
         registry.sources_mut().forget(source);
         self.mend(source);
     }
 
-    /// True if the unusable files are others than when this was asked last.
+    /// True if the unusable files have changed since the last call.
     pub fn take_news(&mut self) -> bool {
         std::mem::take(&mut self.news)
     }
 
-    /// True if [`take_news`](Self::take_news) has some.
+    /// True if [`take_news`](Self::take_news) would return true.
     #[must_use]
     pub fn has_news(&self) -> bool {
         self.news
@@ -347,13 +349,13 @@ impl Library {
     }
 }
 
-/// The id of the custom model of a source path.
+/// The id of the custom model with this source path.
 #[must_use]
 pub(crate) fn model_of(source: &str) -> Option<&str> {
     custom::id_of(Path::new(source)).filter(|_| source.starts_with(MODELS))
 }
 
-/// The built-in text of a source path.
+/// The built-in text with this source path.
 fn built_in(registry: &Registry, source: &str) -> Option<&'static str> {
     built_in_sources(registry).into_iter().find(|s| s.path == source).map(|s| s.text)
 }

@@ -1,10 +1,12 @@
-//! Declarations of light types, step by step: another field of [`Declaration`] changes none of them.
+//! Builder methods for declarations of light types: adding a field to [`Declaration`] does not break existing
+//! declarations.
 
 use super::{Declaration, Size};
 use crate::shader::Source;
 
 impl Declaration {
-    /// A light type with an id and a name, and its twin in WGSL. It has neither position nor direction, and 1 lx.
+    /// A light type with an id, a name, and its twin in WGSL. By default it has neither position nor
+    /// direction, and 1 lx.
     ///
     /// ```
     /// use lights_camera_models::{light::Declaration, shader::Source};
@@ -35,67 +37,68 @@ impl Declaration {
         }
     }
 
-    /// The same with one sentence about its behaviour.
+    /// Sets a one-sentence summary.
     #[must_use]
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }
     }
 
-    /// The same with a glyph for lists.
+    /// Sets the glyph for lists.
     #[must_use]
     pub const fn glyph(self, glyph: &'static str) -> Self {
         Self { glyph, ..self }
     }
 
-    /// The same with a position.
+    /// Adds a position.
     #[must_use]
     pub const fn at_position(self) -> Self {
         Self { has_position: true, ..self }
     }
 
-    /// The same with a direction.
+    /// Adds a direction.
     #[must_use]
     pub const fn with_direction(self) -> Self {
         Self { has_direction: true, ..self }
     }
 
-    /// The same with an intensity in candela, as lights with a position have: the default, and the end of the slider.
+    /// Sets an intensity in candela, for lights with a position: the default, and the maximum of the slider.
     #[must_use]
     pub const fn candela(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "cd", default_intensity: default, slider_max, ..self }
     }
 
-    /// The same with an intensity in lux, as lights without a position have: the default, and the end of the slider.
+    /// Sets an intensity in lux, for lights without a position: the default, and the maximum of the slider.
     #[must_use]
     pub const fn lux(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "lx", default_intensity: default, slider_max, ..self }
     }
 
-    /// The same with extent, and its luminance in cd/m²: the default, and the end of the slider.
+    /// Adds extent, with a luminance in cd/m²: the default, and the maximum of the slider.
     #[must_use]
     pub const fn luminance(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "cd/m²", default_intensity: default, slider_max, extent: true, ..self }
     }
 
-    /// The same with extent, in the unit that it has.
+    /// Adds extent, keeping the unit.
     #[must_use]
     pub const fn with_extent(self) -> Self {
         Self { extent: true, ..self }
     }
 
-    /// The same with an intensity that is a factor of what it is by itself: the default, and the end of the slider.
+    /// Sets an intensity that is a factor of the light's own output: the default, and the maximum of the slider.
     #[must_use]
     pub const fn factor(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "×", default_intensity: default, slider_max, ..self }
     }
 
-    /// The same with a cone that a gizmo draws: half its angle in degrees is the number of that name.
+    /// Adds a cone, drawn as a gizmo; `parameter` names its half angle in degrees.
     #[must_use]
     pub const fn cone(self, parameter: &'static str) -> Self {
         Self { cone_parameter: Some(parameter), ..self }
     }
 
-    /// The same with sizes: numbers in metres that have handles in the picture, and make the outline of a light with extent.
+    /// Sets the sizes: numbers in metres that have handles in the picture, and determine the outline of a
+    /// light with extent.
     ///
     /// ```
     /// use lights_camera_models::{light::{Declaration, Size}, shader::Source};
@@ -112,13 +115,14 @@ impl Declaration {
         Self { sizes, ..self }
     }
 
-    /// The same with a turn about its direction that has a handle in the picture: the number of that name, in degrees.
+    /// Adds a rotation about the direction, with a handle in the picture; `parameter` names the angle in
+    /// degrees.
     #[must_use]
     pub const fn roll(self, parameter: &'static str) -> Self {
         Self { roll_parameter: Some(parameter), ..self }
     }
 
-    /// The same with the equation of the light that arrives at a point.
+    /// Sets the equation of the light that arrives at a point.
     #[must_use]
     pub const fn equation(self, equation: &'static str) -> Self {
         Self { equation, ..self }

@@ -34,20 +34,20 @@ parameters! {
 
 /// A cylinder as seen from a point.
 struct View {
-    /// From its middle to the point.
+    /// From the centre to the point.
     to_point: Vec3,
-    /// Unit vectors: away from the axis to the point, and along the tangent.
+    /// Unit vectors: from the axis to the point, and along the tangent.
     out: Vec3,
     along: Vec3,
-    /// The distance of the point from the axis.
+    /// Distance of the point from the axis.
     away: f32,
-    /// Half the angle of the part of the side that faces the point, radians, and the area of that part.
+    /// Half the angle of the part of the side that faces the point, in radians, and the area of that part.
     half_angle: f32,
     area: f32,
 }
 
 impl Cylinder {
-    /// None from within the side, however long it were.
+    /// `None` inside the cylinder, extended to infinite length.
     fn from(&self, light: &LightRecord, p: Vec3) -> Option<View> {
         let to_point = p - light.position;
         let across = to_point - to_point.dot(light.direction) * light.direction;

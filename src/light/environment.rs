@@ -48,7 +48,7 @@ const ROTATION: Parameter = Parameter {
     used_when: Some(UsedWhen { parameter: "source", choices: &["studio", "sky", "file"] }),
 };
 
-/// A parameter of skies alone.
+/// A parameter used only by skies.
 const fn of_sky(parameter: Parameter) -> Parameter {
     Parameter { used_when: Some(UsedWhen { parameter: "source", choices: &["sky"] }), ..parameter }
 }
@@ -129,19 +129,19 @@ parameters! {
 }
 
 impl Environment {
-    /// A direction of the room in the environment before its turn.
+    /// A direction in the room, rotated back into the environment.
     fn turned_back(&self, d: Vec3) -> Vec3 {
         let [sine, cosine] = self.turn.to_array();
         Vec3::new(d.x * cosine - d.z * sine, d.y, d.x * sine + d.z * cosine)
     }
 
-    /// A direction of the environment in the room.
+    /// A direction in the environment, rotated into the room.
     fn turned(&self, d: Vec3) -> Vec3 {
         let [sine, cosine] = self.turn.to_array();
         Vec3::new(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine)
     }
 
-    /// The luminance of a direction, and the density at which it is sampled.
+    /// The luminance from a direction, and its sampling density.
     fn at(&self, d: Vec3) -> (Vec3, f32) {
         let (luminance, pdf) = match (self.source, self.picture()) {
             (STUDIO, _) => studio::seen(d),

@@ -4,22 +4,22 @@ use glam::Vec3;
 
 use super::{Incident, LightRecord};
 
-/// One factor of the intensity `I(p)` of a light, as its [equation](super::Declaration::equation) has it.
+/// A factor of the intensity `I(p)` of a light, as in its [equation](super::Declaration::equation).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factor {
-    /// Its notation in the equation, such as `1/d^2`.
+    /// Notation in the equation, such as `1/d^2`.
     pub symbol: &'static str,
-    /// Its meaning in words.
+    /// Meaning in words.
     pub meaning: &'static str,
-    /// Its unit; empty if it has none.
+    /// Unit; empty if there is none.
     pub unit: &'static str,
-    /// Red, green and blue; all the same for a plain number.
+    /// Red, green and blue; equal for a plain number.
     pub value: Vec3,
-    /// The numbers that it follows from: symbol, value, unit.
+    /// The numbers from which it is calculated: symbol, value, unit.
     pub from: Vec<(&'static str, f32, &'static str)>,
-    /// How it follows from them, in the notation of [`expression`](crate::text::expression): the right side of its
-    /// definition, then definitions of what stands there, with commas between: `x^2, x = cos θ`. Empty for a factor that is
-    /// given or read from a table.
+    /// The calculation from these numbers, in the notation of [`expression`](crate::text::expression): the
+    /// right side of its definition, then definitions of the symbols in it, separated by commas: `x^2, x =
+    /// cos θ`. Empty for a factor that is given or read from a table.
     pub equation: &'static str,
 }
 
@@ -30,26 +30,26 @@ impl Factor {
         Self { symbol, meaning, unit: "", value: Vec3::splat(value), from: Vec::new(), equation: "" }
     }
 
-    /// The same with a unit.
+    /// Sets the unit.
     #[must_use]
     pub fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same with one of the numbers that it follows from: symbol, value, unit.
+    /// Adds a number from which the factor is calculated: symbol, value, unit.
     #[must_use]
     pub fn given(mut self, symbol: &'static str, value: f32, unit: &'static str) -> Self {
         self.from.push((symbol, value, unit));
         self
     }
 
-    /// The same with the way in which it follows from the numbers that are given.
+    /// Sets the calculation from the given numbers.
     #[must_use]
     pub fn equation(self, equation: &'static str) -> Self {
         Self { equation, ..self }
     }
 
-    /// The numbers that it follows from, as people write them: "d = 4.82 m".
+    /// The given numbers as text: "d = 4.82 m".
     #[must_use]
     pub fn givens(&self, number: impl Fn(f32) -> String) -> String {
         let given = |(symbol, value, unit): &(&str, f32, &str)| {
@@ -59,13 +59,14 @@ impl Factor {
         self.from.iter().map(given).collect::<Vec<_>>().join(", ")
     }
 
-    /// The intensity `I` of a light, in the unit of its type.
+    /// The intensity `I` of a light, in the unit of the light type.
     #[must_use]
     pub fn intensity(light: &LightRecord, unit: &'static str) -> Self {
         Self::new("I", "the intensity of the light", light.intensity).unit(unit)
     }
 
-    /// The inverse square of the distance, of a value of [`inverse_square`](crate::optics::radiometry::inverse_square).
+    /// The inverse square of the distance, with a value from
+    /// [`inverse_square`](crate::optics::radiometry::inverse_square).
     #[must_use]
     pub fn inverse_square(value: f32, distance: f32) -> Self {
         Self::new("1/d^2", "the falloff with the square of the distance", value)
@@ -75,7 +76,7 @@ impl Factor {
     }
 }
 
-/// The factors of a type that says nothing about them: the intensity, and whatever `incident` makes of it.
+/// The factors of a type that does not list any: the intensity, and the rest of `incident`.
 pub(super) fn whole(incident: Incident, light: &LightRecord, unit: &'static str) -> Vec<Factor> {
     let (Incident::From { intensity, .. } | Incident::Uniform { intensity }) = incident;
     let mut factors = vec![Factor::intensity(light, unit)];
@@ -99,7 +100,7 @@ mod tests {
         assert_eq!(factors.len(), 2);
         assert_eq!((factors[0].value, factors[0].unit), (Vec3::splat(4.0), "lx"));
         assert_eq!(factors[1].value, Vec3::new(0.5, 0.25, 0.0));
-        // Nothing to tell apart, or nothing to divide by.
+        // Nothing to separate, or division by zero.
         assert_eq!(whole(from(Vec3::splat(4.0)), &light, "lx").len(), 1);
         assert_eq!(whole(from(Vec3::ZERO), &LightRecord::default(), "lx").len(), 1);
     }

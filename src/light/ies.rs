@@ -1,4 +1,5 @@
-//! Photometric files as luminaire makers publish them: IES LM-63 of 1986, 1991, 1995 and 2002, with type C photometry.
+//! Photometric files as published by luminaire manufacturers: IES LM-63 of 1986, 1991, 1995 and 2002, with
+//! type C photometry.
 
 use std::f64::consts::PI;
 
@@ -7,13 +8,13 @@ use crate::{
     text::{plural, shortened},
 };
 
-/// The most candela values of a file, given for the whole circle: a value for every degree.
+/// Maximum number of candela values in a file, given for the whole circle: one for every degree.
 pub const MAX_CANDELAS: usize = 181 * 361;
 
-/// Photometric files. Of one, renderers read: the number of vertical angles and of horizontal angles, the vertical
-/// angles, the horizontal angles, and the candelas, one vertical half plane after the other. Angles are degrees.
-/// Horizontal angles go from 0 to 360, whatever symmetry the file makes use of; a file with rotational symmetry has one.
-/// Candelas are those of the file times its multiplier and its ballast factors.
+/// Photometric files. Renderers read the number of vertical angles and of horizontal angles, the vertical
+/// angles, the horizontal angles, and the candelas, one vertical half plane after the other. Angles are in
+/// degrees. Horizontal angles range from 0 to 360, whatever symmetry the file uses; a file with rotational
+/// symmetry has a single one. Candelas include the multiplier and the ballast factors of the file.
 pub static FORMAT: FileFormat = FileFormat {
     name: "an IES photometric file",
     extensions: &["ies"],
@@ -25,10 +26,10 @@ pub static FORMAT: FileFormat = FileFormat {
     )],
 };
 
-/// The numbers of a text with their lines, separated by spaces, commas or line breaks.
+/// The numbers in a text with their lines, separated by spaces, commas or line breaks.
 struct Numbers<'a> {
     words: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
-    /// The line of the last one.
+    /// Line of the last number.
     line: usize,
 }
 
@@ -41,7 +42,7 @@ impl<'a> Numbers<'a> {
         Self { words: Box::new(words), line: 0 }
     }
 
-    /// The next number; `what` it is, for messages.
+    /// The next number; `what` describes it in messages.
     fn next(&mut self, what: &str) -> Result<f64, FileProblem> {
         let Some((line, word)) = self.words.next() else {
             return Err(self.problem(format!("the file ends before {what}")));
@@ -52,7 +53,7 @@ impl<'a> Numbers<'a> {
             .ok_or_else(|| self.problem(format!("{what} must be a number, and it is {}", shown(word, true))))
     }
 
-    /// The next number, which counts something.
+    /// The next number, a count.
     fn count(&mut self, what: &str, least: usize) -> Result<usize, FileProblem> {
         let number = self.next(what)?;
         if number.fract() != 0.0 || number < least as f64 || number > MAX_CANDELAS as f64 {
@@ -64,7 +65,7 @@ impl<'a> Numbers<'a> {
         Ok(number as usize)
     }
 
-    /// The next number, which multiplies the candelas.
+    /// The next number, a factor of the candelas.
     fn factor(&mut self, what: &str) -> Result<f64, FileProblem> {
         let number = self.next(what)?;
         if number <= 0.0 {
@@ -73,7 +74,7 @@ impl<'a> Numbers<'a> {
         Ok(number)
     }
 
-    /// A number of angles, each larger than the one before.
+    /// A list of angles in ascending order.
     fn angles(&mut self, what: &str, count: usize, most: f64) -> Result<Vec<f64>, FileProblem> {
         let mut angles: Vec<f64> = Vec::with_capacity(count);
         for i in 0..count {
@@ -97,7 +98,7 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// A part of the file in a message; bytes that are no text have no words.
+/// A part of the file in a message; bytes that are not text are described in words.
 fn shown(part: &str, in_quotes: bool) -> String {
     if part.contains(|c: char| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
         return "not text".to_owned();
@@ -183,8 +184,8 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     Ok(head.into_iter().chain(angles).chain(values.copied()).collect())
 }
 
-/// The factor for an upright luminaire in the table of `TILT=INCLUDE`, which has the change of light of a lamp that
-/// burns in another position.
+/// The factor for an upright luminaire in the table of `TILT=INCLUDE`, which describes how the light of a
+/// lamp changes with its burning position.
 fn upright(numbers: &mut Numbers) -> Result<f64, FileProblem> {
     numbers.next("the geometry of lamp and luminaire")?;
     let count = numbers.count("the number of tilt angles", 1)?;
@@ -196,10 +197,10 @@ fn upright(numbers: &mut Numbers) -> Result<f64, FileProblem> {
     Ok(factors[0])
 }
 
-/// The horizontal angles of the whole circle, and for each the plane of the file that has its candelas.
+/// The horizontal angles of the whole circle, each with the plane of the file that holds its candelas.
 fn circle(planes: &[f64]) -> Result<Vec<(f64, usize)>, String> {
     let (first, last) = (planes[0], planes[planes.len() - 1]);
-    // The copies that symmetry makes of a plane: where C = 0 goes, and whether angles go on from there or back.
+    // The copies of a plane by symmetry: the position of C = 0, and the direction of the angles from there.
     let copies: &[(f64, f64)] = match (first, last) {
         (0.0, 0.0) => return Ok(vec![(0.0, 0)]),
         (0.0, 90.0) => &[(0.0, 1.0), (180.0, -1.0), (180.0, 1.0), (360.0, -1.0)],
@@ -229,19 +230,19 @@ fn circle(planes: &[f64]) -> Result<Vec<(f64, usize)>, String> {
     Ok(circle)
 }
 
-/// A distribution as [`FORMAT`] gives it.
+/// A distribution in the layout of [`FORMAT`].
 #[derive(Clone, Copy, Debug)]
 pub struct Web<'a> {
-    /// Vertical angles, degrees from the axis.
+    /// Vertical angles, in degrees from the axis.
     gammas: &'a [f32],
-    /// Horizontal angles, degrees; one, or from 0 to 360.
+    /// Horizontal angles, in degrees; a single one, or from 0 to 360.
     planes: &'a [f32],
     /// Candelas, one plane after the other.
     candelas: &'a [f32],
 }
 
 impl<'a> Web<'a> {
-    /// The distribution in the numbers of a file; none if they are not from one.
+    /// The distribution in the numbers of a file; `None` if they are invalid.
     #[must_use]
     pub fn new(numbers: &'a [f32]) -> Option<Self> {
         let [vertical, horizontal, rest @ ..] = numbers else { return None };
@@ -254,8 +255,8 @@ impl<'a> Web<'a> {
         })
     }
 
-    /// The candelas in a direction, interpolated linearly in both angles: `gamma` in degrees from the axis, `c` in
-    /// degrees around it. None beyond the vertical angles of the file.
+    /// The candelas in a direction, interpolated linearly in both angles: `gamma` in degrees from the axis,
+    /// `c` in degrees around it. Zero beyond the vertical angles of the file.
     #[must_use]
     pub fn candela(&self, gamma: f32, c: f32) -> f32 {
         let Some((i, t)) = between(self.gammas, gamma) else { return 0.0 };
@@ -271,8 +272,8 @@ impl<'a> Web<'a> {
 
     /// The luminous flux, lumen: the integral of the interpolated candelas over all directions.
     ///
-    /// Around the axis the mean of each pair of planes counts; from `γ_0` to `γ_1`, with `I = a + b γ`,
-    /// `∫ I sin γ dγ = [b sin γ − I cos γ]`.
+    /// Around the axis, each pair of planes contributes its mean; from `γ_0` to `γ_1`, with `I = a + b γ`, `∫
+    /// I sin γ dγ = [b sin γ − I cos γ]`.
     #[must_use]
     pub fn flux(&self) -> f64 {
         let n = self.gammas.len();
@@ -293,8 +294,8 @@ impl<'a> Web<'a> {
     }
 }
 
-/// The index of the last angle that is not above `x`, and the place of `x` between it and the next; none if `x` is not
-/// between two of them.
+/// The index of the last angle not above `x`, and the position of `x` between it and the next angle; `None`
+/// if `x` is outside.
 fn between(angles: &[f32], x: f32) -> Option<(usize, f32)> {
     let (first, last) = (*angles.first()?, *angles.last()?);
     if angles.len() < 2 || !(first..=last).contains(&x) {
@@ -308,7 +309,7 @@ fn between(angles: &[f32], x: f32) -> Option<(usize, f32)> {
 mod tests {
     use super::*;
 
-    /// A file with these angles and candelas, all else being 1.
+    /// A file with these angles and candelas, and all other numbers 1.
     fn file(vertical: &str, horizontal: &str, candelas: &str) -> String {
         let count = |text: &str| text.split_whitespace().count();
         format!(
@@ -336,7 +337,7 @@ mod tests {
         assert_eq!(candela(&text, 180.0, 0.0), 0.0);
         let text = text.replace("1 1000 1 3", "1 1000 2.5 3").replace("\n1 1 50", "\n0.8 0.5 50");
         assert_eq!(candela(&text, 0.0, 0.0), 100.0);
-        // In 1991 and before, lines and spaces are where they please; commas separate too.
+        // Up to 1991, line breaks and spaces may be anywhere; commas separate too.
         let old = "IESNA91\nTILT=NONE\n1,1000,2.5,3\n1 1 2 0 0 0 0.8\n0.5, 50\n0 90\n180\n0\n100 50\n0";
         assert_eq!(numbers(old), numbers(&text));
         let oldest = text.replace("IESNA:LM-63-2002\n[TEST] 1\n", "A lamp of 1986\nwithout keywords\n");
@@ -364,7 +365,7 @@ mod tests {
 
     #[test]
     fn a_file_may_leave_out_what_is_symmetric() {
-        // Candelas that are the horizontal angle, so that they tell which plane answered.
+        // Candelas equal to the horizontal angle identify the plane.
         let symmetric = |horizontal: &str| {
             let planes: Vec<_> = horizontal.split_whitespace().map(|c| format!("{c} {c}")).collect();
             let text = file("0 90", horizontal, &planes.join("\n"));
@@ -396,7 +397,7 @@ mod tests {
         let cone = 400.0 * PI * (1.0 - 2.0 / PI);
         assert!(near(flux(&file("0 90", "0", "200 0")), cone));
         assert!(near(flux(&file("0 45 90", "0 90", "200 100 0 200 100 0")), cone));
-        // Half of the circle dark, with linear flanks of 90°.
+        // One half of the circle is dark, with linear flanks of 90°.
         let half = flux(&file("0 90", "0 90 180 270 360", "200 0 200 0 0 0 0 0 200 0"));
         assert!(near(half, 0.5 * cone), "{half} {cone}");
         // The wrong twin: candelas summed without the sine.
@@ -473,7 +474,7 @@ mod tests {
         let [(name, bytes)] = FORMAT.shipped else { panic!("one") };
         let text = String::from_utf8_lossy(bytes);
         assert!(text.contains("calculated, not measured"), "{name}");
-        // Towards C = 0 it throws most.
+        // It throws most light towards C = 0.
         assert!(candela(&text, 35.0, 0.0) > 5.0 * candela(&text, 35.0, 180.0));
     }
 }

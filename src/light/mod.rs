@@ -58,7 +58,7 @@ pub trait Take {
     fn take<T: LightType>(&mut self);
 }
 
-/// The built-in light types, in the order of all lists: the one list.
+/// Registers the built-in light types, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Point>();
     to.take::<Spot>();
@@ -73,67 +73,68 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<Environment>();
 }
 
-/// The most lights that a scene may have; the capacity of the light buffer.
+/// Maximum number of lights in a scene; the capacity of the light buffer.
 pub const MAX_LIGHTS: usize = 256;
 
 /// The name and properties of a light type.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Declaration {
-    /// The name in scene files.
+    /// Name in scene files.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
-    /// One sentence: its behaviour.
+    /// One sentence: the behaviour.
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
-    /// True if it has a position.
+    /// True if the type has a position.
     pub has_position: bool,
-    /// True if it has a direction.
+    /// True if the type has a direction.
     pub has_direction: bool,
-    /// The unit of its intensity: `cd` or `lx`, or `×` for a factor of what it is by itself. Where there is a
-    /// [`LightType::solid_angle`], it converts the intensity to lumen.
+    /// Unit of the intensity: `cd` or `lx`, or `×` for a factor of the light's own output. Where
+    /// [`LightType::solid_angle`] exists, it converts the intensity to lumen.
     pub unit: &'static str,
-    /// Its intensity if the scene gives none.
+    /// Default intensity.
     pub default_intensity: f32,
-    /// The upper end of a slider for the intensity.
+    /// Maximum of the intensity slider.
     pub slider_max: f32,
-    /// The name of the parameter that is the half angle in degrees of the cone that a gizmo should draw.
+    /// The name of the parameter with the half angle, in degrees, of the cone drawn as a gizmo.
     pub cone_parameter: Option<&'static str>,
-    /// Its sizes, which have handles in the picture and make its outline.
+    /// Sizes, which have handles in the picture and determine the outline.
     pub sizes: &'static [Size],
-    /// The name of the parameter that turns it about its direction, right-handed, in degrees, and has a handle in the picture.
+    /// The name of the parameter with the rotation about the direction, right-handed, in degrees, which has a
+    /// handle in the picture.
     pub roll_parameter: Option<&'static str>,
     /// The equation of the light that arrives at a point, as readable mathematics.
     pub equation: &'static str,
-    /// True if it fills a part of the directions from which a point is lit: then it has [`LightType::sample`] and
-    /// [`LightType::seen`] instead of [`LightType::incident`].
+    /// True if the light has extent, covering a range of directions from a point: it then has
+    /// [`LightType::sample`] and [`LightType::seen`] instead of [`LightType::incident`].
     pub extent: bool,
-    /// The twin in WGSL: `fn incident_<id>(light: Light, m: <Id>Parameters, p: vec3<f32>) -> Incident`, where the
-    /// struct has the parameters by name (see [`parameter_struct`](LightEntry::parameter_struct)); a type without
-    /// parameters has no `m`. A type with extent has `sample_<id>(light, m, p, u: vec2<f32>) -> LightSample` and
-    /// `seen_<id>(light, m, p, l: vec3<f32>) -> LightSeen` instead.
+    /// The twin in WGSL: `fn incident_<id>(light: Light, m: <Id>Parameters, p: vec3<f32>) -> Incident`, where
+    /// the struct contains the parameters by name (see [`parameter_struct`](LightEntry::parameter_struct)); a
+    /// type without parameters has no `m`. A type with extent has `sample_<id>(light, m, p, u: vec2<f32>) ->
+    /// LightSample` and `seen_<id>(light, m, p, l: vec3<f32>) -> LightSeen` instead.
     pub wgsl: Source,
 }
 
-/// What lights of all types have, for calculation: decoded colour, unit direction.
+/// The fields shared by lights of all types, ready for calculation: decoded colour, unit direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightRecord {
     /// Index of the type in the registry.
     pub light_type: u32,
-    /// Its position, metres; zero if the type has none.
+    /// Position, in metres; zero if the type has none.
     pub position: Vec3,
-    /// The direction in which it shines, unit vector; zero if the type has none.
+    /// Direction in which the light shines, a unit vector; zero if the type has none.
     pub direction: Vec3,
     /// Linear colour.
     pub colour: Vec3,
-    /// In the unit of the type.
+    /// Intensity, in the unit of the type.
     pub intensity: f32,
 }
 
-/// The light that arrives at a point from one light, for red, green and blue; the light loop multiplies it by the
-/// colour of the light.
+/// The light that arrives at a point from one light, for red, green and blue; the light loop multiplies it by
+/// the colour of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Incident {
     /// From one direction: `l`, the unit vector to the light, and the intensity `I(p)`.
@@ -143,21 +144,21 @@ pub enum Incident {
         /// `I(p)`.
         intensity: Vec3,
     },
-    /// Equal from all directions.
+    /// Uniform from all directions.
     Uniform {
         /// `I(p)`.
         intensity: Vec3,
     },
 }
 
-/// A light type. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)), and is a
-/// component of the entities of the type.
+/// A light type. The implementing struct contains its parameters (see [`parameters!`](crate::parameters)),
+/// and is a component of the entities of the type.
 pub trait LightType: ParameterSet + Component + Reflectable {
     /// Name, properties, shader.
     const DECLARATION: Declaration;
 
-    /// Numbers that its twin in WGSL needs and that are calculated once: further fields of its parameters there, with the
-    /// values of [`derived`](Self::derived).
+    /// Numbers calculated in advance for the twin in WGSL: additional fields of its parameters there, with
+    /// the values of [`derived`](Self::derived).
     const DERIVED: &'static [Parameter] = &[];
 
     /// The values of [`DERIVED`](Self::DERIVED).
@@ -165,45 +166,47 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         Vec::new()
     }
 
-    /// The light that arrives at `p` (room coordinates); none from a type with extent, of which [`sample`](Self::sample) and
-    /// [`seen`](Self::seen) are the answer.
+    /// The light arriving at `p` (room coordinates); none for a type with extent, which has
+    /// [`sample`](Self::sample) and [`seen`](Self::seen) instead.
     fn incident(&self, _light: &LightRecord, _p: Vec3) -> Incident {
         Incident::From { l: Vec3::Y, intensity: Vec3::ZERO }
     }
 
-    /// A direction from `p` to a light with extent for a point of the unit square. Any density is right that is
-    /// [`seen`](Self::seen) again for the direction, and that is nowhere zero where the light shines; the nearer it is to the
-    /// radiance, the less noise.
+    /// A direction from `p` to a light with extent, for a point of the unit square. Any density is valid that
+    /// equals that of [`seen`](Self::seen) in this direction, and is nonzero wherever the light shines; the
+    /// closer it is to the radiance, the less noise.
     fn sample(&self, _light: &LightRecord, _p: Vec3, _u: Vec2) -> Sample {
         Sample::default()
     }
 
-    /// The same for several points: [`sample`](Self::sample) for each. A type may calculate once what all of them need.
+    /// Calls [`sample`](Self::sample) for several points. A type may calculate shared quantities once.
     fn samples(&self, light: &LightRecord, p: Vec3, points: &[Vec2], to: &mut [Sample]) {
         for (to, u) in to.iter_mut().zip(points) {
             *to = self.sample(light, p, *u);
         }
     }
 
-    /// What a light with extent is in a direction from `p`. Inside a light, on it and behind it: nothing, or finite numbers.
+    /// A light with extent, seen in a direction from `p`. Inside, on and behind a light: nothing, or finite
+    /// numbers.
     fn seen(&self, _light: &LightRecord, _p: Vec3, _l: Vec3) -> Seen {
         Seen::NOTHING
     }
 
-    /// A cone of directions from `p` beside which nothing of a light with extent is [`seen`](Self::seen), so that pictures show it
-    /// sooner. None by default: it may be anywhere.
+    /// A cone of directions from `p` outside which nothing of a light with extent is [`seen`](Self::seen), to
+    /// speed up pictures. By default `None`: the light may be anywhere.
     fn bounds(&self, _light: &LightRecord, _p: Vec3) -> Option<Cone> {
         None
     }
 
-    /// The factors of the intensity at `p`, as the [equation](Declaration::equation) has them, for explanations: their
-    /// product is the intensity of [`incident`](Self::incident). By default, the intensity of the light, and the rest.
+    /// The factors of the intensity at `p`, as in the [equation](Declaration::equation), for explanations:
+    /// their product is the intensity of [`incident`](Self::incident). By default, the intensity of the
+    /// light, and the rest.
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
         factor::whole(self.incident(light, p), light, Self::DECLARATION.unit)
     }
 
-    /// The integral of its profile over all directions, sr: luminous flux (lm) over intensity (cd), `Φ = I Ω`. `None`
-    /// for types without flux, such as light from infinitely far away.
+    /// The integral of the light's profile over all directions, sr: luminous flux (lm) divided by intensity
+    /// (cd), `Φ = I Ω`. `None` for types without flux, such as infinitely distant light.
     fn solid_angle(&self) -> Option<f64> {
         None
     }
@@ -249,27 +252,27 @@ impl<L: LightType> Emitter for L {
     }
 }
 
-/// The number of lights that are calculated together.
+/// Number of lights calculated together.
 pub const AT_ONCE: usize = 8;
 
-/// Lights of one type, calculated together: the type is asked for once, not for each of them.
+/// Lights of one type, calculated together, so that the type is dispatched once instead of for each light.
 pub trait Emitters: Send + Sync {
     /// The number of lights.
     fn count(&self) -> usize;
 
-    /// The light that arrives at `p` from the [`AT_ONCE`] lights from `first` on: the number of those that shine there from
-    /// a direction, which are written to `to`, and the sum of the others, which shine equally from all directions.
+    /// The light arriving at `p` from the [`AT_ONCE`] lights starting with `first`: writes those that shine
+    /// there from a direction to `to` and returns their number, and the sum of the others, which are uniform.
     fn arrive(&self, first: usize, p: Vec3, to: &mut [Arriving; AT_ONCE]) -> (usize, Vec3);
 
-    /// Of lights with extent: adds what arrives at `p` from each of some directions of lobes, weighted.
+    /// For lights with extent: adds the weighted light arriving at `p` from each of these lobe directions.
     fn meet(&self, p: Vec3, directions: &mut Directions);
 
-    /// Of a light with extent: false if all of it lies below the surface at `p` with the normal `n`, as far as its
-    /// [`bounds`](LightType::bounds) tell.
+    /// For a light with extent: false if all of it lies below the surface at `p` with the normal `n`,
+    /// according to its [`bounds`](LightType::bounds).
     fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool;
 
-    /// Of a light with extent: directions to it from `p` for at most [`BLOCK`] points of the unit square; the radiance has the
-    /// colour of the light.
+    /// For a light with extent: directions to it from `p` for at most [`BLOCK`] points of the unit square;
+    /// the radiance includes the colour of the light.
     fn send(&self, light: usize, p: Vec3, points: &[Vec2]) -> [Sample; BLOCK];
 }
 
@@ -282,7 +285,7 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
         let (mut count, mut uniform) = (0, Vec3::ZERO);
         for (emitter, light) in self.iter().skip(first).take(AT_ONCE) {
             match LightType::incident(emitter, light, p) {
-                // Outside a cone there is nothing to calculate.
+                // Nothing to calculate outside the cone.
                 Incident::From { l, intensity } => {
                     if intensity != Vec3::ZERO {
                         to[count] = Arriving { l, light: intensity * light.colour };
@@ -312,7 +315,7 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
 
     fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool {
         let bounds = self.get(light).and_then(|(emitter, light)| LightType::bounds(emitter, light, p));
-        // An angle is no smaller than its sine.
+        // An angle is at least its sine.
         bounds.is_none_or(|cone| cone.axis.dot(n) >= -cone.half_angle)
     }
 
@@ -331,15 +334,15 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
 pub struct LightEntry {
     /// Name, properties, shader.
     pub declaration: &'static Declaration,
-    /// Its parameters.
+    /// Parameters of the type.
     pub parameters: &'static [Parameter],
-    /// Its number in the registry, by which shaders know the type.
+    /// Index in the registry, which identifies the type in shaders.
     pub index: u32,
-    /// The type with the parameters of one light.
+    /// Creates the type with the parameters of one light.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
-    /// Several lights of the type.
+    /// Creates a group of lights of the type.
     pub group: fn(&[(&Values, LightRecord)], Encoding) -> Box<dyn Emitters>,
-    /// Its component.
+    /// Component of the type.
     pub component: TypeComponent,
     solid_angle: fn(&Values) -> Option<f64>,
     derived: &'static [Parameter],
@@ -367,7 +370,8 @@ impl LightEntry {
         }
     }
 
-    /// Luminous flux over intensity of a light with these parameters, sr; `None` if the type has no flux.
+    /// Luminous flux divided by intensity of a light with these parameters, sr; `None` if the type has no
+    /// flux.
     #[must_use]
     pub fn solid_angle(&self, values: &Values) -> Option<f64> {
         (self.solid_angle)(values)
@@ -379,52 +383,53 @@ impl LightEntry {
         self.solid_angle(&Values::default()).is_some()
     }
 
-    /// The parameter with that name, if the type has it.
+    /// The parameter with this name, if the type has it.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)
     }
 
-    /// The parameter that is half the angle, in degrees, of the cone that a gizmo should draw.
+    /// The parameter with the half angle, in degrees, of the cone drawn as a gizmo.
     #[must_use]
     pub fn cone_parameter(&self) -> Option<&'static Parameter> {
         self.parameter(self.declaration.cone_parameter?)
     }
 
-    /// The parameter that turns it about its direction, degrees.
+    /// The parameter with the rotation about the direction, in degrees.
     #[must_use]
     pub fn roll_parameter(&self) -> Option<&'static Parameter> {
         self.parameter(self.declaration.roll_parameter?)
     }
 
-    /// Half the angle, in degrees, of the cone that a gizmo should draw.
+    /// The half angle, in degrees, of the cone drawn as a gizmo.
     #[must_use]
     pub fn cone_angle(&self, values: &Values) -> Option<f32> {
         Some(values.number(self.cone_parameter()?))
     }
 
-    /// True if lights of the type with these parameters are to be seen in the picture: those with extent, unless their
-    /// parameter `visible` says no.
+    /// True if lights of the type with these parameters are visible in the picture: those with extent, unless
+    /// their parameter `visible` is off.
     #[must_use]
     pub fn is_visible(&self, values: &Values) -> bool {
         self.declaration.extent && self.parameter("visible").is_none_or(|visible| values.choice(visible) == 1)
     }
 
-    /// The place of the parameter `visible` among the [`words`](Self::words), which is 1 for lights that are to be seen; none
-    /// if the type has no such parameter.
+    /// Position of the parameter `visible` among the [`words`](Self::words), which is 1 for visible lights;
+    /// `None` if the type has no such parameter.
     #[must_use]
     pub fn visible_word(&self) -> Option<usize> {
         let at = self.parameters.iter().position(|p| p.name == "visible")?;
         Some(words(&self.parameters[..at], &Values::default(), Encoding::default()).len())
     }
 
-    /// The fields of its [struct in WGSL](Self::parameter_struct): its parameters, and what is derived from them.
+    /// The fields of the type's [struct in WGSL](Self::parameter_struct): its parameters, and numbers derived
+    /// from them.
     #[must_use]
     pub fn fields(&self) -> Vec<Parameter> {
         self.parameters.iter().chain(self.derived).cloned().collect()
     }
 
-    /// The fields of a light as the shader reads them, in order and without padding.
+    /// The fields of a light in the shader's layout, in order and without padding.
     #[must_use]
     pub fn words(&self, values: &Values, encoding: Encoding) -> Vec<u32> {
         let mut words = words(self.parameters, values, encoding);
@@ -432,7 +437,7 @@ impl LightEntry {
         words
     }
 
-    /// The files that a light uses, each with the place of its parameter among the [`words`](Self::words).
+    /// The files used by a light, each with the position of its parameter among the [`words`](Self::words).
     #[must_use]
     pub fn tables(&self, values: &Values) -> Vec<(usize, Table)> {
         let mut at = 0;
@@ -454,7 +459,7 @@ impl LightEntry {
         self.words(&Values::default(), Encoding::default()).len()
     }
 
-    /// The name of the struct of parameters in WGSL: `SpotParameters` for the id `spot`.
+    /// The name of the parameter struct in WGSL: `SpotParameters` for the id `spot`.
     #[must_use]
     pub fn parameter_struct(&self) -> String {
         let mut name = String::new();

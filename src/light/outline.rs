@@ -1,4 +1,4 @@
-//! The outline of a light with extent, from what its type declares.
+//! The outline of a light with extent, derived from its type's declaration.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -10,7 +10,7 @@ use crate::{
     parameter::Values,
 };
 
-/// Corners of a circle.
+/// Number of corners of a circle.
 const CORNERS: usize = 96;
 
 /// A circle about an axis.
@@ -21,7 +21,7 @@ fn circle(middle: Vec3, axis: Vec3, radius: f32) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// What is seen of the edge of a ball: a circle nearer to the eye than its middle. None from within.
+/// The visible edge of a ball: a circle nearer to the eye than the centre. `None` from inside.
 fn limb(middle: Vec3, radius: f32, eye: Vec3) -> Option<impl Iterator<Item = Vec3>> {
     let to_eye = eye - middle;
     let squared = to_eye.length_squared();
@@ -31,17 +31,18 @@ fn limb(middle: Vec3, radius: f32, eye: Vec3) -> Option<impl Iterator<Item = Vec
 }
 
 impl LightEntry {
-    /// The [sides](extent::sides) of a light with these parameters that shines in a direction.
+    /// The [sides](extent::sides) of a light with these parameters and direction.
     #[must_use]
     pub fn sides(&self, values: &Values, direction: Vec3) -> [Vec3; 2] {
         let roll = self.roll_parameter().map_or(0.0, |p| values.number(p));
         extent::sides(direction, Vec2::from(roll.to_radians().sin_cos()))
     }
 
-    /// The outlines of a light with extent as seen from a place: points of the room, of which each list has its convex hull in the
-    /// picture for an outline. From the [sizes](super::Declaration::sizes) of its type: a width and a height are a rectangle, a
-    /// radius is a circle, or a ball where there is no direction, a length with a radius is a tube. A type that declares none has
-    /// the circle of its [bounds](super::LightType::bounds). None where it is all around.
+    /// The outlines of a light with extent as seen from a position: lists of points in the room, whose convex
+    /// hulls in the picture are the outlines. They follow from the [sizes](super::Declaration::sizes) of the
+    /// type: width and height give a rectangle, a radius a circle, or a ball for a type without direction, a
+    /// length with a radius a tube. For a type without sizes, it is the circle of its
+    /// [bounds](super::LightType::bounds). Empty if the light is on all sides.
     #[must_use]
     pub fn outlines(&self, values: &Values, light: &LightRecord, eye: Vec3) -> Vec<Vec<Vec3>> {
         let declaration = self.declaration;

@@ -49,7 +49,7 @@ parameters! {
 }
 
 impl Photometric {
-    /// The angles γ and C of a direction from a lamp with this axis, degrees.
+    /// The angles γ and C of a direction from a lamp with this axis, in degrees.
     fn angles(&self, axis: Vec3, d: Vec3) -> (f32, f32) {
         let zero = if axis.y < 0.999999 {
             let tilt = axis.z / (1.0 - axis.y);
@@ -122,7 +122,8 @@ mod tests {
         parameter::{ParameterSet as _, Value, Values},
     };
 
-    /// By hand: of a lamp at (5, 9, 5), a point 4 m below and 4 m to the side is at `γ = 45°` and `d² = 32 m²`.
+    /// By hand: for a lamp at (5, 9, 5), a point 4 m below and 4 m to the side is at `γ = 45°` and `d² = 32
+    /// m²`.
     #[test]
     fn a_point_gets_the_candelas_of_its_direction_over_the_squared_distance() {
         let values = Values([("rotation".into(), Value::Number(0.0))].into());
@@ -150,18 +151,18 @@ mod tests {
         let [along_x, along_minus_z] = [Vec3::new(4.0, -4.0, 0.0), Vec3::new(0.0, -4.0, -4.0)];
         assert!(near(at(&lamp, down, along_x), 2.0 * 1232.9 / 32.0));
         assert!(near(at(&lamp, down, along_minus_z), 2.0 * 120.8 / 32.0));
-        // Turned by 90° anticlockwise as seen from above, C = 0 looks along −z. Clockwise would be the wrong twin: its
-        // C is 180°, 113.2 cd.
+        // Rotated by 90° anticlockwise as seen from above, C = 0 looks along −z. Clockwise would be the wrong
+        // twin: C would be 180°, 113.2 cd.
         let turned = Photometric { rotation: 90.0, ..lamp.clone() };
         assert!(near(at(&turned, down, along_minus_z), 2.0 * 1232.9 / 32.0));
         assert!(near(at(&turned, down, Vec3::new(0.0, -4.0, 4.0)), 2.0 * 113.2 / 32.0));
         // Tilted to look along x, C = 0 looks up, and C = 90° still along −z.
         assert!(near(at(&lamp, Vec3::X, Vec3::new(4.0, 4.0, 0.0)), 2.0 * 1232.9 / 32.0));
         assert!(near(at(&lamp, Vec3::X, Vec3::new(4.0, 0.0, -4.0)), 2.0 * 120.8 / 32.0));
-        // Above the lamp it is dark; straight up it still has angles.
+        // It is dark above the lamp; angles exist straight above too.
         assert_eq!(at(&lamp, down, Vec3::new(1.0, 1.0, 0.0)), 0.0);
         assert!(near(at(&lamp, Vec3::Y, Vec3::new(0.0, 4.0, 0.0)), 2.0 * web.candela(0.0, 0.0) / 16.0));
-        // Every axis has a frame of right angles.
+        // Every axis has an orthogonal frame.
         for axis in [Vec3::new(0.3, 0.8, -0.5), Vec3::new(1e-3, 1.0, 0.0), Vec3::new(-0.4, -0.1, 0.9)] {
             let axis = axis.normalize();
             let (gamma, _) = lamp.angles(axis, axis);
@@ -186,7 +187,7 @@ mod tests {
     fn the_luminous_flux_is_that_of_the_file() {
         let lamp = Photometric::default();
         let sum = |weight: fn(f32) -> f64| {
-            // The sum over squares of half a degree, in another way than the closed form.
+            // The sum over squares of half a degree, independent of the closed form.
             let web = Web::new(&lamp.file.numbers).expect("the shipped file");
             let mut sum = 0.0;
             for i in 0..360 {

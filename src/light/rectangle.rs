@@ -46,7 +46,7 @@ impl Rectangle {
         SphericalRectangle::new(light.position - p, extent::sides(light.direction, self.turn), self.half())
     }
 
-    /// A direction to it where it is seen so.
+    /// A sample of the rectangle in this view.
     fn towards(&self, light: &LightRecord, seen: &SphericalRectangle, u: Vec2) -> Sample {
         let at = seen.sample(u);
         let l = at.normalize_or_zero();

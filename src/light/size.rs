@@ -1,16 +1,16 @@
 //! The sizes of lights with extent.
 
-/// A number of a light type that is one of its sizes, metres. Sizes have handles in the picture, and make the outline of a light
-/// that is selected.
+/// A numeric parameter of a light type that is one of its sizes, in metres. Sizes have handles in the
+/// picture, and determine the outline of a selected light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
-    /// From side to side, along the first of its [sides](super::extent::sides).
+    /// Width, along the first of the [sides](super::extent::sides).
     Width(&'static str),
-    /// From bottom to top, along the second of them.
+    /// Height, along the second of them.
     Height(&'static str),
-    /// From end to end, along its direction.
+    /// Length along the direction.
     Length(&'static str),
-    /// Half its diameter: around its direction, or all around where it has none.
+    /// Radius: around the direction, or of a ball for types without one.
     Radius(&'static str),
 }
 
@@ -23,13 +23,13 @@ impl Size {
         }
     }
 
-    /// True if it is measured along or across a direction.
+    /// True if the size is measured along or across a direction.
     #[must_use]
     pub const fn needs_direction(self) -> bool {
         !matches!(self, Self::Radius(_))
     }
 
-    /// The part of it that lies on one side of the middle.
+    /// The fraction of the size on one side of the centre.
     #[must_use]
     pub const fn part(self) -> f32 {
         if self.needs_direction() { 0.5 } else { 1.0 }

@@ -1,5 +1,5 @@
-//! The CIE general sky: CIE S 011 / ISO 15469 (2004), *Spatial Distribution of Daylight, CIE Standard General Sky*, with the sun
-//! itself left out, over a ground that scatters evenly.
+//! The CIE general sky: CIE S 011 / ISO 15469 (2004), *Spatial Distribution of Daylight, CIE Standard General
+//! Sky*, without the sun itself, over a diffusely reflecting ground.
 
 use std::f32::consts::PI;
 
@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use crate::optics::sampling;
 
-/// The names of the types in scenes, and in the window.
+/// Names of the types in scenes and in the window.
 pub(super) const TYPES: [(&str, &str); 15] = [
     ("1", "1 overcast, steep"),
     ("2", "2 overcast, steep, brighter near the sun"),
@@ -26,7 +26,7 @@ pub(super) const TYPES: [(&str, &str); 15] = [
     ("15", "15 white-blue, turbid, wide corona"),
 ];
 
-/// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of the types.
+/// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of each type.
 const COEFFICIENTS: [[f32; 5]; 15] = [
     [4.0, -0.7, 0.0, -1.0, 0.0],
     [4.0, -0.7, 2.0, -1.5, 0.15],
@@ -45,30 +45,31 @@ const COEFFICIENTS: [[f32; 5]; 15] = [
     [-1.0, -0.15, 24.0, -2.8, 0.15],
 ];
 
-/// The shares of the samples: towards the ground, around the sun, over the sky.
+/// Fractions of the samples: towards the ground, around the sun, over the sky.
 const GROUND_SHARE: f32 = 0.2;
 const SUN_SHARE: f32 = 0.3;
 const SKY_SHARE: f32 = 0.5;
 
-/// The power of the cosine to the sun by which the samples around it are spread.
+/// Exponent of the cosine lobe in which samples around the sun are distributed.
 const AROUND: f32 = 8.0;
 
 /// A sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sky {
-    /// `a` to `e` of its type.
+    /// `a` to `e` of the sky's type.
     pub coefficients: [f32; 5],
     /// Unit vector to the sun.
     pub sun: Vec3,
-    /// The luminance of the zenith over gradation and indicatrix there.
+    /// Luminance of the zenith divided by gradation and indicatrix there.
     pub scale: f32,
-    /// The luminance of the ground, where the same everywhere.
+    /// Luminance of the ground, which is uniform.
     pub ground: f32,
 }
 
 impl Sky {
-    /// A sky of the type with that index, with the sun's height above the horizon and its direction from −z clockwise as seen
-    /// from above, degrees; the luminance of the zenith, cd/m²; and the reflectance of the ground.
+    /// A sky of the type with this index, with the sun's elevation above the horizon and its azimuth from −z,
+    /// clockwise as seen from above, in degrees; the luminance of the zenith, cd/m²; and the reflectance of
+    /// the ground.
     #[must_use]
     pub fn new(index: usize, [elevation, azimuth]: [f32; 2], zenith: f32, reflectance: f32) -> Self {
         let (sine, cosine) = elevation.to_radians().sin_cos();
@@ -81,7 +82,7 @@ impl Sky {
         sky
     }
 
-    /// The illuminance of the ground, lx: by the midpoint rule over squared sines and turns.
+    /// The illuminance of the ground, lx: by the midpoint rule over squared sines and azimuths.
     fn illuminance(&self) -> f32 {
         const ROWS: u32 = 48;
         const TURNS: u32 = 64;
@@ -97,8 +98,8 @@ impl Sky {
         sum * PI / (ROWS * TURNS) as f32
     }
 
-    /// The luminance of a direction above the horizon: gradation `1 + a exp(b / cos Z)` times indicatrix
-    /// `1 + c (exp(d χ) − exp(d π/2)) + e cos² χ`, Z from the zenith, χ from the sun, scaled.
+    /// The luminance from a direction above the horizon: gradation `1 + a exp(b / cos Z)` times indicatrix `1
+    /// + c (exp(d χ) − exp(d π/2)) + e cos² χ`, with Z from the zenith and χ from the sun, scaled.
     fn above(&self, direction: Vec3) -> f32 {
         let [a, b, c, d, e] = self.coefficients;
         let gradation = 1.0 + a * (b / direction.y.max(0.01)).exp();
@@ -108,7 +109,7 @@ impl Sky {
         self.scale * gradation * indicatrix
     }
 
-    /// The luminance of a direction, and the density at which it is sampled.
+    /// The luminance from a direction, and its sampling density.
     #[must_use]
     pub fn seen(&self, direction: Vec3) -> (f32, f32) {
         let around = direction.dot(self.sun).max(0.0).powf(AROUND) * (AROUND + 1.0);

@@ -21,8 +21,8 @@ parameters! {
 }
 
 impl Sphere {
-    /// The sphere as seen from a point outside: the direction and the distance of its middle, the squared sine of its angular
-    /// radius, and 1 minus the cosine of it.
+    /// The sphere as seen from a point outside: direction and distance of the centre, the squared sine of the
+    /// angular radius, and 1 minus its cosine.
     fn from(&self, light: &LightRecord, p: Vec3) -> Option<(Vec3, f32, f32, f32)> {
         let middle = light.position - p;
         let distance = middle.length();
@@ -54,7 +54,8 @@ impl LightType for Sphere {
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
         let Some((axis, distance, squared, rise)) = self.from(light, p) else { return Seen::NOTHING };
         let cosine = axis.dot(l);
-        // The squared sine of the angle to the middle: from the cosine, small ones would lose their digits.
+        // The squared sine of the angle to the centre: calculated from the cosine, small angles would lose
+        // digits.
         let off = axis.cross(l).length_squared();
         if cosine <= 0.0 || off > squared {
             return Seen::NOTHING;

@@ -1,4 +1,4 @@
-//! A photographer's studio, calculated: three softboxes infinitely far away in a dark room.
+//! A calculated photo studio: three infinitely distant softboxes in a dark room.
 
 use std::{f32::consts::PI, sync::LazyLock};
 
@@ -7,31 +7,32 @@ use glam::{Vec2, Vec3};
 use super::extent::{UNTURNED, sides};
 use crate::optics::sampling::{self, SphericalRectangle};
 
-/// The luminance of the room.
+/// Luminance of the room.
 const ROOM: f32 = 0.04;
 
-/// The share of the samples that look into the room.
+/// Fraction of the samples towards the room.
 const ROOM_SHARE: f32 = 0.1;
 
 /// A softbox.
 struct Softbox {
-    /// The direction of its middle, not normalised.
+    /// Direction of the centre, not normalised.
     middle: Vec3,
-    /// The tangents of half its angles.
+    /// Tangents of the half angles.
     half: Vec2,
     luminance: f32,
-    /// Its share of the samples.
+    /// Fraction of the samples.
     share: f32,
 }
 
-/// A large one from the left above, a tall one from the right, and a narrow, bright one from behind.
+/// A large softbox from the upper left, a tall one from the right, and a narrow, bright one from behind.
 const SOFTBOXES: [Softbox; 3] = [
     Softbox { middle: Vec3::new(-0.6, 0.6, 0.55), half: Vec2::new(0.55, 0.4), luminance: 1.8, share: 0.45 },
     Softbox { middle: Vec3::new(0.9, 0.15, 0.35), half: Vec2::new(0.25, 0.8), luminance: 0.7, share: 0.25 },
     Softbox { middle: Vec3::new(0.3, 0.8, -0.75), half: Vec2::new(0.8, 0.2), luminance: 2.4, share: 0.2 },
 ];
 
-/// A softbox ready for calculation: the direction of its middle, its sides, the rectangle a metre away, its solid angle.
+/// A softbox prepared for calculation: direction of the centre, sides, the rectangle a metre away, solid
+/// angle.
 struct Placed {
     axis: Vec3,
     sides: [Vec3; 2],
@@ -48,14 +49,14 @@ static PLACED: LazyLock<[Placed; 3]> = LazyLock::new(|| {
     })
 });
 
-/// True if a direction leads to a softbox.
+/// True if a direction hits a softbox.
 fn is_in(softbox: &Softbox, placed: &Placed, d: Vec3) -> bool {
     let along = d.dot(placed.axis);
     let [x, y] = placed.sides.map(|side| d.dot(side).abs());
     along > 0.0 && x <= softbox.half.x * along && y <= softbox.half.y * along
 }
 
-/// The luminance of a direction, and the density at which it is sampled.
+/// The luminance from a direction, and its sampling density.
 pub(super) fn seen(d: Vec3) -> (f32, f32) {
     let (mut luminance, mut pdf) = (ROOM, ROOM_SHARE / (4.0 * PI));
     for (softbox, placed) in SOFTBOXES.iter().zip(&*PLACED) {

@@ -69,7 +69,7 @@ impl LightType for Sun {
     }
 
     fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
-        // By the sine: from the cosine, small angles would lose their digits.
+        // Calculated with the sine: with the cosine, small angles would lose digits.
         if light.direction.dot(l) >= 0.0 || light.direction.cross(l).length_squared() > self.sine_squared {
             return Seen::NOTHING;
         }

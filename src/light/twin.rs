@@ -1,17 +1,18 @@
-//! The functions of a light type in WGSL.
+//! The WGSL functions of light types.
 
 use super::LightEntry;
 
-/// A function that the twin of a light type has in WGSL: `incident_spot` for `incident` and the id `spot`.
+/// A function of a light type's twin in WGSL: `incident_spot` for `incident` and the id `spot`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Twin {
-    /// Its name without the id.
+    /// Name without the id.
     pub name: &'static str,
-    /// The parameters after the light, its own parameters and the point `p`: names with types, and names alone.
+    /// The parameters after the light, the light's own parameters and the point `p`: names with types, and
+    /// names alone.
     pub more: [&'static str; 2],
-    /// The type of its result.
+    /// Type of the result.
     pub result: &'static str,
-    /// The result of a light that does not shine.
+    /// The result for a light that does not shine.
     pub dark: &'static str,
 }
 
@@ -33,19 +34,19 @@ const EXTENDED: [Twin; 2] = [
 ];
 
 impl Twin {
-    /// Those of light types with extent, or of others.
+    /// The functions of light types with extent, or without.
     #[must_use]
     pub fn all(extent: bool) -> &'static [Self] {
         if extent { &EXTENDED } else { &POINT_LIKE }
     }
 
-    /// Its name for a light type.
+    /// The function name for a light type.
     #[must_use]
     pub fn of(&self, light: &LightEntry) -> String {
         format!("{}_{}", self.name, light.declaration.id)
     }
 
-    /// Its parameters and its result for a light type.
+    /// The parameters and the result for a light type.
     #[must_use]
     pub fn signature(&self, light: &LightEntry) -> String {
         let own = match light.fields().as_slice() {

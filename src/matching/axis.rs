@@ -1,36 +1,36 @@
-//! The coordinates of a search: parameters as numbers from 0 to 1.
+//! The coordinates of a search: parameters mapped to numbers from 0 to 1.
 
 use crate::parameter::{Parameter, ParameterKind, Value};
 
-/// The largest value that is tried of a parameter without a largest legal one: an exponent whose highlight is a quarter
-/// of a degree wide.
+/// Maximum tried for a parameter without a legal maximum: an exponent whose highlight is a quarter of a
+/// degree wide.
 const LARGEST: f64 = 100_000.0;
 
-/// A range that ends at so many times its beginning is searched in logarithms.
+/// Ratio of the ends of a range above which the range is searched logarithmically.
 const WIDE: f64 = 50.0;
 
-/// A derivative is taken over this part of the range: far above the rounding of the models' 32 bits.
+/// Step of derivatives, as a fraction of the range: far above the rounding of the models' 32 bits.
 const STEP: f64 = 2e-4;
 
-/// A coordinate: a number of a parameter, between 0 and 1.
+/// A coordinate: a number of a parameter, scaled to 0–1.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
-    /// The channel, of colours and triples.
+    /// Channel, for colours and triples.
     pub(super) channel: usize,
     low: f64,
     high: f64,
-    /// The logarithm of the value plus this is searched.
+    /// Offset added to the value before taking its logarithm.
     logarithm: Option<f64>,
-    /// Whole numbers only.
+    /// True for integers.
     whole: bool,
 }
 
 impl Axis {
-    /// The axes of a parameter, which several models may declare with different ranges; `now` is its present value.
-    /// None for choices and files.
+    /// The axes of a parameter, which several models may declare with different ranges; `now` is the present
+    /// value. Empty for choices and files.
     pub(super) fn of(declarations: &[&'static Parameter], now: &Value) -> Vec<Self> {
         let Some(first) = declarations.first() else { return Vec::new() };
-        // Legal for all of them.
+        // Legal for all models.
         let range = declarations.iter().filter_map(|p| ends(p)).reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)));
         let Some((low, high)) = range.filter(|(low, high)| low < high) else { return Vec::new() };
         let numbers = numbers_of(now);
@@ -52,7 +52,7 @@ impl Axis {
         (0..channels).map(axis).collect()
     }
 
-    /// True if the value is a whole number.
+    /// True for integers.
     pub(super) fn is_whole(&self) -> bool {
         self.whole
     }
@@ -70,7 +70,7 @@ impl Axis {
         self.legal(value)
     }
 
-    /// The legal value next to a number, as the models get it.
+    /// The nearest legal value to a number, as passed to the models.
     pub(super) fn legal(&self, value: f64) -> f64 {
         if self.whole {
             return value.round().clamp(self.low.ceil(), self.high.floor());
@@ -90,7 +90,7 @@ impl Axis {
         }
     }
 
-    /// A legal value beside another, over which a derivative can be taken.
+    /// A legal value next to another, for a finite difference.
     pub(super) fn beside(&self, value: f64) -> f64 {
         let at = self.coordinate(value);
         let sign = if at + STEP <= 1.0 { 1.0 } else { -1.0 };
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn exponents_and_roughness_are_searched_in_logarithms() {
         let axis = |p: &'static Parameter| Axis::of(&[p], &p.default_value()).remove(0);
-        // From 100 to 1000 is as far as from 1000 to 10 000.
+        // The distance from 100 to 1000 equals that from 1000 to 10 000.
         let at = |v: f64| axis(&ALPHA).coordinate(v);
         assert!(((at(999.0) - at(99.0)) - (at(9999.0) - at(999.0))).abs() < 1e-9);
         let at = |v: f64| axis(&ALPHA_X).coordinate(v);

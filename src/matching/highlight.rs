@@ -1,4 +1,4 @@
-//! Highlights: their width at half their height, in the plane of incidence.
+//! Highlights: their widths at half maximum, in the plane of incidence.
 
 use glam::Vec3;
 
@@ -12,18 +12,18 @@ use crate::{
     registry::Registry,
 };
 
-/// Angles of the light from the normal, degrees.
+/// Angles of the light from the normal, in degrees.
 const ANGLES: [f64; 4] = [0.0, 20.0, 40.0, 60.0];
-/// The planes of incidence: along the tangent, and for anisotropic surfaces across it, degrees.
+/// Planes of incidence: along the tangent, and for anisotropic surfaces also across it, in degrees.
 const AZIMUTHS: [f64; 2] = [0.0, 90.0];
-/// The last angle of the viewer, degrees.
+/// Largest angle of the viewer, in degrees.
 const HORIZON: f64 = 89.9;
-/// Viewers that are tried on each side of the mirror direction.
+/// Number of viewers tried on each side of the mirror direction.
 const TRIED: i32 = 60;
-/// Below this a highlight is none.
+/// Brightness below which a highlight does not count.
 const DARK: f32 = 1e-6;
 
-/// The plane of incidence and the angle of the light from the normal, degrees.
+/// The plane of incidence, and the angle of the light from the normal, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Light {
     azimuth: f64,
@@ -38,15 +38,15 @@ fn specular(surface: &dyn Surface, light: Light, viewer: f64) -> f32 {
     luminance(surface.response(l, v, &Frame::LOCAL).specular.max(Vec3::ZERO))
 }
 
-/// The angle from the peak of the highlight to where it falls to a half, on the side of the normal and on the other,
-/// degrees; `None` where it does not fall so far above the surface. None of both if there is no highlight.
+/// The angles, in degrees, from the peak of the highlight to half its height, towards the normal and away
+/// from it; an inner `None` if it does not fall that far above the surface. `None` without a highlight.
 fn half_widths(surface: &dyn Surface, light: Light) -> Option<[Option<f64>; 2]> {
     peak_and_sides(surface, light).map(|(_, sides)| sides)
 }
 
-/// The angle of the viewer at the peak, and the same.
+/// The angle of the viewer at the peak, and the half widths.
 fn peak_and_sides(surface: &dyn Surface, light: Light) -> Option<(f64, [Option<f64>; 2])> {
-    // Dense about the mirror direction.
+    // Dense around the mirror direction.
     let offset = |i: i32| 90.0 * f64::from(i.signum()) * (f64::from(i) / f64::from(TRIED)).powi(2);
     let inside = |viewer: &f64| viewer.abs() <= HORIZON;
     let tried: Vec<(f64, f32)> = (-2 * TRIED..=2 * TRIED)
@@ -81,9 +81,9 @@ fn peak_and_sides(surface: &dyn Surface, light: Light) -> Option<(f64, [Option<f
     Some((at, [side(&mut tried[..peak].iter().rev()), side(&mut tried[peak..].iter())]))
 }
 
-/// The full width of the specular term at half its maximum, over the angle of the viewer in the plane of incidence along
-/// the tangent, degrees, for light at an angle from the normal in degrees. A side on which it does not fall to a half ends at the
-/// horizon. None if there is no highlight.
+/// The full width of the specular term at half maximum, in degrees, over the angle of the viewer in the plane
+/// of incidence along the tangent, for light at this angle from the normal. A side on which the term does not
+/// fall to a half ends at the horizon. `None` without a highlight.
 #[must_use]
 pub fn highlight_width(surface: &dyn Surface, light: f64) -> Option<f64> {
     let light = Light { azimuth: 0.0, angle: light };
@@ -94,13 +94,13 @@ pub fn highlight_width(surface: &dyn Surface, light: f64) -> Option<f64> {
 
 /// The highlights of the objects' materials.
 pub(super) struct Highlight {
-    /// Each with the angle of the light, the side, and the width that is wanted.
+    /// Each with the angle of the light, the side, and the wanted width.
     widths: Vec<(Pair, Vec<(Light, usize, f64)>)>,
     count: usize,
 }
 
 impl Highlight {
-    /// Those of the visible objects. The letter of the view that has none otherwise.
+    /// The highlights of the visible objects, or the index of the view without any.
     pub(super) fn new([a, b]: [&Side; 2], registry: &Registry) -> Result<Self, usize> {
         let mut widths = Vec::new();
         for pair in Pair::all([a, b], registry) {
@@ -134,7 +134,7 @@ impl Target for Highlight {
         self.count
     }
 
-    /// The logarithms of the ratios.
+    /// The logarithms of the ratios of widths.
     fn differences(&mut self, values: &Given, to: &mut [f64]) {
         let mut to = to.iter_mut();
         for (pair, wanted) in &self.widths {
@@ -146,7 +146,7 @@ impl Target for Highlight {
                     _ => half_widths(&*surface, *light),
                 };
                 last = Some((*light, widths));
-                // One that is wider than the sky above the surface, or none at all, is as wide as can be.
+                // A highlight that extends beyond the horizon, or is missing, counts as the widest possible.
                 let found = widths.and_then(|both| both[*side]).unwrap_or(90.0);
                 to.by_ref().take(1).for_each(|to| *to = (found / width).ln());
             }
@@ -172,7 +172,8 @@ mod tests {
             half_widths(&*model.instantiate(&values, Encoding::Srgb), Light { azimuth: 0.0, angle })
         };
         for alpha in [8, 50, 500] {
-            // cos^α = 1/2, about the mirror direction, and about the normal by the half vector: twice as far for the viewer.
+            // cos^α = 1/2, about the mirror direction, and about the normal for the half vector: twice as far
+            // for the viewer.
             let angle = 0.5f64.powf(1.0 / alpha as f64).acos().to_degrees();
             for light in [0.0, 20.0] {
                 for (id, expected) in [("phong", angle), ("blinn_phong", 2.0 * angle)] {

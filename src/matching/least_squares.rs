@@ -1,27 +1,28 @@
-//! The smallest sum of squares: the method of K. Levenberg (1944), *A Method for the Solution of Certain Non-Linear
-//! Problems in Least Squares*, as in MINPACK and C. Markwardt's MPFIT, which the crate `rmpfit` writes in Rust.
+//! Minimises a sum of squares: the method of K. Levenberg (1944), *A Method for the Solution of Certain
+//! Non-Linear Problems in Least Squares*, as in MINPACK and C. Markwardt's MPFIT, implemented in Rust by the
+//! crate `rmpfit`.
 
 use rmpfit::{MPConfig, MPError, MPFitter, MPMaxFev, MPPar, MPResult, MPSide};
 
-/// A search ends before its time.
+/// Signals that a search should end early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stop;
 
-/// A sum of squares: its terms, and how they change.
+/// A sum of squares: its terms and their derivatives.
 pub trait Residuals {
-    /// The number of terms.
+    /// Number of terms.
     fn count(&self) -> usize;
 
     /// The terms at a point.
     ///
     /// # Errors
-    /// If the search should end.
+    /// Returns [`Stop`] if the search should end.
     fn at(&mut self, point: &[f64], residuals: &mut [f64]) -> Result<(), Stop>;
 
-    /// The terms at a point, and their derivatives by each of its coordinates.
+    /// The terms at a point, and their derivatives with respect to its coordinates.
     ///
     /// # Errors
-    /// If the search should end.
+    /// Returns [`Stop`] if the search should end.
     fn derivatives(
         &mut self,
         point: &[f64],
@@ -30,24 +31,24 @@ pub trait Residuals {
     ) -> Result<(), Stop>;
 }
 
-/// The end of a search.
+/// The termination conditions of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The most steps.
+    /// Maximum number of steps.
     pub steps: usize,
-    /// A step that lowers the sum by a smaller part is the last.
+    /// A step that lowers the sum by a smaller fraction is the last.
     pub least_gain: f64,
-    /// So is one that moves the point by a smaller part.
+    /// A step that moves the point by a smaller fraction is the last.
     pub least_move: f64,
-    /// The length of the first step, as a multiple of the point's distance from zero.
+    /// Length of the first step, as a multiple of the point's distance from zero.
     pub first_step: f64,
 }
 
-/// Moves a point within ranges downhill to the smallest sum of squares there is near to it. It stays where it is if
+/// Moves a point downhill, within ranges, to a nearby minimum of the sum of squares. It stays unchanged if
 /// there are fewer terms than coordinates, or numbers that are not finite.
 ///
 /// # Errors
-/// If the residuals end the search; the point is then unchanged.
+/// Returns [`Stop`] if the residuals end the search; the point is then unchanged.
 pub fn descend(
     residuals: &mut impl Residuals,
     point: &mut [f64],
@@ -73,7 +74,7 @@ pub fn descend(
         xtol: limits.least_move,
         step_factor: limits.first_step,
         max_iter: limits.steps,
-        // A step is tried again and again, shorter each time, but seldom more often than this.
+        // A step is repeated, shorter each time, but seldom more often than this.
         max_fev: MPMaxFev::Limited(20 * limits.steps.max(1)),
         ..MPConfig::new()
     };
@@ -112,7 +113,7 @@ impl<R: Residuals> MPFitter for Fitter<'_, R> {
         deviates: &mut [f64],
         columns: &mut [Option<Vec<f64>>],
     ) -> MPResult<()> {
-        // All are asked for: no parameter is fixed, and none is derived numerically.
+        // All derivatives are requested: no parameter is fixed, and none is derived numerically.
         let mut all: Vec<_> = columns.iter_mut().map(|column| column.take().unwrap_or_default()).collect();
         let done = self.residuals.derivatives(point, deviates, &mut all);
         columns.iter_mut().zip(all).for_each(|(column, found)| *column = Some(found));
@@ -126,7 +127,7 @@ mod tests {
 
     const LIMITS: Limits = Limits { steps: 100, least_gain: 1e-12, least_move: 1e-9, first_step: 1.0 };
 
-    /// H. H. Rosenbrock's valley (1960): the smallest sum is at (1, 1).
+    /// H. H. Rosenbrock's valley (1960): its minimum is at (1, 1).
     struct Valley {
         asked: usize,
         most: usize,
@@ -162,7 +163,7 @@ mod tests {
         assert_eq!(descend(&mut valley, &mut at, &[(-5.0, 5.0); 2], LIMITS), Ok(()));
         assert!((at[0] - 1.0).abs() < 1e-6 && (at[1] - 1.0).abs() < 1e-6, "{at:?}");
         assert!(valley.asked < 200, "{}", valley.asked);
-        // Where x must not be above a half, the best y is its square.
+        // If x must not exceed a half, the best y is its square.
         let mut at = [-1.2, 1.0];
         assert_eq!(descend(&mut valley, &mut at, &[(-5.0, 0.5), (-5.0, 5.0)], LIMITS), Ok(()));
         assert!((at[0] - 0.5).abs() < 1e-6 && (at[1] - 0.25).abs() < 1e-4, "{at:?}");

@@ -13,15 +13,15 @@ use crate::{
     registry::Registry,
 };
 
-/// Directions further from the normal are left out, degrees.
+/// Maximum angle of directions from the normal, in degrees.
 const LARGEST_ANGLE: f64 = 80.0;
-/// The azimuths of the half vector for anisotropic surfaces, degrees.
+/// Azimuths of the half vector for anisotropic surfaces, in degrees.
 const AZIMUTHS: [f64; 4] = [0.0, 45.0, 90.0, 135.0];
 
-/// Pairs of directions to the light and to the viewer, dense about the mirror direction, by the half vector and the
-/// difference of light and half vector: S. Rusinkiewicz (1998), *A New Change of Variables for Efficient BRDF
-/// Representation*. The half vectors have an azimuth in degrees; no direction is further from the normal than an angle
-/// in degrees.
+/// Pairs of directions to the light and to the viewer, dense around the mirror direction, parametrised by the
+/// half vector and the difference between light and half vector: S. Rusinkiewicz (1998), *A New Change of
+/// Variables for Efficient BRDF Representation*. `azimuth` is that of the half vectors, `largest` the maximum
+/// angle of the directions from the normal, both in degrees.
 #[must_use]
 pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
     let mut pairs = Vec::new();
@@ -49,15 +49,15 @@ pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
 
 /// The lobes of the objects' materials.
 pub(super) struct Lobe {
-    /// Each with its pairs of directions and the response that is wanted there.
+    /// Each with its pairs of directions and the wanted responses.
     lobes: Vec<(Pair, Vec<(Vec3, Vec3)>, Vec<f64>)>,
     terms: TermSelection,
     count: usize,
 }
 
-/// The response in each pair of directions, three numbers each.
+/// The response for each pair of directions, three numbers each.
 fn responses(surface: &dyn Surface, directions: &[(Vec3, Vec3)], terms: TermSelection, to: &mut [f64]) {
-    /// Fewer are not worth a task.
+    /// Minimum number of pairs that justifies a separate task.
     const AT_ONCE: usize = 128;
     to.par_chunks_mut(3 * AT_ONCE).zip(directions.par_chunks(AT_ONCE)).for_each(|(to, directions)| {
         for (to, (l, v)) in to.as_chunks_mut::<3>().0.iter_mut().zip(directions) {
@@ -67,7 +67,7 @@ fn responses(surface: &dyn Surface, directions: &[(Vec3, Vec3)], terms: TermSele
 }
 
 impl Lobe {
-    /// Those of the visible objects.
+    /// The lobes of the visible objects.
     pub(super) fn new([a, b]: [&Side; 2], registry: &Registry) -> Self {
         let lobe = |pair: Pair| {
             let azimuths = if pair.anisotropic { &AZIMUTHS[..] } else { &AZIMUTHS[..1] };
@@ -107,12 +107,12 @@ mod tests {
         let all = directions(0.0, 80.0);
         assert!(all.len() > 800, "{}", all.len());
         let near = all.iter().filter(|(l, v)| ((*l + *v).normalize().z) > 10f32.to_radians().cos()).count();
-        // Of the half vectors' 80 degrees these are an eighth, and half the pairs or nearly so.
+        // Half vectors within 10 of the 80 degrees belong to about half of all pairs.
         assert!(near * 5 > all.len() * 2, "{near} of {}", all.len());
         for (l, v) in &all {
             assert!(l.is_normalized() && v.is_normalized() && l.z > 0.17 && v.z > 0.17);
         }
-        // Turned, the half vectors lie across the tangent.
+        // Rotated, the half vectors lie across the tangent.
         for (l, v) in directions(90.0, 80.0) {
             let h = l + v;
             assert!(h.x.abs() < 1e-4 && h.y > -1e-4, "{h}");

@@ -1,12 +1,12 @@
-//! Matching: the parameters of one view that come nearest to another.
+//! Matching: finds the parameters of one view that come closest to another.
 //!
-//! View A shows Blinn's model, and view B Phong's: which exponent of the one gives the highlight of the other? The
-//! search knows nothing about the models. It changes the free parameters of view B within their legal ranges, and
-//! looks for the smallest sum of squared differences between
+//! Suppose view A shows Blinn's model and view B Phong's: which exponent of the one gives the highlight of
+//! the other? The search knows nothing about the models. It changes the free parameters of view B within
+//! their legal ranges, and minimises the sum of squared differences between
 //!
-//! - [the lobes](What::Lobe): the responses of both models at about a thousand pairs of directions,
+//! - [the lobes](What::Lobe): the responses of both models for about a thousand pairs of directions,
 //! - [the pictures](What::Picture): the light of both views, drawn small by the CPU renderer, or
-//! - [the highlights](What::Highlight): their widths at half their height, in the plane of incidence.
+//! - [the highlights](What::Highlight): their widths at half maximum, in the plane of incidence.
 //!
 //! ```
 //! use lights_camera_models::{
@@ -53,15 +53,17 @@ use picture::Picture;
 use search::{Found, Free, Search, Target};
 use sides::Side;
 
-/// The most evaluations of a search that compares lobes or highlights, and those more for each number that is free.
+/// Maximum number of evaluations of a search that compares lobes or highlights, and the additional ones for
+/// each free number.
 const MOST_LOBES: [usize; 2] = [2500, 250];
-/// The most pictures of a search that compares them, likewise.
+/// Maximum number of pictures of a search that compares pictures, and the additional ones for each free
+/// number.
 const MOST_PICTURES: [usize; 2] = [400, 50];
 
-/// What is compared.
+/// The quantity that is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum What {
-    /// The responses of the models at many pairs of directions.
+    /// The responses of the models for many pairs of directions.
     #[default]
     Lobe,
     /// The pictures of the views.
@@ -71,10 +73,10 @@ pub enum What {
 }
 
 impl What {
-    /// Every choice, in the order of presentation.
+    /// All variants, in display order.
     pub const ALL: [Self; 3] = [Self::Lobe, Self::Picture, Self::Highlight];
 
-    /// The name on the command line.
+    /// Name on the command line.
     #[must_use]
     pub const fn id(self) -> &'static str {
         match self {
@@ -84,7 +86,7 @@ impl What {
         }
     }
 
-    /// One sentence.
+    /// One sentence about the comparison.
     #[must_use]
     pub const fn summary(self) -> &'static str {
         match self {
@@ -100,7 +102,7 @@ impl What {
         }
     }
 
-    /// What the error is, with its unit.
+    /// Meaning of the error, with its unit.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
@@ -110,108 +112,108 @@ impl What {
         }
     }
 
-    /// The choice with an id.
+    /// The variant with this id.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|what| what.id() == id)
     }
 }
 
-/// What to match.
+/// A request to match a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// The scene, which is valid.
     pub scene: &'a Scene,
-    /// The view whose parameters are searched, to come near to view A: 1 is view B.
+    /// The view whose parameters are adjusted to match view A: 1 is view B.
     pub view: usize,
-    /// What is compared.
+    /// The quantity to compare.
     pub what: What,
-    /// The names of the parameters that are free.
+    /// Names of the free parameters.
     pub parameters: &'a [&'a str],
 }
 
-/// What was found.
+/// The result of a match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Match {
-    /// The values for the view. Parameters that hardly matter are not among them.
+    /// The values for the view, without parameters that hardly matter.
     pub values: Vec<(&'static str, Value)>,
-    /// The free parameters that keep their values, since others hardly come nearer.
+    /// The free parameters that keep their values, since changing them hardly helps.
     pub kept: Vec<&'static str>,
     /// The error with the present values: see [`What::unit`].
     pub before: f64,
-    /// The error with these.
+    /// The error with the matched values.
     pub after: f64,
 }
 
-/// The reason why there is no match.
+/// The reason why a match failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MatchError {
-    /// There is no such view, or it is view A.
+    /// The view does not exist, or is view A.
     #[error("there is no view {view} to be matched; the scene has {}", views_in_words(*.views))]
     NoView {
-        /// Its letter.
+        /// Letter of the view.
         view: String,
-        /// The number of views.
+        /// Number of views.
         views: usize,
     },
     /// No parameter is free.
     #[error("no parameter is free; {}", remedy(.known))]
     NothingFree {
-        /// Those that could be.
+        /// Parameters that could be free.
         known: Vec<&'static str>,
     },
-    /// A parameter that the view's models do not have.
+    /// The view's models lack a parameter.
     #[error("{} is free, but view {view} has no such parameter; {}{hint}", quoted(.name), remedy(.known))]
     NoParameter {
-        /// Its name as given.
+        /// Name as given.
         name: String,
-        /// The letter of the view.
+        /// Letter of the view.
         view: &'static str,
-        /// A spelling that was perhaps meant.
+        /// A suggested spelling.
         hint: String,
-        /// Those that it has.
+        /// Existing parameters.
         known: Vec<&'static str>,
     },
-    /// A choice cannot be searched.
+    /// The parameter is not numeric, so it cannot be searched.
     #[error("{name} is free, but it is a {kind}: only numbers and colours can be searched")]
     NoNumber {
-        /// Its name.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its kind.
+        /// Kind of the parameter.
         kind: &'static str,
     },
-    /// A parameter that has no effect at present.
+    /// The parameter has no effect at present.
     #[error("{name} is free, but it has no effect: {why}")]
     Unused {
-        /// Its name.
+        /// Name of the parameter.
         name: &'static str,
         /// The reason.
         why: String,
     },
-    /// The view's models share a parameter, but no range of it.
+    /// The view's models share the parameter, but their ranges do not overlap.
     #[error("{name} is free, but no value of it is legal for all models of view {view}")]
     NoRange {
-        /// Its name.
+        /// Name of the parameter.
         name: &'static str,
-        /// The letter of the view.
+        /// Letter of the view.
         view: &'static str,
     },
-    /// No object is visible, or none in the picture.
+    /// No object is visible, or none is in the picture.
     #[error("no object is visible, so there is nothing to compare")]
     NothingVisible,
-    /// A view has no highlight whose width could be compared.
+    /// A view has no highlight to compare.
     #[error("view {view} has no highlight with a width: {why}")]
     NoHighlight {
-        /// The letter of the view.
+        /// Letter of the view.
         view: &'static str,
-        /// The models.
+        /// Models of the view.
         why: String,
     },
     /// The CPU cannot run a custom model.
     #[error("{model} cannot be matched, since the CPU does not run it: {why}")]
     NotOnCpu {
-        /// The id of the model.
+        /// Id of the model.
         model: &'static str,
         /// The reason.
         why: String,
@@ -251,8 +253,8 @@ pub fn digits(error: f64) -> String {
     }
 }
 
-/// The parameters of a view that can be searched, each with true if it is usually free: numbers are, colours and other
-/// triples only if asked for. None if there is no such view.
+/// The parameters of a view that can be searched, each with true if it is free by default: numbers are,
+/// colours and other triples only on request. Empty if the view does not exist.
 #[must_use]
 pub fn parameters(scene: &Scene, view: usize, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
     Side::seen(scene, view, registry).map_or_else(Vec::new, |side| known(&side, registry))
@@ -275,7 +277,7 @@ fn known(side: &Side, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
     all
 }
 
-/// The reason why a parameter has no effect in a view; `None` if it has one for some object.
+/// The reason why a parameter has no effect in a view; `None` if it affects any object.
 fn reason_against(side: &Side, parameter: &Parameter, registry: &Registry) -> Option<String> {
     let mut reason = None;
     for object in side.scene.shown() {
@@ -289,7 +291,8 @@ fn reason_against(side: &Side, parameter: &Parameter, registry: &Registry) -> Op
 /// Finds the parameters of a view that come nearest to view A.
 ///
 /// # Errors
-/// If there is nothing to compare or to search, a model cannot be run, or the user no longer wants it.
+/// Returns an error if there is nothing to compare or search, if a model cannot be evaluated, or if the user
+/// cancels.
 pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -> Result<Match, MatchError> {
     let scene = request.scene;
     let letter = LETTERS.get(request.view).copied().unwrap_or("?");
@@ -324,7 +327,7 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
             search(&mut Highlight::new(sides, registry).map_err(none)?, &free, MOST_LOBES, progress)
         }
     };
-    // An endless function shows only when it runs.
+    // An endless function is detected only when it runs.
     can_run()?;
     let Found { values, before, after } = found?;
     let given = |name: &str| values.iter().any(|(known, _)| *known == name);
@@ -342,7 +345,7 @@ fn search(
     Search::new(target, free, most + each * axes, progress).run()
 }
 
-/// The parameters that are free.
+/// The free parameters.
 fn frees(
     request: &Request,
     side: &Side,

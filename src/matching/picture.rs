@@ -13,24 +13,24 @@ use crate::{
     scene::Scene,
 };
 
-/// The height of the pictures in pixels.
+/// Height of the pictures, in pixels.
 pub const HEIGHT: u32 = 96;
-/// Their width, in the usual proportion of 16 to 9.
+/// Width of the pictures, with the usual aspect ratio of 16 to 9.
 pub const WIDTH: u32 = HEIGHT * 16 / 9;
 
-/// The picture of a view, to be compared with that of view A.
+/// The picture of a view, for comparison with that of view A.
 pub(super) struct Picture<'r> {
     scene: Scene,
     /// The materials of the objects.
     own: Vec<Values>,
     registry: &'r Registry,
     settings: Settings,
-    /// The pixels that objects cover in either view, and their light in view A.
+    /// The pixels covered by objects in either view, with their light in view A.
     wanted: Vec<(usize, Vec3)>,
 }
 
 impl<'r> Picture<'r> {
-    /// Of two views. `None` if no object covers a pixel.
+    /// The picture of the second view, for comparison with the first; `None` if no object covers a pixel.
     pub(super) fn new([a, b]: [&Side; 2], registry: &'r Registry) -> Option<Self> {
         let settings = |side: &Side| Settings { width: WIDTH, height: HEIGHT, samples: 1, terms: side.terms };
         let [of_a, of_b] =

@@ -1,10 +1,10 @@
-//! The search for the values that come nearest.
+//! Searches for the closest values.
 //!
-//! It descends from the present values; then it searches each parameter alone, and the best of them together, one more at
-//! a time; then it descends from the best so far and from the most promising of some points spread over all ranges. It
-//! keeps the best of everything that it has seen, so more free parameters never end worse than fewer of them that were
-//! tried. Then it gives up what is not needed: a parameter that
-//! hardly matters keeps its value, and digits that change nothing are left out. Nothing in it is random.
+//! The search descends from the present values. Then it searches each parameter alone, and the best of them
+//! together, adding one more at a time. Then it descends from the best point so far, and from the most
+//! promising of some points spread over all ranges. It keeps the best point seen, so more free parameters
+//! never give a worse result than a subset that was tried. Finally it simplifies the result: parameters that
+//! hardly matter keep their values, and insignificant digits are dropped. Nothing is random.
 
 use std::time::{Duration, Instant};
 
@@ -17,43 +17,43 @@ use crate::{
     progress::{Cancelled, Progress},
 };
 
-/// Points spread over the ranges.
+/// Number of points spread over the ranges.
 const SPREAD: usize = 24;
-/// Those of them from which the search descends, beside the present values.
+/// Number of those from which the search descends, in addition to the present values.
 const DESCENTS: usize = 4;
-/// The end of each descent.
+/// Termination conditions of each descent.
 const LIMITS: Limits = Limits { steps: 25, least_gain: 1e-7, least_move: 1e-6, first_step: 0.5 };
-/// The end of a descent that only shows which parameters are worth more.
+/// Termination conditions of a short descent, which only shows which parameters are promising.
 const SHORT: Limits = Limits { steps: 8, ..LIMITS };
-/// Values of one parameter that are tried, beside the present one.
+/// Number of values tried for one parameter, in addition to the present one.
 const SCANNED: usize = 6;
-/// The most parameters that are added one by one.
+/// Maximum number of parameters that are added one by one.
 const GROWN: usize = 6;
-/// No search takes longer; the best that was found by then counts.
+/// Maximum duration of a search; the best result until then counts.
 const LONGEST: Duration = Duration::from_secs(60);
-/// A parameter keeps its value, and digits are left out, if the error grows by no more than this part of itself, or of
-/// the error at the start.
+/// A parameter keeps its value, and digits are dropped, if the error grows by at most this fraction of
+/// itself, or of the initial error.
 const GIVEN_UP: [f64; 2] = [1e-3, 1e-4];
-/// An error below this is none: the models calculate in 32 bits.
+/// Errors below this count as zero: the models calculate in 32 bits.
 const NONE: f64 = 1e-6;
 
 /// Values of parameters.
 pub(super) type Given = Vec<(&'static str, Value)>;
 
-/// A picture, or a lobe, that is compared with another.
+/// A picture or a lobe to compare with another.
 pub(super) trait Target {
-    /// The number of differences.
+    /// Number of differences.
     fn count(&self) -> usize;
 
-    /// The differences with these values of parameters; others are as they are.
+    /// The differences with these parameter values; other parameters are unchanged.
     fn differences(&mut self, values: &Given, to: &mut [f64]);
 }
 
-/// A parameter that is free.
+/// A free parameter.
 pub(super) struct Free {
     pub(super) parameter: &'static Parameter,
     pub(super) axes: Vec<Axis>,
-    /// Its present value.
+    /// Present value.
     pub(super) now: Value,
 }
 
@@ -69,7 +69,7 @@ pub(super) struct Found {
 #[derive(Clone, Debug, PartialEq)]
 struct Point {
     numbers: Vec<f64>,
-    /// For each parameter, whether it is given.
+    /// True for each parameter that is set.
     on: Vec<bool>,
 }
 
@@ -77,13 +77,13 @@ pub(super) struct Search<'a, T> {
     target: &'a mut T,
     free: &'a [Free],
     progress: &'a Progress<'a>,
-    /// The most evaluations.
+    /// Maximum number of evaluations.
     most: usize,
     evaluations: usize,
-    /// Those after which the present way ends.
+    /// Number of evaluations after which the present stage ends.
     until: usize,
     begun: Instant,
-    /// True for the few evaluations at the end, which are made whatever was spent.
+    /// True for the final evaluations, which are always made.
     last: bool,
     cancelled: bool,
     best: (f64, Option<Point>),
@@ -107,10 +107,10 @@ impl<'a, T: Target> Search<'a, T> {
         }
     }
 
-    /// Searches.
+    /// Runs the search.
     ///
     /// # Errors
-    /// If the user no longer wants it.
+    /// Returns [`Cancelled`] if the user cancels.
     pub(super) fn run(mut self) -> Result<Found, Cancelled> {
         "comparing the views".clone_into(&mut self.step);
         let none = Point { numbers: self.present(), on: vec![false; self.free.len()] };
@@ -119,7 +119,7 @@ impl<'a, T: Target> Search<'a, T> {
             Err(Stop) => return Err(Cancelled),
         };
         if before > NONE && !self.free.is_empty() {
-            // The end of the evaluations ends the search, and what was found counts.
+            // The limit of evaluations ends the search, and the result so far counts.
             let _ = self.look();
             if self.cancelled {
                 return Err(Cancelled);
@@ -140,7 +140,7 @@ impl<'a, T: Target> Search<'a, T> {
         self.free.iter().flat_map(|free| &free.axes)
     }
 
-    /// The same, each with the index of its parameter.
+    /// The axes of all parameters, each with the index of its parameter.
     fn owners(&self) -> Vec<(usize, &'a Axis)> {
         let of = |(i, free): (usize, &'a Free)| free.axes.iter().map(move |axis| (i, axis));
         self.free.iter().enumerate().flat_map(of).collect()
@@ -169,7 +169,7 @@ impl<'a, T: Target> Search<'a, T> {
         values
     }
 
-    /// The differences at a point, and the root of their mean square.
+    /// The differences at a point, and their root mean square.
     fn differences(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
         self.cancelled |= (self.progress.cancelled)();
         let spent = self.evaluations >= self.until.min(self.most) || self.begun.elapsed() > LONGEST;
@@ -184,13 +184,13 @@ impl<'a, T: Target> Search<'a, T> {
         let values = self.values(point);
         self.target.differences(&values, &mut to[..count]);
         to[count..].fill(0.0);
-        /// Stands for what is not finite.
+        /// Replaces differences that are not finite.
         const FAR: f64 = 1e9;
         to.iter_mut().filter(|d| !d.is_finite()).for_each(|d| *d = FAR);
         Ok((to.iter().map(|d| d * d).sum::<f64>() / count.max(1) as f64).sqrt())
     }
 
-    /// Tells how far the search is.
+    /// Reports the progress of the search.
     fn tell(&self) {
         let done = if self.last { 1.0 } else { self.evaluations as f32 / self.most as f32 };
         (self.progress.tell)(done, &self.step);
@@ -201,7 +201,7 @@ impl<'a, T: Target> Search<'a, T> {
         self.differences(point, &mut scratch)
     }
 
-    /// The differences at a point; the best are kept.
+    /// The differences at a point; remembers the best point.
     fn noted(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
         let error = self.differences(point, to)?;
         if error < self.best.0 {
@@ -210,12 +210,13 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(error)
     }
 
-    /// The number of differences, at least as many as there are axes: the last ones are always 0.
+    /// The number of differences, at least that of the axes: additional ones are always 0.
     fn count(&self) -> usize {
         self.target.count().max(self.axes().count())
     }
 
-    /// Looks for the best, each way with its share of the evaluations; the end of a share is not that of the search.
+    /// Runs the stages of the search, each with its share of the evaluations; using up a share does not end
+    /// the search.
     fn look(&mut self) -> Result<(), Stop> {
         let all: Vec<usize> = (0..self.free.len()).collect();
         let present = Point { numbers: self.present(), on: vec![true; all.len()] };
@@ -241,9 +242,9 @@ impl<'a, T: Target> Search<'a, T> {
         self.try_neighbours()
     }
 
-    /// Searches each parameter alone, then the best of them, the best with the second, and so on. What none of them
-    /// alone can do is seen to by [`look_around`](Self::look_around); where many are free, what few can do is missed
-    /// there.
+    /// Searches each parameter alone, then the best of them, the best with the second, and so on.
+    /// Improvements that need several parameters at once are left to [`look_around`](Self::look_around); if
+    /// many parameters are free, it may miss those that need only few.
     fn grow(&mut self) -> Result<(), Stop> {
         let present = Point { numbers: self.present(), on: vec![false; self.free.len()] };
         let mut alone = Vec::new();
@@ -280,7 +281,7 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(())
     }
 
-    /// The best of some values of a parameter, where others are as at a point.
+    /// The best of several values of a parameter, with the others as at `from`.
     fn scan(&mut self, from: &Point, parameter: usize) -> Result<Point, Stop> {
         let mut scratch = vec![0.0; self.count()];
         let first: usize = self.free[..parameter].iter().map(|free| free.axes.len()).sum();
@@ -289,7 +290,7 @@ impl<'a, T: Target> Search<'a, T> {
         for step in 0..=SCANNED {
             let mut point = from.clone();
             point.on[parameter] = true;
-            // The first is as it was.
+            // The first value is the present one.
             if let Some(step) = step.checked_sub(1) {
                 let at = (step as f64 + 0.5) / SCANNED as f64;
                 axes.iter().enumerate().for_each(|(k, axis)| point.numbers[first + k] = axis.value(at));
@@ -302,7 +303,7 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(best.1)
     }
 
-    /// Descends from the best so far, and from the most promising of points spread over all ranges.
+    /// Descends from the best point so far, and from the most promising of points spread over all ranges.
     fn look_around(&mut self, all: &[usize]) -> Result<(), Stop> {
         let axes: Vec<&Axis> = self.axes().collect();
         let mut scratch = vec![0.0; self.count()];
@@ -330,7 +331,7 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(())
     }
 
-    /// Goes downhill from a point, changing only these parameters. Returns the error and the point where it ends.
+    /// Descends from a point, changing only these parameters. Returns the error and the final point.
     fn descend_from(
         &mut self,
         start: &Point,
@@ -355,9 +356,9 @@ impl<'a, T: Target> Search<'a, T> {
         Ok((error, point.unwrap_or_else(|| start.clone())))
     }
 
-    /// Moves each whole number by one, as long as that helps.
+    /// Moves each integer by one, as long as that helps.
     fn try_neighbours(&mut self) -> Result<(), Stop> {
-        /// Further rounds seldom help.
+        /// Maximum number of rounds; more seldom help.
         const ROUNDS: usize = 3;
         let mut scratch = vec![0.0; self.count()];
         let owners = self.owners();
@@ -380,8 +381,7 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(())
     }
 
-    /// The same point without values that hardly matter, and with as few digits as do.
-    /// Its error is at most `good`.
+    /// The point with insignificant values dropped and the rest rounded. Its error is at most `good`.
     fn simplified(&mut self, mut point: Point, good: f64, mut error: f64) -> Result<(Point, f64), Stop> {
         for i in 0..self.free.len() {
             let mut without = point.clone();
@@ -397,7 +397,7 @@ impl<'a, T: Target> Search<'a, T> {
             }
             let number = point.numbers[at];
             let end = Some(axis.coordinate(number).round()).filter(|end| {
-                // So near to an end of the range is perhaps at it.
+                // This close to an end of the range, the end itself may be the best value.
                 (axis.coordinate(number) - end).abs() < 0.01
             });
             let shorter = (2..=4).map(|digits| axis.legal(rounded(number, digits)));
@@ -415,12 +415,12 @@ impl<'a, T: Target> Search<'a, T> {
     }
 }
 
-/// The way downhill: some of the axes are searched, the others stay.
+/// A descent in which some of the axes vary and the others are fixed.
 struct Slope<'s, 'a, T> {
     of: &'s mut Search<'a, T>,
-    /// Where it is, with the values of those that stay.
+    /// The present point, including the fixed values.
     point: Point,
-    /// Their places among all, in order.
+    /// The indices of the varying axes among all, in order.
     axes: Vec<(usize, &'a Axis)>,
     best: (f64, Option<Point>),
 }
@@ -463,7 +463,7 @@ impl<T: Target> Residuals for Slope<'_, '_, T> {
             let (i, axis) = self.axes[k];
             let here = self.point.numbers[i];
             self.point.numbers[i] = axis.beside(here);
-            // Between legal values: whole numbers are apart.
+            // Between legal values: integers are not continuous.
             let way = axis.coordinate(self.point.numbers[i]) - axis.coordinate(here);
             let ended = self.noted(column);
             self.point.numbers[i] = here;
@@ -474,15 +474,15 @@ impl<T: Target> Residuals for Slope<'_, '_, T> {
     }
 }
 
-/// The i-th of points spread evenly over a cube: M. Roberts (2018), *The Unreasonable Effectiveness of Quasirandom
-/// Sequences*.
+/// The i-th of a sequence of points spread evenly over a cube: M. Roberts (2018), *The Unreasonable
+/// Effectiveness of Quasirandom Sequences*.
 fn spread(i: usize, axes: usize) -> impl Iterator<Item = f64> {
     // The root of x^(d+1) = x + 1, by iteration.
     let ratio = (0..40).fold(2.0f64, |x, _| (1.0 + x).powf(1.0 / (axes as f64 + 1.0)));
     (1..=axes).map(move |axis| (0.5 + (i + 1) as f64 / ratio.powi(axis as i32)).fract())
 }
 
-/// A number with so many digits.
+/// A number rounded to this many significant digits.
 fn rounded(value: f64, digits: i32) -> f64 {
     if value == 0.0 {
         return 0.0;
@@ -496,7 +496,7 @@ mod tests {
     use super::*;
     use crate::parameter::{ALPHA, K_A, K_D, K_S};
 
-    /// A bell of an exponent and a height, over a floor that hides its foot; `k_a` does nothing.
+    /// A bell with an exponent and a height, above a floor that hides its foot; `k_a` has no effect.
     struct Bell {
         wanted: [f64; 2],
         asked: usize,
@@ -549,7 +549,7 @@ mod tests {
         let mut bell = Bell { wanted: [3.0, 0.9], asked: 0 };
         let found = Search::new(&mut bell, &frees(), 2000, &Progress::NONE).run().expect("not cancelled");
         assert_eq!(found, Found { values: Vec::new(), before: 0.0, after: 0.0 });
-        // Only what does nothing is free.
+        // Only parameters without effect are free.
         let mut bell = Bell { wanted: [30.0, 0.5], asked: 0 };
         let k_a = [free(&K_A, Value::Number(0.1)), free(&K_D, Value::Number(0.8))];
         let found = Search::new(&mut bell, &k_a, 2000, &Progress::NONE).run().expect("not cancelled");

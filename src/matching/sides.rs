@@ -1,4 +1,4 @@
-//! The two views that are compared: the models of their objects.
+//! The two views to compare: the models of their objects.
 
 use std::sync::Arc;
 
@@ -11,10 +11,11 @@ use crate::{
     scene::Scene,
 };
 
-/// The most materials whose lobes are compared; of more, these are spread over the list of objects.
+/// Maximum number of materials whose lobes are compared; if there are more, a selection spread over the list
+/// of objects.
 const MOST: usize = 16;
 
-/// A view: the scene that it shows.
+/// A view, with the scene that it shows.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
     pub(super) scene: Scene,
@@ -22,13 +23,13 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// A view of a scene; `None` if there is none.
+    /// A view of a scene; `None` if it does not exist.
     pub(super) fn seen(scene: &Scene, view: usize, registry: &Registry) -> Option<Self> {
         let (scene, terms) = scene.seen(view, registry)?;
         Some(Self { scene, terms })
     }
 
-    /// Fails if the CPU lacks something that a model needs, or found a function endless.
+    /// Fails if the CPU cannot run one of the models, or found a function endless.
     pub(super) fn can_run(&self, registry: &Registry) -> Result<(), MatchError> {
         for model in self.models(registry) {
             if let Some(why) = model.not_on_cpu() {
@@ -57,14 +58,14 @@ impl Side {
 
 /// A material of an object in both views.
 pub(super) struct Pair {
-    /// As view A shows it.
+    /// The surface in view A.
     pub(super) wanted: Arc<dyn Surface>,
     /// The model in the other view.
     pub(super) model: ModelEntry,
-    /// Its parameters there.
+    /// Parameters in the other view.
     own: Values,
     encoding: Encoding,
-    /// True if turning one of them about the normal changes it.
+    /// True if rotation about the normal changes either of them.
     pub(super) anisotropic: bool,
 }
 
@@ -96,7 +97,7 @@ impl Pair {
         pairs.into_iter().step_by(each).collect()
     }
 
-    /// The other view's surface with some parameters given.
+    /// The other view's surface with these parameters.
     pub(super) fn with(&self, values: &Given) -> Arc<dyn Surface> {
         let mut all = self.own.clone();
         values.iter().for_each(|(name, value)| all.set(*name, value.clone()));

@@ -4,7 +4,7 @@ use crate::{
     scene::{Object, Variant},
 };
 
-/// A sphere under one model with some values in view A, and under another in view B.
+/// A sphere with one model and some values in view A, and another model in view B.
 fn scene(a: (&str, &[(&'static str, Value)]), b: (&str, &[(&'static str, Value)])) -> Scene {
     let mut scene = Scene { reflection_model: a.0.to_owned(), ..Scene::default() };
     a.1.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
@@ -26,7 +26,7 @@ fn error(scene: &Scene, what: What, parameters: &[&str]) -> String {
     matched(scene, what, parameters).expect_err("refused").to_string()
 }
 
-/// The value of a number that was found.
+/// The matched value of a number.
 fn found(found: &Match, name: &str) -> f64 {
     let value = found.values.iter().find(|(n, _)| *n == name);
     axis::numbers_of(&value.unwrap_or_else(|| panic!("{name} is not in {found:?}")).1)[0]
@@ -44,12 +44,12 @@ fn a_model_matched_with_itself_finds_its_own_values() {
     for what in [What::Lobe, What::Picture] {
         let scene =
             scene(("phong", &PHONG), ("phong", &[("k_d", number(0.9)), ("alpha", Value::Integer(3))]));
-        // The variant inherits the other two: free, they keep their values.
+        // The variant inherits the other two: if free, they keep their values.
         let all = matched(&scene, what, &["k_a", "k_d", "k_s", "alpha"]).expect("a match");
         assert_eq!(all.values, [PHONG[1].clone(), PHONG[3].clone()], "{what:?} {all:?}");
         assert_eq!(all.kept, ["k_a", "k_s"]);
         assert!(all.after < 1e-6 && all.before > 0.01, "{what:?} {all:?}");
-        // A wrong twin: another value that is not free leaves a rest.
+        // The wrong twin: with a fixed parameter at another value, an error remains.
         let some = matched(&scene, what, &["alpha"]).expect("a match");
         assert!(some.after > 0.01 && some.after < some.before, "{what:?} {some:?}");
         // Where both are equal, nothing changes.
@@ -96,7 +96,7 @@ fn other_models_find_their_own_values_too() {
     ];
     for (id, values, free) in cases {
         let scene = scene((id, values), (id, &[]));
-        // Inherited values would be those already.
+        // Inherited values would already be equal.
         let mut scene = Scene { objects: scene.objects, ..scene };
         let registry = Registry::builtin();
         for (name, _) in values {
@@ -121,11 +121,11 @@ fn equal_highlights_of_phong_and_blinn_have_exponents_of_one_to_four() {
         let scene = scene(("phong", &[("alpha", Value::Integer(alpha))]), ("blinn_phong", &[]));
         let all = ["k_a", "k_d", "k_s", "alpha"];
         let highlight = matched(&scene, What::Highlight, &all).expect("a match");
-        // The brightness is left alone.
+        // The brightness does not matter.
         assert_eq!(highlight.values.len(), 1, "{highlight:?}");
         let ratio = found(&highlight, "alpha") / alpha as f64;
         assert!((ratio - 4.0).abs() < 0.2, "{alpha}: {ratio}");
-        // The cosines of very narrow ones have few digits left in 32 bits.
+        // The cosines of very narrow highlights have few digits left in 32 bits.
         let rest = if alpha > 1000 { 0.03 } else { 0.01 };
         assert!(highlight.after < rest && highlight.before > 0.6, "{highlight:?}");
         // The other way round.
@@ -137,7 +137,7 @@ fn equal_highlights_of_phong_and_blinn_have_exponents_of_one_to_four() {
         let ratio = found(&highlight, "alpha") / alpha as f64;
         assert!((ratio - 1.0).abs() < 0.05, "{alpha}: {ratio}");
     }
-    // An anisotropic one has two widths.
+    // An anisotropic highlight has two widths.
     let brushed = [("alpha_x", number(0.05)), ("alpha_y", number(0.25))];
     let ward = scene(("ward", &brushed), ("ward", &[("alpha_x", number(0.3)), ("alpha_y", number(0.3))]));
     let highlight = matched(&ward, What::Highlight, &["k_s", "alpha_x", "alpha_y"]).expect("a match");
@@ -154,7 +154,7 @@ fn equal_highlights_of_phong_and_blinn_have_exponents_of_one_to_four() {
     assert!(lobe.after < 0.5 * lobe.before, "{lobe:?}");
 }
 
-/// The root mean square of the differences of the views as they are.
+/// The root mean square of the differences between the present views.
 fn rest(target: &mut impl Target) -> f64 {
     let mut all = vec![0.0; target.count()];
     target.differences(&Vec::new(), &mut all);
@@ -206,7 +206,7 @@ fn several_materials_are_matched_together() {
     let mut other = Object { position: glam::Vec3::new(3.0, 3.0, 3.0), ..scene.objects[0].clone() };
     other.material.set("alpha", Value::Integer(80));
     scene.objects.push(other);
-    // Without an override each has its own.
+    // Without an override, each object keeps its own model.
     let none = matched(&scene, What::Lobe, &["alpha"]).expect("a match");
     assert_eq!((none.values, none.before, none.after), (Vec::new(), 0.0, 0.0));
     scene.variants[0].material.set("alpha", Value::Integer(1000));

@@ -21,10 +21,10 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// Every choice, in the order of presentation.
+    /// All variants, in display order.
     pub const ALL: [Self; 2] = [Self::Srgb, Self::Off];
 
-    /// The name in scene files.
+    /// Name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -33,7 +33,7 @@ impl Encoding {
         }
     }
 
-    /// The choice with an id.
+    /// The variant with this id.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|encoding| encoding.id() == id)
@@ -49,7 +49,7 @@ impl Encoding {
         }
     }
 
-    /// The 8-bit colour next to a colour for calculation; the inverse of [`decode`](Self::decode).
+    /// The nearest 8-bit colour; the inverse of [`decode`](Self::decode).
     #[must_use]
     pub fn encode(self, linear: Vec3) -> [u8; 3] {
         linear.to_array().map(|v| match self {

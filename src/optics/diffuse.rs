@@ -57,8 +57,8 @@ pub fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: Vec
     // 2β/π from its distance to 1, which keeps its digits where both angles are grazing.
     let rise = near.asin() * FRAC_2_PI;
     let turned = 1.0 - rise;
-    // C₂ / sin α: the sine is in `across` already. sin α − (2β/π)³ is the difference of their distances from 1, which
-    // `across / near` keeps finite at the horizon; at the normal `across` vanishes.
+    // C₂ / sin α: the sine is already in `across`. sin α − (2β/π)³ is the difference of their distances from
+    // 1, which `across / near` keeps finite at the horizon; at the normal `across` vanishes.
     let forward = if across < 0.0 {
         let lacking = rise * (1.0 + turned + turned * turned) - far * far / (1.0 + sin_alpha);
         lacking / sin_alpha.max(1e-4)
@@ -93,8 +93,8 @@ pub fn eon(cos_l: f32, cos_v: f32, cos_lv: f32, roughness: f32, rho: Vec3) -> Ve
     let stretched = if across > 0.0 { across / cos_l.max(cos_v).max(GRAZING) } else { across };
     let once = a * (1.0 + roughness * stretched);
     let average = a * (1.0 + FON_2 * roughness);
-    // (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩), where each bracket is A r times a function of the angle: as differences of
-    // numbers near 1 they would have no digits for small r.
+    // (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩), where each bracket is A r times a function of the angle: as
+    // differences of numbers near 1 they would lose all digits for small r.
     let lost = a * roughness * fon_loss(cos_l) * fon_loss(cos_v) / (FON_1 - FON_2);
     once + rho * average / (1.0 - rho * (1.0 - average)) * lost
 }

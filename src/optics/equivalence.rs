@@ -1,4 +1,4 @@
-//! The width of a highlight on the scales of different models, for comparison.
+//! The width of a highlight converted between the scales of different models, for comparison.
 //!
 //! No two of these lobes are equal: they agree in sharpness near their middle, and differ in their tails.
 
@@ -10,7 +10,7 @@ pub fn alpha_of_exponent(n: f32) -> f32 {
     (2.0 / (n.max(0.0) + 2.0)).sqrt()
 }
 
-/// Its inverse: the exponent `n = 2/α² − 2` of a Blinn–Phong lobe, at least 0.
+/// The inverse of [`alpha_of_exponent`]: the exponent `n = 2/α² − 2` of a Blinn–Phong lobe, at least 0.
 #[must_use]
 pub fn exponent_of_alpha(alpha: f32) -> f32 {
     (2.0 / (alpha * alpha) - 2.0).max(0.0)

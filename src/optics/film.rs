@@ -4,7 +4,7 @@
 
 use std::f32::consts::PI;
 
-/// Complex numbers, of which a film needs four operations.
+/// A complex number, with the four operations that a film needs.
 #[derive(Clone, Copy)]
 struct Complex(f32, f32);
 
@@ -23,9 +23,9 @@ impl Complex {
         Self((a * a - self.squared()) * scale, -2.0 * a * self.1 * scale)
     }
 
-    /// The square root with an imaginary part of at least 0; that of this one is at least 0.
+    /// The square root with a non-negative imaginary part; that of `self` must not be negative.
     fn root(self) -> Self {
-        // The larger part first, the other from it, without cancellation.
+        // The larger part first, and the other from it, without cancellation.
         let large = (0.5 * (self.squared().sqrt() + self.0.abs())).sqrt();
         let small = 0.5 * self.1 / large.max(1e-30);
         if self.0 >= 0.0 { Self(large, small) } else { Self(small, large) }
@@ -46,7 +46,7 @@ pub fn thin_film(n_1: f32, n_2: f32, n: f32, k: f32, turns: f32, c: f32) -> f32 
         return 1.0;
     }
     let c_2 = cos2.sqrt();
-    // Without whole turns, of which thick films have many: the last digits of the angle are kept.
+    // Without whole periods, of which thick films have many: this preserves the last digits of the angle.
     let phase = 2.0 * n_2 * turns * c_2;
     let (sin, cos) = (2.0 * PI * (phase - phase.round())).sin_cos();
     let n2 = Complex((n - k) * (n + k), 2.0 * n * k);
@@ -78,7 +78,8 @@ mod tests {
         for c in COSINES {
             for (n, k) in [(1.5, 0.0), (0.4, 2.4), (2.9, 3.1)] {
                 let bare = if k == 0.0 { dielectric(n, c) } else { conductor(n, k, c) };
-                // Of no thickness, of the index above, and of whole turns at normal incidence.
+                // A film of zero thickness, one with the index of the medium above, and whole periods at
+                // normal incidence.
                 assert!((thin_film(1.0, 1.7, n, k, 0.0, c) - bare).abs() < 1e-5, "{n} {k} {c}");
                 assert!((thin_film(1.0, 1.0, n, k, 0.37, c) - bare).abs() < 1e-5, "{n} {k} {c}");
             }
@@ -90,9 +91,9 @@ mod tests {
     fn a_quarter_of_a_wavelength_of_the_root_of_the_index_reflects_nothing() {
         let n = 1.5f32.sqrt();
         assert!(thin_film(1.0, n, 1.5, 0.0, 0.25 / n, 1.0) < 1e-6);
-        // A quarter more, and it is the bare boundary; a wrong phase would not see it.
+        // A quarter of a wavelength more, and the boundary is bare; a wrong phase would not show there.
         assert!((thin_film(1.0, n, 1.5, 0.0, 0.5 / n, 1.0) - 0.04).abs() < 1e-6);
-        // Of a dense film: ((n² − n_g)/(n² + n_g))².
+        // A dense film: ((n² − n_g)/(n² + n_g))².
         let expected = ((4.0 - 1.5) / (4.0 + 1.5f32)).powi(2);
         assert!((thin_film(1.0, 2.0, 1.5, 0.0, 0.125, 1.0) - expected).abs() < 1e-5);
     }
@@ -106,14 +107,14 @@ mod tests {
                         let r = thin_film(n_1, n_2, n, k, turns, c);
                         assert!((0.0..=1.0).contains(&r), "{n_1} {n_2} {n} {k} {turns} {c}: {r}");
                     }
-                    // Without a film, equal indices are no boundary.
+                    // Without a film, equal indices do not reflect.
                     if turns > 0.0 || n != n_1 {
                         assert!(thin_film(n_1, n_2, n, k, turns, 0.0) > 0.99, "{n_1} {n_2} {n} {k} {turns}");
                     }
                 }
             }
         }
-        // Within the film, total reflection.
+        // Total reflection within the film.
         assert_eq!(thin_film(1.6, 1.1, 1.5, 0.0, 0.5, 0.5), 1.0);
     }
 }

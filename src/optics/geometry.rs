@@ -47,15 +47,15 @@ impl Frame {
         }
     }
 
-    /// A direction of the room in the local frame: components along tangent, bitangent and normal.
+    /// A direction in the room, in the local frame: components along tangent, bitangent and normal.
     #[must_use]
     pub fn to_local(&self, d: Vec3) -> Vec3 {
         Vec3::new(self.t.dot(d), self.b.dot(d), self.n.dot(d))
     }
 }
 
-/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent +x. Calculated in
-/// 64 bits, so that 90° is not slightly above the surface.
+/// The unit vector with these spherical angles in degrees, in the local frame: the normal is +z, the tangent
+/// +x. Calculated in 64 bits, so that 90° is not slightly above the surface.
 #[must_use]
 pub fn direction(theta: f64, phi: f64) -> Vec3 {
     let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
@@ -79,8 +79,8 @@ pub fn half_vector(l: Vec3, v: Vec3) -> Vec3 {
     (l + v).normalize_or_zero()
 }
 
-/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h. It is
-/// calculated from `L + V` directly, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose its digits near
+/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h. It
+/// is calculated from `L + V` directly, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose digits near
 /// highlights. Finite for opposite vectors too.
 #[must_use]
 pub fn half_slope(l: Vec3, v: Vec3, frame: &Frame) -> Vec2 {
@@ -159,7 +159,7 @@ mod tests {
                 assert_eq!(Frame::new(n, tangent), Frame::from_normal(n), "{n} {tangent}");
             }
         }
-        // No normal at all, as for a degenerate polygon: finite.
+        // A zero normal, as for a degenerate polygon: finite.
         let f = Frame::new(Vec3::ZERO, Vec3::X);
         assert!(f.t.is_finite() && f.b.is_finite());
     }

@@ -1,7 +1,8 @@
 //! Lobes `cos^n θ` around the mirror direction, accurate for exponents of a million and more.
 //!
-//! A cosine near 1 has no digits left for the angle: 1 − 10⁻⁸ is 1 in f32. So these functions use the tangent of the
-//! angle, whose square is small where the cosine is near 1. All of them are symmetric in light and view.
+//! A cosine near 1 has no digits left for the angle: 1 − 10⁻⁸ is 1 in f32. These functions therefore use the
+//! tangent of the angle, whose square is small where the cosine is near 1. All are symmetric in light and
+//! view.
 //!
 //! Twin: `assets/shaders/optics/lobe.wgsl`.
 

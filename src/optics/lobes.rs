@@ -1,6 +1,6 @@
-//! The lobes of a model: the directions from which it reflects most, for sampling.
+//! The lobes of a model: the directions in which it reflects most, for importance sampling.
 //!
-//! They change how soon a picture under light with extent is free of noise, never what it becomes.
+//! They affect how fast a picture with lights with extent becomes free of noise, never the result.
 
 use std::f32::consts::PI;
 
@@ -8,64 +8,65 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::{equivalence::alpha_of_exponent, sampling};
 
-/// The most lobes of a model.
+/// Maximum number of lobes of a model.
 pub const MAX_LOBES: usize = 3;
 
-/// The smallest width of a GGX lobe, and the largest exponent, that are sampled.
+/// Minimum width of sampled GGX lobes; below, the maximum exponent of sampled power lobes.
 const NARROWEST: f32 = 1e-3;
 const STEEPEST: f32 = 1e6;
 
-/// The cosine of light to facet at which shares of lobes compare reflectances: lobes are the same for all views, so it lies between
-/// the normal and grazing angles, at which surfaces become mirrors.
+/// The cosine between light and facet at which reflectances are compared for the shares of lobes: lobes are
+/// the same for all views, so it lies between normal incidence and grazing angles, at which surfaces become
+/// mirrors.
 pub const OBLIQUE: f32 = 0.25;
 
 /// A distribution of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
-    /// By the cosine to the normal.
+    /// Proportional to the cosine to the normal.
     Cosine,
-    /// Mirrored in facets whose normals are those that the viewer sees of a GGX surface of these widths along tangent and
-    /// bitangent: E. Heitz (2018), *Sampling the GGX Distribution of Visible Normals*; J. Dupuy, A. Benyoub (2023), *Sampling
-    /// Visible GGX Normals with Spherical Caps*.
+    /// Reflection in the visible facets of a GGX surface with these widths along tangent and bitangent: E.
+    /// Heitz (2018), *Sampling the GGX Distribution of Visible Normals*; J. Dupuy, A. Benyoub (2023),
+    /// *Sampling Visible GGX Normals with Spherical Caps*.
     Ggx {
-        /// Along the tangent.
+        /// Width along the tangent.
         alpha_x: f32,
-        /// Along the bitangent.
+        /// Width along the bitangent.
         alpha_y: f32,
     },
-    /// By a power of the cosine to the mirror direction of the viewer.
+    /// Proportional to a power of the cosine to the mirror direction of the viewer.
     Power {
-        /// The power.
+        /// The exponent.
         exponent: f32,
     },
 }
 
-/// The lobes of a model and their shares of the samples.
+/// The lobes of a model, with their shares of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobes([(Lobe, f32); MAX_LOBES]);
 
 impl Default for Lobes {
-    /// Cosine and one wide GGX: right for every model, if not fast for those that shine.
+    /// A cosine lobe and a wide GGX lobe: correct for every model, if not efficient for glossy ones.
     fn default() -> Self {
         Self::new(&[(Lobe::Cosine, 0.5), (Lobe::ggx(0.4), 0.5)])
     }
 }
 
 impl Lobe {
-    /// A GGX lobe that is as wide in all directions.
+    /// A GGX lobe of equal width in all directions.
     #[must_use]
     pub fn ggx(alpha: f32) -> Self {
         Self::Ggx { alpha_x: alpha, alpha_y: alpha }
     }
 
-    /// A GGX lobe with the widths along tangent and bitangent.
+    /// A GGX lobe with these widths along tangent and bitangent.
     #[must_use]
     pub fn wide(alpha: Vec2) -> Self {
         Self::Ggx { alpha_x: alpha.x, alpha_y: alpha.y }
     }
 
-    /// A GGX lobe about as wide as the part of the generalised distribution (GTR) that has most of its light: for γ below 2, whose
-    /// tails are longer, it is wider, above it is narrower.
+    /// A GGX lobe about as wide as the brightest part of the generalised distribution (GTR): wider for γ
+    /// below 2, where the tails are longer, and narrower above.
     #[must_use]
     pub fn of_gtr(alpha: Vec2, gamma: f32) -> Self {
         let same = |alpha: f32| {
@@ -74,13 +75,14 @@ impl Lobe {
         Self::wide(alpha.map(same))
     }
 
-    /// A GGX lobe about as wide as that of half vectors by a power of the cosine, with exponents along tangent and bitangent.
+    /// A GGX lobe about as wide as a lobe of half vectors by a power of the cosine, with exponents along
+    /// tangent and bitangent.
     #[must_use]
     pub fn of_half_vectors(along: f32, across: f32) -> Self {
         Self::wide(Vec2::new(along, across).map(alpha_of_exponent))
     }
 
-    /// As shaders have it: its kind, its numbers.
+    /// The kind and the numbers, in the shaders' layout.
     fn row(self) -> [f32; 3] {
         match self {
             Self::Cosine => [0.0, 0.0, 0.0],
@@ -89,7 +91,7 @@ impl Lobe {
         }
     }
 
-    /// The same within the limits of arithmetic.
+    /// The lobe within the limits of arithmetic.
     fn clamped(self) -> Self {
         let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
         match self {
@@ -124,7 +126,7 @@ impl Lobe {
         }
     }
 
-    /// The density per solid angle of a direction in the local frame.
+    /// The density per solid angle for a direction in the local frame.
     fn pdf(self, l: Vec3, v: Vec3) -> f32 {
         match self {
             Self::Cosine => l.z.max(0.0) / PI,
@@ -152,8 +154,8 @@ impl Lobe {
 }
 
 impl Lobes {
-    /// Some lobes, at most [`MAX_LOBES`], with weights of any sum: the brighter, the more. Weights that are negative or no
-    /// numbers count as zero; without any, the default.
+    /// At most [`MAX_LOBES`] lobes, with weights of any sum: brighter lobes have larger weights. Negative
+    /// weights and NaN count as zero; if none is positive, returns the default.
     #[must_use]
     pub fn new(lobes: &[(Lobe, f32)]) -> Self {
         let mut out = [(Lobe::Cosine, 0.0); MAX_LOBES];
@@ -170,21 +172,22 @@ impl Lobes {
         Self(out)
     }
 
-    /// The cosine alone, for checks.
+    /// The cosine lobe alone, for checks.
     #[must_use]
     pub fn cosine() -> Self {
         Self::new(&[(Lobe::Cosine, 1.0)])
     }
 
-    /// One diffuse and one specular lobe with the reflectances of both; of mirrors that depend on the angle, that at
+    /// One diffuse and one specular lobe with their reflectances; where the latter depends on the angle, at
     /// [`OBLIQUE`].
     #[must_use]
     pub fn diffuse_and(specular: Lobe, diffuse: Vec3, reflectance: Vec3) -> Self {
         Self::coated((specular, 0.0), specular, diffuse, reflectance)
     }
 
-    /// The same below a coat, with its lobe and reflectance. Body and base get at least an eighth of the samples, so that no
-    /// direction is missed where the others are dark or the angle is another.
+    /// The lobes of a coated surface, with the coat's lobe and reflectance. Diffuse and base lobes get at
+    /// least an eighth of the samples each, so that no direction is missed where the others are dark or the
+    /// angle differs.
     #[must_use]
     pub fn coated(coat: (Lobe, f32), base: Lobe, diffuse: Vec3, reflectance: Vec3) -> Self {
         let (diffuse, reflectance) = (diffuse.element_sum() / 3.0, reflectance.element_sum() / 3.0);
@@ -192,20 +195,22 @@ impl Lobes {
         Self::new(&[(Lobe::Cosine, diffuse.max(least)), (base, reflectance.max(least)), coat])
     }
 
-    /// The lobes with their shares, of which the sum is 1.
+    /// The lobes with their shares, which sum to 1.
     #[must_use]
     pub fn all(&self) -> &[(Lobe, f32); MAX_LOBES] {
         &self.0
     }
 
-    /// True if none is wider along the tangent than across. They are sampled in the frame of the normal alone, so that a tangent that
-    /// is of no use to the model, and that a renderer may leave out, changes no sample.
+    /// True if no lobe has different widths along and across the tangent. Such lobes are sampled in the frame
+    /// of the normal alone, so that samples do not depend on a tangent that the model does not use, and that
+    /// a renderer may omit.
     #[must_use]
     pub fn are_isotropic(&self) -> bool {
         self.0.iter().all(|(lobe, _)| !matches!(lobe, Lobe::Ggx { alpha_x, alpha_y } if alpha_x != alpha_y))
     }
 
-    /// As shaders have them: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its share.
+    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its
+    /// share.
     #[must_use]
     pub fn rows(&self) -> [Vec4; MAX_LOBES] {
         self.0.map(|(lobe, share)| {
@@ -214,20 +219,21 @@ impl Lobes {
         })
     }
 
-    /// The same as bytes.
+    /// The rows as bytes.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         self.rows().iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
     }
 
-    /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may lie below the surface.
+    /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may be below
+    /// the surface.
     #[must_use]
     pub fn sample(&self, u: Vec2, v: Vec3) -> Vec3 {
         let v = above(v);
         let mut x = u.x;
         for (i, (lobe, share)) in self.0.iter().enumerate() {
             if x < *share || i + 1 == MAX_LOBES {
-                // The rest of the number is as evenly spread as the whole.
+                // The rest of the number is uniformly distributed too.
                 let rest = if *share > 0.0 { (x / share).min(BELOW_ONE) } else { 0.5 };
                 return lobe.sample(Vec2::new(rest, u.y), v);
             }
@@ -236,7 +242,7 @@ impl Lobes {
         Vec3::Z
     }
 
-    /// The density per solid angle at which [`sample`](Self::sample) gives a direction.
+    /// The density per solid angle with which [`sample`](Self::sample) returns a direction.
     #[must_use]
     pub fn pdf(&self, l: Vec3, v: Vec3) -> f32 {
         let v = above(v);
@@ -247,7 +253,7 @@ impl Lobes {
 /// The largest number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// A viewer above the surface: at the horizon, rounding may have put it below.
+/// A viewer above the surface: at the horizon, rounding may have moved it below.
 fn above(v: Vec3) -> Vec3 {
     if v.z >= 1e-4 { v } else { Vec3::new(v.x, v.y, 1e-4).normalize() }
 }
@@ -272,8 +278,8 @@ mod tests {
 
     const VIEWS: [(f64, f64); 4] = [(0.0, 0.0), (40.0, 70.0), (75.0, 200.0), (89.0, 10.0)];
 
-    /// Chi-squared of samples against a density, over boxes of equal solid angle, and the number of boxes that count. The
-    /// density of a box is the mean over its inner points.
+    /// The chi-squared statistic of samples against a density, over boxes of equal solid angle, and the
+    /// number of boxes that count. The density of a box is the mean over interior points.
     fn chi_squared(sample: impl Fn(Vec2) -> Vec3, pdf: impl Fn(Vec3) -> f32) -> (f64, f64) {
         const ROWS: usize = 32;
         const COLUMNS: usize = 64;
@@ -281,7 +287,7 @@ mod tests {
         let count = 1 << 17;
         let mut found = vec![0.0f64; ROWS * COLUMNS];
         for i in 0..count {
-            // Plain random numbers, as those of a sequence are spread too evenly for the test.
+            // Plain random numbers, since a sequence is too evenly distributed for the test.
             let random = |k: u32| (crate::optics::sequence::hash(2 * i + k) >> 8) as f32 / (1 << 24) as f32;
             let l = sample(Vec2::new(random(0), random(1)));
             let row = ((0.5 + 0.5 * l.z) * ROWS as f32).clamp(0.0, ROWS as f32 - 1.0) as usize;
@@ -304,7 +310,7 @@ mod tests {
             }
             let solid_angle = 4.0 * std::f64::consts::PI / (ROWS * COLUMNS) as f64;
             let expected = mean / (FINE * FINE) as f64 * solid_angle * f64::from(count);
-            // Boxes of few samples count together.
+            // Boxes with few samples are merged.
             if expected < 20.0 {
                 rest[0] += found;
                 rest[1] += expected;
@@ -320,7 +326,8 @@ mod tests {
         (sum, boxes)
     }
 
-    /// True if chi-squared is what chance gives, or the little more of narrow lobes whose boxes the mean of points misses.
+    /// True if chi-squared is as expected by chance, or slightly higher, for narrow lobes whose boxes are not
+    /// captured by the mean over points.
     fn passes((sum, boxes): (f64, f64)) -> bool {
         sum < boxes + 6.0 * (2.0 * boxes).sqrt() + 10.0
     }
@@ -350,7 +357,7 @@ mod tests {
 
     #[test]
     fn weighted_by_their_density_samples_integrate_anything() {
-        // ∫ cos θ dω over the hemisphere is π, by whatever lobe that reaches all of it.
+        // ∫ cos θ dω over the hemisphere is π, with any lobe that covers all of it.
         for lobes in [Lobes::cosine(), Lobes::default(), all()[7]] {
             for (theta, phi) in VIEWS {
                 let v = direction(theta, phi);

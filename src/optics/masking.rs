@@ -1,4 +1,5 @@
-//! Shadowing and masking of microfacets: the part of the facets along the half vector that is both lit and seen.
+//! Shadowing and masking of microfacets: the fraction of the facets along the half vector that is both lit
+//! and visible.
 //!
 //! Twin: `assets/shaders/optics/masking.wgsl`. Every function gives the **visibility**
 //! `V = G / (4 (n·l) (n·v))`, so that a microfacet BRDF is `D V F`: at grazing angles the cosines cancel

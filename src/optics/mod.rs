@@ -26,23 +26,23 @@ pub use geometry::Frame;
 
 use glam::Vec3;
 
-/// The answer of a reflection model to one light of unit intensity, split into the three terms of
+/// The response of a reflection model to one light of unit intensity, split into the three terms of
 /// the equation.
 ///
 /// The sum is the **response** `π · f_r(l, v) · cos θ_i` (dimensionless, linear RGB); the ambient
-/// term is the part that does not depend on any direction (`I_a`, CA DD3).
+/// term does not depend on any direction (`I_a`, CA DD3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Terms {
-    /// The direction-free part, `I_a` (CA DD3).
+    /// The term without a direction, `I_a` (CA DD3).
     pub ambient: Vec3,
-    /// The part scattered in all directions, `I_d` (CA DD4).
+    /// The term scattered in all directions, `I_d` (CA DD4).
     pub diffuse: Vec3,
-    /// The part gathered around the mirror direction, `I_s` (CA DD5).
+    /// The term concentrated around the mirror direction, `I_s` (CA DD5).
     pub specular: Vec3,
 }
 
 impl Terms {
-    /// The sum of the terms that `selection` keeps.
+    /// The sum of the selected terms.
     #[must_use]
     pub fn select(self, selection: TermSelection) -> Vec3 {
         match selection {
@@ -54,7 +54,7 @@ impl Terms {
     }
 }
 
-/// The terms of the equation that are shown: a teaching aid to see each part of `I = I_a + I_d + I_s` alone.
+/// The displayed terms of the equation: a teaching aid that shows each part of `I = I_a + I_d + I_s` alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TermSelection {
     /// The whole equation.
@@ -69,10 +69,10 @@ pub enum TermSelection {
 }
 
 impl TermSelection {
-    /// Every choice, in the order of presentation.
+    /// All variants, in display order.
     pub const ALL: [Self; 4] = [Self::All, Self::Ambient, Self::Diffuse, Self::Specular];
 
-    /// The name on the command line.
+    /// Name on the command line.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -89,7 +89,7 @@ impl TermSelection {
         Self::ALL.into_iter().find(|terms| terms.id() == id)
     }
 
-    /// Its number in shaders (`TERM_…` in `lights.wgsl`).
+    /// Number of the selection in shaders (`TERM_…` in `lights.wgsl`).
     #[must_use]
     pub fn code(self) -> u32 {
         match self {

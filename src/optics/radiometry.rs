@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use glam::Vec3;
 
-/// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count
-/// as (1 mm)². Only a surface that touches the light can notice.
+/// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count as (1
+/// mm)². Only visible on a surface that touches the light.
 pub const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
 
 /// The intensity that reaches a point at distance `d` from a point source, `1 / d²` (CA DD7; exact:
@@ -55,12 +55,12 @@ pub fn cone_solid_angle(cone_angle: f32, penumbra: f32) -> f64 {
     2.0 * PI * (inner + outer)
 }
 
-/// The light of one light source as it arrives at a point from one direction, its colour included.
+/// The light that arrives at a point from one direction of one light source, including its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Arriving {
     /// Unit vector from the point to the light.
     pub l: Vec3,
-    /// Its intensity at the point, times its colour.
+    /// The intensity at the point, times the colour.
     pub light: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! Directions chosen at random, and their probability densities per solid angle.
+//! Random directions, and their probability densities per solid angle.
 
 use std::f32::consts::PI;
 
@@ -6,8 +6,9 @@ use glam::{Vec2, Vec3};
 
 use super::geometry::Frame;
 
-/// The angle of a cosine in [−1, 1], radians: M. Abramowitz, I. Stegun (1964), *Handbook of Mathematical Functions*,
-/// 4.4.46, off by at most 2e-8 before rounding. The shaders have the same polynomial, as drivers' functions are coarser.
+/// The angle of a cosine in [−1, 1], in radians: M. Abramowitz, I. Stegun (1964), *Handbook of Mathematical
+/// Functions*, 4.4.46, with an error of at most 2e-8 before rounding. The shaders use the same polynomial, as
+/// the functions of drivers are less accurate.
 #[must_use]
 pub fn arc_cosine(cosine: f32) -> f32 {
     const BY_POWER: [f32; 8] = [
@@ -25,8 +26,8 @@ pub fn arc_cosine(cosine: f32) -> f32 {
     if cosine < 0.0 { PI - angle } else { angle }
 }
 
-/// A point of the unit disc for one of the unit square, of constant density: P. Shirley, K. Chiu (1997), *A Low Distortion Map
-/// Between Disk and Square*.
+/// Maps a point of the unit square to the unit disc, with constant density: P. Shirley, K. Chiu (1997), *A
+/// Low Distortion Map Between Disk and Square*.
 #[must_use]
 pub fn disc(u: Vec2) -> Vec2 {
     let [a, b] = (2.0 * u - Vec2::ONE).to_array();
@@ -40,15 +41,16 @@ pub fn disc(u: Vec2) -> Vec2 {
     radius * Vec2::new(angle.cos(), angle.sin())
 }
 
-/// A direction about z whose density is `cos θ / π`: a point of the disc, raised to the hemisphere (N. Malley).
+/// A direction about z with the density `cos θ / π`: a point of the disc, projected up to the hemisphere (N.
+/// Malley).
 #[must_use]
 pub fn cosine(u: Vec2) -> Vec3 {
     let d = disc(u);
     d.extend((1.0 - d.length_squared()).max(0.0).sqrt())
 }
 
-/// A direction within a cone about z, of constant density, for 1 minus the cosine of the cone's half angle: small cones keep
-/// their digits. The density is `1 / (2π · rise)`.
+/// A direction within a cone about z, with constant density; `rise` is 1 minus the cosine of the cone's half
+/// angle, so that small cones keep their digits. The density is `1 / (2π · rise)`.
 #[must_use]
 pub fn cone(u: Vec2, rise: f32) -> Vec3 {
     let down = u.x * rise;
@@ -57,43 +59,45 @@ pub fn cone(u: Vec2, rise: f32) -> Vec3 {
     Vec3::new(sine * phi.cos(), sine * phi.sin(), 1.0 - down)
 }
 
-/// A direction of the frame about a unit vector.
+/// A direction in the frame about a unit vector.
 #[must_use]
 pub fn about(axis: Vec3, local: Vec3) -> Vec3 {
     let frame = Frame::from_normal(axis);
     local.x * frame.t + local.y * frame.b + local.z * axis
 }
 
-/// A direction of the whole sphere, of the density `1 / 4π`.
+/// A direction on the whole sphere, with the density `1 / 4π`.
 #[must_use]
 pub fn sphere(u: Vec2) -> Vec3 {
     cone(u, 2.0)
 }
 
-/// A rectangle seen from a point, for sampling by solid angle: C. Ureña, M. Fajardo, A. King (2013), *An Area-Preserving
-/// Parametrization for Spherical Rectangles*. Where it covers little of the sphere, the differences of angles lose their
-/// digits, and its area is sampled instead.
+/// A rectangle seen from a point, for sampling by solid angle: C. Ureña, M. Fajardo, A. King (2013), *An
+/// Area-Preserving Parametrization for Spherical Rectangles*. If it covers little of the sphere, the
+/// differences of angles lose digits, and its area is sampled instead.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalRectangle {
     x: Vec3,
     y: Vec3,
     z: Vec3,
-    /// The corner of the smallest x and y, and the opposite one, in the frame of the rectangle as seen from the point.
+    /// The corner with the smallest x and y, and the opposite one, in the frame of the rectangle relative to
+    /// the point.
     low: Vec2,
     high: Vec2,
     depth: f32,
     b0: f32,
     b1: f32,
     k: f32,
-    /// Its solid angle; zero if its area is to be sampled.
+    /// Solid angle; zero if the area is sampled.
     solid_angle: f32,
 }
 
-/// Rectangles of a smaller solid angle are sampled by area.
+/// Solid angle below which rectangles are sampled by area.
 const SMALLEST: f32 = 0.02;
 
 impl SphericalRectangle {
-    /// A rectangle with its middle as seen from the point, unit vectors along its sides, and the halves of its sides.
+    /// A rectangle with its centre relative to the point, unit vectors along its sides, and half their
+    /// lengths.
     #[must_use]
     pub fn new(middle: Vec3, [x, y]: [Vec3; 2], half: Vec2) -> Self {
         let mut z = x.cross(y);
@@ -104,7 +108,7 @@ impl SphericalRectangle {
             (z, depth) = (-z, -depth);
         }
         let (low, high) = (at - half, at + half);
-        // The z of the normals of the planes through the point and a side: of the bottom, the right, the top and the left one.
+        // The z of the normals of the planes through the point and a side: bottom, right, top and left.
         let slope = |along: f32| along / (depth * depth + along * along).sqrt();
         let [n0, n1, n2, n3] = [-slope(low.y), slope(high.x), slope(high.y), -slope(low.x)];
         let corner = |a: f32, b: f32| arc_cosine(-a * b);
@@ -126,7 +130,7 @@ impl SphericalRectangle {
         }
     }
 
-    /// The point of the rectangle for one of the unit square, as seen from the point.
+    /// The point of the rectangle, relative to the observer, for a point of the unit square.
     #[must_use]
     pub fn sample(&self, u: Vec2) -> Vec3 {
         let (x, y) = if self.solid_angle == 0.0 {
@@ -151,7 +155,7 @@ impl SphericalRectangle {
         (x, y.clamp(self.low.y, self.high.y))
     }
 
-    /// The density per solid angle at a point of the rectangle, as seen from the point.
+    /// The density per solid angle at a point of the rectangle, relative to the observer.
     #[must_use]
     pub fn pdf(&self, at: Vec3) -> f32 {
         if self.solid_angle > 0.0 {
@@ -162,8 +166,8 @@ impl SphericalRectangle {
     }
 }
 
-/// The density per solid angle of a point of a surface that is sampled by area, as seen from elsewhere: `d² / (A cos θ)`; zero
-/// where the surface is seen edge-on.
+/// The density per solid angle for a point of a surface that is sampled by area, as seen from elsewhere: `d²
+/// / (A cos θ)`; zero where the surface is seen edge-on.
 #[must_use]
 pub fn area_pdf(at: Vec3, normal: Vec3, area: f32) -> f32 {
     let squared = at.length_squared();
@@ -172,11 +176,12 @@ pub fn area_pdf(at: Vec3, normal: Vec3, area: f32) -> f32 {
     if facing > 1e-12 * squared { squared * squared.sqrt() / facing } else { 0.0 }
 }
 
-/// The weight of a direction that one of two ways of sampling chose: the power heuristic, E. Veach, L. Guibas (1995),
-/// *Optimally Combining Sampling Techniques for Monte Carlo Rendering*. Zero if the way cannot choose it.
+/// The weight of a direction chosen by one of two sampling techniques: the power heuristic, E. Veach, L.
+/// Guibas (1995), *Optimally Combining Sampling Techniques for Monte Carlo Rendering*. Zero if the technique
+/// cannot choose it.
 #[must_use]
 pub fn power_heuristic(own: f32, other: f32) -> f32 {
-    // Divided first, as squares of large densities overflow.
+    // Divided first, since squares of large densities overflow.
     if own <= 0.0 {
         return 0.0;
     }
@@ -197,7 +202,7 @@ mod tests {
         }
     }
 
-    /// The mean over a sequence of samples of what they are worth.
+    /// The mean of a function over a sequence of samples.
     fn mean(count: u32, f: impl Fn(Vec2) -> f64) -> f64 {
         let sequence = Sequence::new(3, 1);
         (0..count).map(|i| f(sequence.point(i))).sum::<f64>() / f64::from(count)
@@ -261,7 +266,7 @@ mod tests {
                 let same = (by_samples.abs() - exact.abs()).abs();
                 assert!(same < 2e-3 * exact.abs().max(0.1), "{middle} {axis}: {by_samples} {exact}");
             }
-            // The wrong twin: as if all points were equally likely by area.
+            // The wrong twin: all points equally likely by area.
             if exact > 0.1 {
                 let area = 4.0 * half.x * half.y;
                 let wrong = mean(count, |u| {

@@ -1,5 +1,5 @@
-//! The points at which light with extent is sampled: Sobol' points, Owen-scrambled by hashing, in whole-number arithmetic
-//! alone, so that every renderer has the same ones.
+//! The points at which light with extent is sampled: Sobol' points, Owen-scrambled by hashing, in integer
+//! arithmetic only, so that all renderers use the same points.
 //!
 //! Sources: I. Sobol' (1967), *On the Distribution of Points in a Cube and the Approximate Evaluation of Integrals*;
 //! A. Owen (1995), *Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences*; B. Burley (2020), *Practical Hash-based Owen
@@ -8,11 +8,11 @@
 
 use glam::Vec2;
 
-/// The most points of a sequence; after them it begins again.
+/// Maximum number of points in a sequence, which then repeats.
 pub const MAX_POINTS: u32 = 1 << 20;
 
-/// A well-mixed number of another one: the output permutation of PCG (M. O'Neill 2014), as used by M. Jarzynski and
-/// M. Olano (2020), *Hash Functions for GPU Rendering*.
+/// A well-mixed hash: the output permutation of PCG (M. O'Neill 2014), as used by M. Jarzynski and M. Olano
+/// (2020), *Hash Functions for GPU Rendering*.
 #[must_use]
 pub fn hash(x: u32) -> u32 {
     let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
@@ -51,12 +51,13 @@ fn second(index: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// A number from 0 to below 1, from the upper bits of a whole one.
+/// A number in [0, 1) from the upper bits of an integer.
 fn unit(x: u32) -> f32 {
     (x >> 8) as f32 / (1 << 24) as f32
 }
 
-/// Points of the unit square, one sequence for each seed. Any 2ᵏ points from a multiple of 2ᵏ on are evenly spread.
+/// Points of the unit square, one sequence for each seed. Any 2ᵏ points starting at a multiple of 2ᵏ are
+/// evenly distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sequence {
     order: u32,
@@ -65,8 +66,8 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The sequence with a number for a pixel or vertex with a seed: sequence 0 chooses directions of lobes, those from 1
-    /// on belong to the lights.
+    /// The sequence with this number, for a pixel or vertex with a seed: sequence 0 chooses directions of
+    /// lobes, those from 1 on belong to the lights.
     #[must_use]
     pub fn new(seed: u32, number: u32) -> Self {
         let order = hash(hash(seed) ^ number);
@@ -74,7 +75,7 @@ impl Sequence {
         Self { order, across, down: hash(across) }
     }
 
-    /// The point with that index; indices count modulo [`MAX_POINTS`].
+    /// The point with this index, modulo [`MAX_POINTS`].
     #[must_use]
     pub fn point(self, index: u32) -> Vec2 {
         let i = scramble(index % MAX_POINTS, self.order) % MAX_POINTS;
@@ -86,7 +87,7 @@ impl Sequence {
 mod tests {
     use super::*;
 
-    /// Sobol's second dimension by its direction numbers, as the literature has it.
+    /// Sobol's second dimension by its direction numbers, as in the literature.
     fn by_direction_numbers(index: u32) -> u32 {
         let (mut x, mut v) = (0, 1u32 << 31);
         for bit in 0..32 {
@@ -105,7 +106,7 @@ mod tests {
         }
     }
 
-    /// The number of boxes of an area of 2⁻ᵏ, of all shapes, that have not exactly one of 2ᵏ points.
+    /// The number of boxes with an area of 2⁻ᵏ, of all shapes, that do not contain exactly one of 2ᵏ points.
     fn uneven(points: &[Vec2]) -> usize {
         let k = points.len().ilog2();
         let mut uneven = 0;
@@ -129,7 +130,7 @@ mod tests {
                 assert_eq!(uneven(&points), 0, "seed {seed}, {count} points from {first} on");
             }
         }
-        // The wrong twin: an index that begins between two blocks.
+        // The wrong twin: a start between two blocks.
         let off: Vec<_> = (8..8 + 64).map(|i| Sequence::new(1, 0).point(i)).collect();
         assert!(uneven(&off) > 0);
         // And plain random numbers.

@@ -4,7 +4,7 @@ use std::io::Read;
 
 use glam::Vec3;
 
-/// A function from [0, 1]³ to colours, known at the points of a grid and interpolated between them.
+/// A function from [0, 1]³ to colours, given at the points of a grid and interpolated between them.
 pub struct Table {
     /// Points along each axis, at least 2.
     size: usize,

@@ -47,8 +47,8 @@ pub fn black_body_xyz(kelvin: f64) -> DVec3 {
 
 /// The linear Rec. 709 colour of a black body of a temperature in kelvin, clamped to the legal range.
 ///
-/// Colours outside the gamut are clamped (blue, below about 1900 K), and the largest channel is 1: the colour as a display
-/// shows it. Light of this colour has [`light_of`] it.
+/// Colours outside the gamut are clamped (blue, below about 1900 K), and the largest channel is 1: the colour
+/// as a display shows it. [`light_of`] gives light of this colour.
 #[must_use]
 pub fn black_body(kelvin: f32) -> Vec3 {
     let kelvin = if kelvin.is_nan() { WHITE_TEMPERATURE } else { kelvin };
@@ -69,7 +69,7 @@ pub fn light_of(colour: Vec3) -> Vec3 {
     if luminance > 0.0 { colour / luminance } else { Vec3::ZERO }
 }
 
-/// The same as [`black_body`], sRGB-encoded in eight bits.
+/// The colour of [`black_body`], sRGB-encoded in eight bits.
 #[must_use]
 pub fn black_body_rgb8(kelvin: f32) -> [u8; 3] {
     black_body(kelvin).to_array().map(srgb_encode8)
@@ -96,8 +96,8 @@ mod tests {
         [xyz.x / sum, xyz.y / sum]
     }
 
-    /// Chromaticities of black bodies from tables: CIE illuminant A at 2856 K, and G. Wyszecki and
-    /// W. S. Stiles (1982), *Color Science*.
+    /// Chromaticities of black bodies from tables: CIE illuminant A at 2856 K, and G. Wyszecki and W. S.
+    /// Stiles (1982), *Color Science*.
     const PUBLISHED: [(f64, [f64; 2]); 4] = [
         (2000.0, [0.5267, 0.4133]),
         (2856.0, [0.4476, 0.4074]),

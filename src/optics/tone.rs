@@ -42,7 +42,7 @@ pub enum ToneMapping {
     KhronosPbrNeutral,
 }
 
-/// The names and description of a choice.
+/// The names and the description of a variant.
 struct About {
     id: &'static str,
     name: &'static str,
@@ -51,7 +51,7 @@ struct About {
 }
 
 impl ToneMapping {
-    /// Every choice, in the order of presentation.
+    /// All variants, in display order.
     pub const ALL: [Self; 8] = [
         Self::None,
         Self::Reinhard,
@@ -116,25 +116,25 @@ impl ToneMapping {
         }
     }
 
-    /// The name in scene files and on the command line.
+    /// Name in scene files and on the command line.
     #[must_use]
     pub fn id(self) -> &'static str {
         self.about().id
     }
 
-    /// The choice with that name.
+    /// The variant with this name.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|t| t.id() == id)
     }
 
-    /// The name shown to people.
+    /// Display name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.about().name
     }
 
-    /// The author and year; empty for no curve.
+    /// Author and year; empty without a curve.
     #[must_use]
     pub fn author(self) -> &'static str {
         self.about().author
@@ -146,7 +146,7 @@ impl ToneMapping {
         self.about().summary
     }
 
-    /// True if it needs a table of colours; the others are formulas.
+    /// True if the curve needs a table of colours; the others are formulas.
     #[must_use]
     pub fn is_table(self) -> bool {
         matches!(self, Self::AgX | Self::TonyMcMapface | Self::BlenderFilmic)
@@ -182,7 +182,7 @@ static TONY_MC_MAPFACE: LazyLock<Table> =
 static BLENDER_FILMIC: LazyLock<Table> =
     LazyLock::new(|| table(include_bytes!("../../assets/tone/blender_filmic.ktx2")));
 
-/// A table that is part of the program.
+/// A table built into the program.
 #[allow(clippy::expect_used)]
 fn table(file: &[u8]) -> Table {
     Table::from_ktx2(file).expect("the tables in assets/tone are complete; a test reads them")

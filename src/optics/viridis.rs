@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// Colours of viridis at equal distances: S. van der Walt, N. Smith (2015), *mpl-colormaps*, CC0. Lightness grows evenly,
-/// which greyscale and every kind of colour vision show.
+/// Equidistant colours of viridis: S. van der Walt, N. Smith (2015), *mpl-colormaps*, CC0. Lightness
+/// increases evenly, also in greyscale and with every kind of colour vision.
 pub const VIRIDIS: [[u8; 3]; 33] = [
     [68, 1, 84],
     [71, 13, 96],
@@ -40,7 +40,7 @@ pub const VIRIDIS: [[u8; 3]; 33] = [
     [253, 231, 37],
 ];
 
-/// The colour at a place from 0 to 1, as display codes from 0 to 1; what lies beyond counts as the end.
+/// The colour at a position from 0 to 1, as display codes from 0 to 1; positions beyond are clamped.
 #[must_use]
 pub fn viridis(place: f32) -> Vec3 {
     let at = place.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f32;

@@ -1,4 +1,5 @@
-//! Declarations of parameters, step by step: another field of [`Parameter`] changes none of them.
+//! Builder methods for declarations of parameters: adding a field to [`Parameter`] does not break existing
+//! declarations.
 
 use std::ops::RangeInclusive;
 
@@ -81,25 +82,25 @@ impl Parameter {
         Self::new(name, ParameterKind::File { format, default })
     }
 
-    /// The same with a symbol for equations.
+    /// Sets the symbol for equations.
     #[must_use]
     pub const fn symbol(self, symbol: &'static str) -> Self {
         Self { symbol, ..self }
     }
 
-    /// The same with a label for people.
+    /// Sets the display label.
     #[must_use]
     pub const fn label(self, label: &'static str) -> Self {
         Self { label, ..self }
     }
 
-    /// The same with a unit.
+    /// Sets the unit.
     #[must_use]
     pub const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same with a sentence about its effect.
+    /// Sets a sentence about the parameter's effect.
     #[must_use]
     pub const fn help(self, help: &'static str) -> Self {
         Self { help, ..self }

@@ -1,5 +1,5 @@
-//! Structs of declared parameters as components of entities, without their types: light types and object types are
-//! known by lists.
+//! Parameter structs as components of entities, without their types: light types and object types are known
+//! by lists.
 
 use std::{any::type_name, fmt};
 
@@ -20,31 +20,31 @@ use super::{
 };
 use crate::optics::colour::Encoding;
 
-/// The encoding of colours in components: they are linear, however a scene is displayed.
+/// The encoding of colours in components: they are linear, whatever the display settings.
 const ENCODING: Encoding = Encoding::Srgb;
 
-/// Finds the entities on which a component changed since the last run of the exclusive system that asks.
+/// Finds the entities on which a component changed since the last run of the exclusive system that calls it.
 pub type Watch = Box<dyn FnMut(&mut World, &mut Vec<Entity>) + Send + Sync>;
 
-/// A struct of parameters as a component, without its type.
+/// A parameter struct as a component, without its type.
 #[derive(Clone, Copy)]
 pub struct TypeComponent {
     /// Name of the struct.
     pub name: &'static str,
     parameters: &'static [Parameter],
-    /// Makes the component known to a world and its tools.
+    /// Registers the component with a world and its tools.
     pub register: fn(&mut World) -> ComponentId,
     /// Finds changes of the component.
     pub watch: fn() -> Watch,
     /// Gives an entity the component with these parameters.
     pub insert: fn(&mut EntityWorldMut, &Values),
-    /// Takes the component from an entity.
+    /// Removes the component from an entity.
     pub remove: fn(&mut EntityWorldMut),
     read: fn(&EntityRef) -> Option<Values>,
 }
 
 impl TypeComponent {
-    /// The component that a struct of parameters is.
+    /// The component of a parameter struct.
     #[must_use]
     pub fn of<T: ParameterSet + Component + GetTypeRegistration>() -> Self {
         Self {
@@ -75,10 +75,12 @@ impl TypeComponent {
         }
     }
 
-    /// Puts the parameters of an entity's component into others. Where both mean the same, the others stay as written.
+    /// Copies the parameters of an entity's component into others. Where both mean the same, the others stay
+    /// as written.
     ///
     /// # Errors
-    /// A colour is none, or an index is that of no choice: the others have the nearest colour, and the default choice.
+    /// Returns an error if a colour or the index of a choice is invalid: the others then get the nearest
+    /// colour, and the default choice.
     pub fn read(&self, entity: &EntityRef, into: &mut Values) -> Result<(), String> {
         let Some(Values(mut values)) = (self.read)(entity) else { return Ok(()) };
         let mut refused = Ok(());

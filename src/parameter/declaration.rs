@@ -20,11 +20,11 @@ pub struct Parameter {
     pub label: &'static str,
     /// The unit, empty for dimensionless numbers.
     pub unit: &'static str,
-    /// Its effect, one sentence, for tooltips and manuals.
+    /// One sentence about the effect, for tooltips and manuals.
     pub help: &'static str,
     /// Type, range and default.
     pub kind: ParameterKind,
-    /// The condition for its use; `None` if it is always used. See [`Parameter::used_when`].
+    /// The condition under which the parameter is used; `None` if always. See [`Parameter::used_when`].
     pub used_when: Option<UsedWhen>,
 }
 
@@ -33,7 +33,7 @@ pub struct Parameter {
 pub struct UsedWhen {
     /// The name of the other parameter.
     pub parameter: &'static str,
-    /// The names of its choices.
+    /// The names of the required choices.
     pub choices: &'static [&'static str],
 }
 
@@ -77,14 +77,15 @@ pub enum ParameterKind {
         /// The value if the scene gives none.
         default: [f32; 3],
     },
-    /// One of several named choices. A [flag](Self::flag) is one whose choices are `false` and `true`.
+    /// One of several named choices. A [flag](Self::flag) is a choice between `false` and `true`.
     Choice {
         /// The choices: name in files, name in the window.
         options: &'static [(&'static str, &'static str)],
         /// Index of the default.
         default: usize,
     },
-    /// A file of numbers, by its name relative to the folder of the scene file. Light types and object types may have such parameters.
+    /// A file of numbers, given by its name relative to the folder of the scene file. Light types and object
+    /// types may have such parameters.
     File {
         /// The files that are legal.
         format: &'static FileFormat,
@@ -100,14 +101,14 @@ impl ParameterKind {
         Self::Choice { options: &[("false", "no"), ("true", "yes")], default: default as usize }
     }
 
-    /// True if its choices are those of a [flag](Self::flag).
+    /// True if the choices are those of a [flag](Self::flag).
     #[must_use]
     pub fn is_flag(&self) -> bool {
-        // The names in the window may be others.
+        // The names in the window may differ.
         matches!(self, Self::Choice { options: [("false", _), ("true", _)], .. })
     }
 
-    /// Its word in messages and in the declarations of custom models.
+    /// Name of the kind in messages and in the declarations of custom models.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -123,14 +124,14 @@ impl ParameterKind {
 }
 
 impl Parameter {
-    /// True if it is a [flag](ParameterKind::flag).
+    /// True for a [flag](ParameterKind::flag).
     #[must_use]
     pub fn is_flag(&self) -> bool {
         self.kind.is_flag()
     }
 
-    /// The difference that keeps two declarations from being one parameter of materials, in this one and in the other: the
-    /// type or the unit. Ranges and defaults may differ.
+    /// The difference in type or unit that prevents two declarations from being the same parameter of
+    /// materials, described for this declaration and for the other. Ranges and defaults may differ.
     #[must_use]
     pub fn clash(&self, other: &Self) -> Option<(String, String)> {
         if self.kind.name() != other.kind.name() {
@@ -141,8 +142,8 @@ impl Parameter {
         (self.unit != other.unit).then(|| (unit(self), unit(other)))
     }
 
-    /// The same parameter, used only if another parameter of the model has one of these choices and is itself used.
-    /// Otherwise its knob is disabled and says why.
+    /// The parameter, used only if another parameter of the model has one of these choices and is itself
+    /// used. Otherwise its control is disabled and gives the reason.
     #[must_use]
     pub const fn used_when(self, parameter: &'static str, choices: &'static [&'static str]) -> Self {
         Self { used_when: Some(UsedWhen { parameter, choices }), ..self }
@@ -161,7 +162,8 @@ impl Parameter {
         }
     }
 
-    /// Its default and the ends of its range, each once; all choices of a choice. For tests of what uses it.
+    /// The default and the ends of the range, each once; for a choice, all options. Useful in tests of code
+    /// that uses the parameter.
     #[must_use]
     pub fn ends(&self) -> Vec<Value> {
         let mut ends = vec![self.default_value()];
@@ -234,8 +236,8 @@ impl Parameter {
         }
     }
 
-    /// The nearest value that it allows; where there is no nearest one, since it must be greater than 0, the default. None
-    /// for a value of another type.
+    /// The nearest allowed value, or the default if there is no nearest one because the value must be greater
+    /// than 0. `None` for a value of another type.
     #[must_use]
     pub fn nearest(&self, value: &Value) -> Option<Value> {
         let nearest = match (&self.kind, value) {
@@ -259,7 +261,8 @@ impl Parameter {
         self.allows(&nearest).then_some(nearest)
     }
 
-    /// The nearest legal value to an angle in degrees, for which a whole turn more or less is the same.
+    /// The nearest legal value to an angle in degrees, where angles that differ by whole turns are
+    /// equivalent.
     #[must_use]
     pub fn nearest_angle(&self, degrees: f32) -> Option<Value> {
         let same = [0.0, -360.0, 360.0].map(|turn| Value::Number(degrees + turn));
@@ -267,7 +270,7 @@ impl Parameter {
         legal.or_else(|| self.nearest(&Value::Number(degrees)))
     }
 
-    /// The WGSL type of its field.
+    /// The WGSL type of the parameter's field.
     #[must_use]
     pub fn wgsl_type(&self) -> &'static str {
         match self.kind {

@@ -1,5 +1,5 @@
-//! Parameters that name a file: its numbers are read once for all that name it, and read again when it changes. They are
-//! read when somebody first asks for them, so that all files of a scene can be read at once, by [`read_all`].
+//! Parameters that name a file: its numbers are read once for all that name it, and read again when it
+//! changes. They are read on first use, so that all files of a scene can be read at once, by [`read_all`].
 
 use std::{
     borrow::Cow,
@@ -22,11 +22,11 @@ use crate::files::Shown as _;
 
 /// The files that a parameter may name, and how they are read.
 pub struct FileFormat {
-    /// Its name with an article, for messages: "an IES photometric file".
+    /// Name with an article, for messages: "an IES photometric file".
     pub name: &'static str,
     /// The extensions of its files, without the dot.
     pub extensions: &'static [&'static str],
-    /// Larger files are not read.
+    /// Maximum size; larger files are not read.
     pub max_bytes: u64,
     /// The numbers of a file, for renderers.
     pub read: fn(&[u8]) -> Result<Vec<f32>, FileProblem>,
@@ -55,7 +55,7 @@ impl fmt::Debug for FileFormat {
     }
 }
 
-/// A file that a scene names.
+/// A file named in a scene.
 #[derive(Clone, Reflect)]
 #[reflect(opaque)]
 #[reflect(Clone, Debug, PartialEq)]
@@ -65,11 +65,11 @@ pub struct NamedFile {
     content: Arc<Content>,
 }
 
-/// The content of a file, which all that name it share.
+/// The content of a file, shared by all that name it.
 struct Content {
-    /// The file; its bytes if it is part of the program.
+    /// The file, or its bytes if it is part of the program.
     source: Result<PathBuf, &'static [u8]>,
-    /// The folder of the scenes that name it, which it must not be outside of.
+    /// The folder of the scenes that name it, which must contain it.
     folder: PathBuf,
     format: &'static FileFormat,
     /// Set once it was read for the first time.
@@ -87,14 +87,14 @@ struct State {
     stamp: Option<files::Stamp>,
 }
 
-/// The numbers of a file, which all paths that lead to it share.
+/// The numbers of a file, shared by all paths that lead to it.
 struct Numbers {
     all: Arc<[f32]>,
-    /// Another one for every change of the numbers of any file.
+    /// Differs for every change of the numbers of any file.
     version: u64,
 }
 
-/// What tells files apart, whatever their paths: identity and format.
+/// Identifies files, whatever their paths: identity and format.
 type Key = (files::Identity, &'static str);
 
 /// The contents of files on disk that are in use, by path, by the folder of the scene and by format.
@@ -110,25 +110,26 @@ static CHANGES: AtomicU64 = AtomicU64::new(0);
 /// The files that [`read_all`] has read and is about to read.
 static READING: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
 
-/// Counts how often the numbers of any file became others.
+/// Number of changes of the numbers of any file.
 #[must_use]
 pub fn file_changes() -> u64 {
     CHANGES.load(Ordering::Relaxed)
 }
 
-/// The most bytes of all files that a scene names, each counted once, whatever leads to it. Twenty large models of 20 MiB
-/// are within it.
+/// Maximum size of all files named in a scene, in bytes, each counted once, whatever paths lead to it. Twenty
+/// large models of 20 MiB are within it.
 pub const MAX_FILES_BYTES: u64 = 512 << 20;
-/// The most numbers of all files that a scene names: 1 GiB in memory. Models in text have a third as many numbers as
-/// bytes, binary ones about as many; but a small file may show the same triangles often.
+/// Maximum number of values in all files named in a scene: 1 GiB in memory. Models in text have a third as
+/// many numbers as bytes, binary ones about as many; but a small file may show the same triangles often.
 pub const MAX_FILES_NUMBERS: usize = 256 << 20;
 
-/// Reads all files of a scene that were not read yet, as many at once as there are processors. A file that several names
-/// lead to is read once.
+/// Reads all files of a scene that were not read yet, in parallel on all processors. A file named in several
+/// ways is read once.
 ///
 /// # Errors
-/// If they have more than [`MAX_FILES_BYTES`] together, which is known before any is read, or more than
-/// [`MAX_FILES_NUMBERS`]: the rest is not read then. The message follows the scene: "names files of …".
+/// Returns an error if the files together have more than [`MAX_FILES_BYTES`], which is checked before any is
+/// read, or more than [`MAX_FILES_NUMBERS`]: the rest is then not read. The message follows the scene: "names
+/// files of …".
 pub fn read_all<'f>(files: impl Iterator<Item = &'f NamedFile>) -> Result<(), String> {
     read_within(files, MAX_FILES_BYTES, MAX_FILES_NUMBERS)
 }
@@ -193,8 +194,8 @@ pub fn files_read() -> [usize; 2] {
 }
 
 impl NamedFile {
-    /// The file of that name in the folder of a scene. If there is none, a shipped file may have that name. A file outside
-    /// the folder is not read, unless somebody chose it or all are allowed.
+    /// The file with this name in the folder of a scene. If it does not exist, a shipped file may have that
+    /// name. A file outside the folder is not read, unless the user chose it or all are allowed.
     #[must_use]
     pub fn named(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
         let path = folder.join(name);
@@ -236,7 +237,7 @@ impl NamedFile {
         Self { name: Cow::Borrowed(name), content: content.clone() }
     }
 
-    /// The same, of a file that somebody chose: it may be anywhere.
+    /// Like [`named`](Self::named), for a file chosen by the user, which may be anywhere.
     #[must_use]
     pub fn chosen(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
         outside::trusting(|| Self::named(name, folder, format))
@@ -248,13 +249,13 @@ impl NamedFile {
         &self.name
     }
 
-    /// The same file by another name.
+    /// The file under another name.
     #[must_use]
     pub fn renamed(&self, name: impl Into<Cow<'static, str>>) -> Self {
         Self { name: name.into(), content: self.content.clone() }
     }
 
-    /// Larger files are not read.
+    /// Maximum size; larger files are not read.
     #[must_use]
     pub fn max_bytes(&self) -> u64 {
         self.content.format.max_bytes
@@ -266,13 +267,13 @@ impl NamedFile {
         self.content.path()
     }
 
-    /// The same file for a scene in this folder: by the same name where that leads to it, else by its path.
+    /// The file for a scene in this folder: by its name if that leads to it, or else by its path.
     #[must_use]
     pub fn seen_from(&self, folder: &Path) -> Self {
         let there = std::path::absolute(folder.join(&*self.name)).ok();
         match self.path() {
             Some(path) if there.as_deref() != Some(path) => {
-                // Whoever could use it here may use it there.
+                // Anyone who could use it here may use it there.
                 if self.numbers().is_some() {
                     outside::allow(path);
                 }
@@ -302,19 +303,19 @@ impl NamedFile {
         self.path().is_some_and(leads_out)
     }
 
-    /// The version of the numbers: another one for other numbers, also of other files.
+    /// The version of the numbers, which differs for other numbers, also of other files.
     #[must_use]
     pub fn version(&self) -> u64 {
         self.content.state().numbers.as_ref().map_or(0, |numbers| numbers.version)
     }
 
-    /// Something that all that share the content have in common, and nobody else.
+    /// A value shared by all with the same content, and by nobody else.
     #[must_use]
     pub fn identity(&self) -> usize {
         Arc::as_ptr(&self.content) as usize
     }
 
-    /// Reads the file again, for all that name it. True if its numbers or its mistakes are others than before.
+    /// Reads the file again, for all that name it. True if its numbers or its errors changed.
     #[must_use]
     pub fn read_again(&self) -> bool {
         let mut is_first = false;
@@ -338,20 +339,20 @@ impl Content {
         Arc::new(Self { source, folder, format, first: OnceLock::new(), state: RwLock::default() })
     }
 
-    /// What the file has, read now if it was not yet.
+    /// The content of the file, read now unless read before.
     fn state(&self) -> RwLockReadGuard<'_, State> {
         self.first.get_or_init(|| _ = self.read());
         self.state.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes over what another content has that is the same file, unless this was read already.
+    /// Copies the state of another content for the same file, unless this was read already.
     fn read_as(&self, other: &Self) {
         self.first.get_or_init(|| {
             let (numbers, problem, stamp) = {
                 let state = other.state();
                 (state.numbers.clone(), state.problem.clone(), state.stamp)
             };
-            // Each is told by its own name.
+            // Each is reported by its own name.
             let names = [other, self].map(|content| content.path().map(|path| path.shown().to_string()));
             let problem = match (problem, names) {
                 (Some(problem), [Some(theirs), Some(ours)]) => Some(
@@ -363,7 +364,7 @@ impl Content {
         });
     }
 
-    /// What tells the file from others, if it may be read, and its length.
+    /// The identity of the file, if it may be read, and its length.
     fn identity(&self) -> Option<(Key, u64)> {
         self.identity_at(&self.place(self.path()?).ok()?)
     }
@@ -373,7 +374,7 @@ impl Content {
         Some(((identity, self.format.name), length))
     }
 
-    /// The path of the file from which it is read, if it may be.
+    /// The path from which the file is read, if permitted.
     fn place(&self, path: &Path) -> Result<PathBuf, String> {
         if outside::is_allowed(path) {
             return Ok(path.to_owned());
@@ -436,7 +437,7 @@ impl Content {
     }
 }
 
-/// Numbers that were just read: those in use, if another path to the same file has the same.
+/// Numbers that were just read: those in use, if another path to the same file has equal ones.
 fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
     let mut all = NUMBERS.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, numbers| numbers.strong_count() > 0);
@@ -453,7 +454,7 @@ fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
     numbers
 }
 
-/// The same name for the same file.
+/// Equal if the name and the file are the same.
 impl PartialEq for NamedFile {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && self.content.source == other.content.source
@@ -479,7 +480,7 @@ impl Serialize for NamedFile {
 pub struct Table {
     /// The file.
     pub file: Option<NamedFile>,
-    /// Its numbers when the table was taken.
+    /// The numbers of the file when the table was taken.
     pub numbers: Arc<[f32]>,
 }
 

@@ -3,7 +3,7 @@
 use super::{declaration::Parameter, value::Values};
 use crate::optics::colour::Encoding;
 
-/// The most bytes for the parameters of a model.
+/// Maximum size of a model's parameters, in bytes.
 pub const BLOCK_BYTES: usize = 256;
 
 /// The fields of the WGSL struct `Parameters` of a model: name, type, byte offset, in the order of

@@ -1,5 +1,5 @@
-//! Parameters of models and lights: one declaration drives JSON, checks, the window's knobs, the layout in shaders and
-//! `lcm models`.
+//! Parameters of models and lights: one declaration drives JSON, checks, the window's controls, the layout in
+//! shaders and `lcm models`.
 //!
 //! Models share parameters **by name**, so changing the model keeps the user's settings. Parameters of several models
 //! are declared here once.

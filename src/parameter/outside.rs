@@ -1,4 +1,5 @@
-//! Permission to read files outside the folder of a scene: a scene may come from anybody, and has none of its own.
+//! Permission to read files outside the folder of a scene: a scene may come from anybody, and cannot grant
+//! it.
 
 use std::{
     cell::Cell,
@@ -10,7 +11,7 @@ use std::{
     },
 };
 
-/// The option of the command line that gives it for all files.
+/// The command-line option that grants it for all files.
 pub const OPTION: &str = "--allow-outside";
 
 static ALL: AtomicBool = AtomicBool::new(false);
@@ -20,17 +21,17 @@ thread_local! {
     static TRUSTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Lets scenes name any file, for the rest of this process.
+/// Allows scenes to name any file, for the rest of this process.
 pub fn allow_all() {
     ALL.store(true, Ordering::Relaxed);
 }
 
-/// Lets scenes name this file, for the rest of this process: somebody chose it.
+/// Allows scenes to name this file, which the user chose, for the rest of this process.
 pub(super) fn allow(path: &Path) {
     SOME.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
 }
 
-/// Lets a scene that this program wrote itself name any file.
+/// Allows a scene written by this program itself to name any file.
 pub fn trusting<T>(read: impl FnOnce() -> T) -> T {
     /// Ends it, even after a panic.
     struct Before(bool);
@@ -43,12 +44,12 @@ pub fn trusting<T>(read: impl FnOnce() -> T) -> T {
     read()
 }
 
-/// True while files that are named are taken for chosen.
+/// True while named files count as chosen.
 pub(super) fn is_trusted() -> bool {
     TRUSTED.get()
 }
 
-/// True if a file may be read from everywhere.
+/// True if a file may be read from anywhere.
 pub(super) fn is_allowed(path: &Path) -> bool {
     ALL.load(Ordering::Relaxed) || SOME.lock().unwrap_or_else(PoisonError::into_inner).contains(path)
 }

@@ -9,8 +9,8 @@ use super::{
 };
 use crate::text::{did_you_mean, items, shortened};
 
-/// The reason why a text is no legal value of a parameter. Shown as the end of a sentence: "is 0.2, but the diffuse
-/// coefficient must be between 0.5 and 1".
+/// The reason why a text is not a legal value of a parameter. Displayed as the end of a sentence: "is 0.2,
+/// but the diffuse coefficient must be between 0.5 and 1".
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ParseError {
@@ -43,22 +43,22 @@ impl Parameter {
     /// ```
     ///
     /// # Errors
-    /// [`ParseError`] if the text is no value of the parameter's kind, or one outside its range.
+    /// Returns a [`ParseError`] if the text is not a value of the parameter's kind, or the value is out of range.
     pub fn parse(&self, text: &str) -> Result<Value, ParseError> {
         self.parse_in(text, Path::new(""))
     }
 
-    /// As [`parse`](Self::parse), with the folder of the files that the text may name.
+    /// Like [`parse`](Self::parse), with the folder of the files that the text may name.
     ///
     /// # Errors
-    /// As [`parse`](Self::parse).
+    /// Returns an error if [`parse`](Self::parse) does.
     pub fn parse_in(&self, text: &str, folder: &Path) -> Result<Value, ParseError> {
         let broken = |rule| ParseError { found: text.to_owned(), rule };
         let value = self.typed(text, folder).ok_or_else(|| broken(self.clause()))?;
         self.check(&value).map(|()| value).map_err(broken)
     }
 
-    /// A value of the right kind, whatever its range.
+    /// A value of the right kind, which may be out of range.
     fn typed(&self, written: &str, folder: &Path) -> Option<Value> {
         let text = written.trim();
         match self.kind {
@@ -80,11 +80,11 @@ impl Parameter {
         }
     }
 
-    /// `Ok` for a legal value, or the rule that it breaks, with a hint: "the Fresnel term must be one of …; did you
-    /// mean …?"
+    /// Checks that the value is legal. The error is the rule that it breaks, with a hint: "the Fresnel term
+    /// must be one of …; did you mean …?"
     ///
     /// # Errors
-    /// The broken rule as a clause.
+    /// Returns the broken rule as a clause.
     pub fn check(&self, value: &Value) -> Result<(), String> {
         if self.allows(value) {
             return Ok(());
@@ -102,11 +102,11 @@ impl Parameter {
         Err(self.clause() + &hint)
     }
 
-    /// Its [rule](Self::rule) as a clause with its name and unit: "the slope deviation must be between 0 and 35
-    /// degrees"; that of a flag has the name in files: "two_sided must be true or false".
+    /// The parameter's [rule](Self::rule) as a clause with its name and unit: "the slope deviation must be
+    /// between 0 and 35 degrees"; for a flag, with the name used in files: "two_sided must be true or false".
     #[must_use]
     pub fn clause(&self) -> String {
-        // Its label may be no noun: "two-sided".
+        // The label need not be a noun: "two-sided".
         if self.is_flag() {
             return format!("{} must be {}", self.name, self.rule());
         }

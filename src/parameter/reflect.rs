@@ -1,7 +1,7 @@
-//! Structs of declared parameters for tools that work on values by name, such as inspectors.
+//! Reflection of structs of declared parameters, for tools that access values by name, such as inspectors.
 
-/// Implements Bevy's `Reflect` for a struct of [`parameters!`](crate::parameters): its fields are the parameters. The
-/// derive macro would ask each crate that declares parameters to depend on Bevy itself.
+/// Implements Bevy's `Reflect` for a struct of [`parameters!`](crate::parameters); its fields are the
+/// parameters. The derive macro would require each crate that declares parameters to depend on Bevy itself.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! reflect_parameters {
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(clone.reflect_partial_eq(&spot), Some(true));
         assert_eq!(clone.reflect_partial_eq(&Spot::default()), Some(false));
         assert_eq!(Spot::from_reflect(&1.0_f32), None, "the wrong twin");
-        // What is calculated from parameters follows them.
+        // Derived fields are recalculated when parameters change.
         let rough = Microfacet { alpha_x: 0.9, multiple_scattering: 1, ..Microfacet::default() };
         let rough = Microfacet::from_values(&rough.to_values(Encoding::Srgb), Encoding::Srgb);
         assert_ne!(rough.lobe, Microfacet::default().lobe);

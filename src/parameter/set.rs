@@ -96,7 +96,7 @@ macro_rules! parameters {
             }
         }
     };
-    // Files have numbers behind a pointer that is counted.
+    // The numbers of a file are behind a reference-counted pointer.
     (@copy $name:ident) => { impl ::core::marker::Copy for $name {} };
     (@copy $name:ident file $($kind:ident)*) => {};
     (@copy $name:ident $first:ident $($kind:ident)*) => { $crate::parameters!(@copy $name $($kind)*); };

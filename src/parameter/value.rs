@@ -12,7 +12,7 @@ use super::{
 };
 use crate::optics::colour::Encoding;
 
-/// The components of a linear colour, which may be beyond their range by as much as 8 bits round it away.
+/// The legal components of a linear colour. They may exceed 0 to 1 by as much as rounding to 8 bits removes.
 const LINEAR: RangeInclusive<f32> = -0.5 / 255.0 / 12.92..=1.0 + 0.5 / 255.0;
 
 /// The value of a parameter, as in a scene file.
@@ -40,7 +40,8 @@ impl Value {
         Self::Choice(Cow::Borrowed(if on { "true" } else { "false" }))
     }
 
-    /// True or false if it is the value of a flag. No other choice has these names.
+    /// The value of a flag, or `None` if the value is not a flag's. No other choice has the names `true` and
+    /// `false`.
     #[must_use]
     pub fn truth(&self) -> Option<bool> {
         match self {
@@ -49,7 +50,7 @@ impl Value {
         }
     }
 
-    /// Distance from another one of its type; infinite where there is none.
+    /// The distance to another value of the same type; infinite if no distance is defined.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         match (self, other) {
@@ -105,7 +106,7 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
-    /// Those values that are legal for one of some parameters.
+    /// The values that are legal for one of the given parameters.
     #[must_use]
     pub fn legal(&self, parameters: &[Parameter]) -> Self {
         let legal = |p: &Parameter| {
@@ -114,9 +115,10 @@ impl Values {
         Self(parameters.iter().filter_map(legal).collect())
     }
 
-    /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, the index of a choice
-    /// becomes its name. All but colours and triples read the first number. Numbers that are no colour become a triple, an
-    /// index of no choice stays a number: neither is a legal value.
+    /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, and the index
+    /// of a choice becomes its name. Types other than colours and triples use the first number only. Numbers
+    /// that are not a colour become a triple, and an index without a choice stays a number: neither is a
+    /// legal value.
     pub fn put(&mut self, parameter: &Parameter, numbers: [f32; 3], encoding: Encoding) {
         let [first, ..] = numbers;
         let value = match &parameter.kind {
@@ -159,7 +161,7 @@ impl Values {
         }
     }
 
-    /// The file and its numbers; none if it is not a file.
+    /// The file and its numbers; `None` if the value is not a file.
     #[must_use]
     pub fn table(&self, parameter: &Parameter) -> Option<Table> {
         match self.get(parameter) {

@@ -1,11 +1,12 @@
 //! Recovery copies: unsaved work that outlives the window, however that ends.
 //!
-//! While the document has unsaved changes, [`Keeper`] keeps a copy of it in a folder of the window's own
-//! ([`Journal`]), written by a thread of its own about a second after an edit. Saving and closing remove it;
-//! nothing else does. So whatever takes the window down, a signal, a crash, a lost display, at most that second is
-//! lost, and [`Store::left`] finds the copy at the next start.
+//! While the document has unsaved changes, [`Keeper`] keeps a copy of it in a separate folder for each window
+//! ([`Journal`]), written by a background thread about a second after an edit. Only saving and closing remove
+//! it. Whatever ends the window, be it a signal, a crash or a lost display, at most that second is lost, and
+//! [`Store::left`] finds the copy at the next start.
 //!
-//! `writer` decides what is written and when, `store` knows the folder. A copy is a scene file like any other, `scene.json`, with [`About`] beside it. No Bevy in here.
+//! `writer` decides what is written and when, `store` manages the folder. A copy is an ordinary scene file,
+//! `scene.json`, next to [`About`]. Independent of Bevy.
 
 use std::{path::PathBuf, time::Duration};
 
@@ -19,18 +20,18 @@ mod writer;
 pub use store::{Journal, Left, MAX_COPIES, Store};
 pub use writer::{Keeper, Settled};
 
-/// Facts about the document of a copy.
+/// Facts about the copied document.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct About {
-    /// The name of the document.
+    /// Name of the document.
     pub title: String,
-    /// The file of the document, if it has one; from the root on.
+    /// Absolute path of the document's file, if it has one.
     #[serde(with = "path_text")]
     pub path: Option<PathBuf>,
-    /// The state of that file when it was last read or written.
+    /// State of that file when it was last read or written.
     pub stamp: Option<Stamp>,
-    /// The process that wrote the copy.
+    /// Process that wrote the copy.
     pub process: u32,
 }
 
@@ -48,7 +49,7 @@ pub fn ago(age: Duration) -> String {
     format!("{count} {unit}{plural} ago")
 }
 
-/// Paths as text where they are text; as bytes where the system allows others.
+/// Paths as text if they are valid text; as bytes where the system allows others.
 mod path_text {
     use std::path::{Path, PathBuf};
 

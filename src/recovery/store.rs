@@ -1,4 +1,4 @@
-//! The folder of recovery copies: one folder per window, locked as long as that window runs.
+//! The folder of recovery copies: one folder per window, locked while that window runs.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -21,20 +21,20 @@ use crate::{
     },
 };
 
-/// The most copies that are kept; the oldest are dropped.
+/// Maximum number of copies; the oldest are dropped.
 pub const MAX_COPIES: usize = 20;
-/// Name of the folder of the copies within the user's data.
+/// Name of the folder with the copies, in the user's data.
 const FOLDER: &str = "recovery";
-/// The names of the files of a journal.
+/// Names of the files in a journal.
 const SCENE: &str = "scene.json";
 const ABOUT: &str = "about.json";
 const LOCK: &str = "lock";
-/// The most bytes of the file about a document; the library that reads it goes 128 levels deep. The copy itself is a scene
-/// file, with the limits of those.
+/// Maximum size of the file about a document, in bytes; the library that reads it handles 128 levels of
+/// nesting. The copy itself is a scene file, with the limits of scene files.
 const MAX_ABOUT_BYTES: u64 = 1 << 16;
-/// The most entries of the folder that are looked at.
+/// Maximum number of entries of the folder that are examined.
 const MAX_ENTRIES: usize = 1000;
-/// A folder without a lock belongs to a window that starts, unless it is older than this.
+/// Age up to which a folder without a lock is assumed to belong to a window that is starting.
 const STARTING: Duration = Duration::from_secs(24 * 3600);
 
 /// The folder with the copies of all windows.
@@ -43,44 +43,44 @@ pub struct Store {
     folder: PathBuf,
 }
 
-/// The copy of one window. As long as this value lives, no other process offers the copy.
+/// The copy of one window. While this value exists, no other process offers the copy.
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,
-    /// The content of the file beside the copy.
+    /// Contents of the file next to the copy.
     about: Option<About>,
-    /// Held, not used. Some file systems know no locks.
+    /// Held, not used; `None` on file systems without locks.
     _lock: Option<File>,
 }
 
-/// A copy that a window left behind.
+/// A copy left behind by a window.
 #[derive(Debug)]
 pub struct Left {
-    /// Its folder, held: no other window offers it meanwhile.
+    /// The folder of the copy, locked so that no other window offers it meanwhile.
     pub journal: Journal,
-    /// The document that it is of.
+    /// The copied document.
     pub about: About,
-    /// The time of its last change.
+    /// Time of the last change.
     pub when: SystemTime,
 }
 
 impl Store {
-    /// The one in the user's data, for this program alone; `None` where there is no such folder.
+    /// The store in the user's data, readable only by this program's user; `None` without such a folder.
     #[must_use]
     pub fn of_user() -> Option<Self> {
         Some(Self::new(program::own(assets::data_folder()?).join(FOLDER)))
     }
 
-    /// One at any place. The folder need not exist yet.
+    /// A store in any folder, which need not exist yet.
     #[must_use]
     pub fn new(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// Makes a folder for the copies of this window.
+    /// Creates a folder for the copies of this window.
     ///
     /// # Errors
-    /// When the folder cannot be made.
+    /// Returns an error if the folder cannot be created.
     pub fn begin(&self) -> io::Result<Journal> {
         make_folder(&self.folder, true)?;
         if fs::read_dir(&self.folder)?.take(MAX_COPIES).count() == MAX_COPIES {
@@ -104,13 +104,12 @@ impl Store {
         Ok(Journal { folder, about: None, _lock: lock })
     }
 
-    /// The copies of windows that run no longer, the latest first. Clears away what such windows left without a
-    /// copy.
+    /// The copies of windows that no longer run, latest first. Removes what such windows left without a copy.
     #[must_use]
     pub fn left(&self) -> Vec<Left> {
         let Ok(entries) = fs::read_dir(&self.folder) else { return Vec::new() };
         let folders = entries.flatten().take(MAX_ENTRIES);
-        // A link may lead to what is not ours.
+        // A link may lead to a folder of somebody else.
         let folders = folders.filter(|e| e.file_type().is_ok_and(|t| t.is_dir())).map(|e| e.path());
         let mut found: Vec<_> = folders.filter_map(look).collect();
         found.sort_by_key(|left| std::cmp::Reverse(left.when));
@@ -118,15 +117,16 @@ impl Store {
     }
 }
 
-/// The copy in the folder of a journal, unless that runs.
+/// The copy in a journal's folder, unless its window is running.
 fn look(folder: PathBuf) -> Option<Left> {
     let scene = fs::metadata(folder.join(SCENE)).ok();
-    // Without a copy, what is locked was started already: a folder that has no lock yet is not touched.
+    // A folder without a copy is removed only if it has a lock: one without a lock may belong to a window
+    // that is starting.
     let lock = lock(&folder, scene.is_some());
     if let Ok(None) = lock {
         return None;
     }
-    // Before the lock was held, the window may have ended as it should.
+    // The window may have ended regularly before the lock was acquired.
     let scene = scene.and_then(|_| fs::metadata(folder.join(SCENE)).ok());
     let Some(scene) = scene else {
         let age = fs::metadata(&folder).and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
@@ -146,7 +146,7 @@ fn look(folder: PathBuf) -> Option<Left> {
     Some(Left { journal, about, when })
 }
 
-/// Takes the lock of a journal: `None` while another process has it.
+/// Acquires the lock of a journal: `None` while another process holds it.
 fn lock(folder: &Path, create: bool) -> io::Result<Option<File>> {
     let file =
         OpenOptions::new().read(true).write(true).create(create).truncate(false).open(folder.join(LOCK))?;
@@ -157,7 +157,8 @@ fn lock(folder: &Path, create: bool) -> io::Result<Option<File>> {
     }
 }
 
-/// Makes the lock of a new journal. It is held before it gets its name, so that no other process can hold it first.
+/// Creates the lock of a new journal. It is held before it gets its name, so that no other process can
+/// acquire it first.
 fn first_lock(folder: &Path) -> io::Result<File> {
     let hidden = folder.join(format!(".{LOCK}"));
     let file = OpenOptions::new().read(true).write(true).create_new(true).open(&hidden)?;
@@ -176,14 +177,14 @@ impl Journal {
     /// Writes the copy, all or nothing.
     ///
     /// # Errors
-    /// When it cannot be written, or is larger than any scene that can be read.
+    /// Returns an error if the copy cannot be written, or is larger than any readable scene.
     pub fn write(&mut self, about: &About, text: &str) -> io::Result<()> {
         if text.len() as u64 > MAX_FILE_BYTES {
             return Err(io::Error::other("the scene is too large"));
         }
         if self.about.as_ref() != Some(about) {
             if self.about.take().is_some_and(|before| before.path != about.path) {
-                // Between the two writes, the copy of one document must not pass for that of another.
+                // Between the two writes, the copy of one document must not be mistaken for that of another.
                 remove_file(&self.file())?;
             }
             files::write(&self.folder.join(ABOUT), &serde_json::to_vec(about)?)?;
@@ -192,9 +193,10 @@ impl Journal {
         Ok(files::write(&self.file(), text.as_bytes())?)
     }
 
-    /// Removes the copy and all that belongs to it.
+    /// Removes the copy and everything that belongs to it.
     pub fn remove(self) {
-        // First what makes it one, so that half of it is none. What stays is cleared away at the next start.
+        // The scene file first, so that an incomplete removal leaves no copy. The rest is removed at the next
+        // start.
         let _ = remove_file(&self.file());
         let _ = fs::remove_dir_all(&self.folder);
     }
@@ -204,21 +206,21 @@ impl Left {
     /// Reads the scene of the copy.
     ///
     /// # Errors
-    /// Every problem, one sentence each, with the name of the file.
+    /// Returns every problem, one sentence each, with the name of the file.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, Vec<String>> {
         let file = self.journal.file();
         let name = file.shown().to_string();
         let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
-        // The files that it names are beside the file of the document, not beside the copy.
+        // Paths in the scene are relative to the document's file, not to the copy.
         let folder = self.about.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-        // Whatever it names was open in the window.
+        // All files named in it were open in the window.
         outside::trusting(|| load::in_folder(&bytes, (&name, folder), registry, Defaults::Use))
             .map(|loaded| loaded.scene)
             .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
     }
 }
 
-/// Makes a folder that only this user can look into.
+/// Creates a folder that only this user can access.
 fn make_folder(folder: &Path, with_parents: bool) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(with_parents);
@@ -246,7 +248,7 @@ mod tests {
         About { title: title.to_owned(), path: Some("/room.json".into()), ..About::default() }
     }
 
-    /// A store in a folder of its own, and that folder.
+    /// A store in a new folder, and that folder.
     fn store() -> (Store, tempfile::TempDir) {
         let folder = tempfile::tempdir().expect("a folder");
         (Store::new(folder.path().join("a/b")), folder)
@@ -274,7 +276,7 @@ mod tests {
         assert!(left[0].when.elapsed().is_ok_and(|age| age < Duration::from_secs(600)));
         assert!(store.left().is_empty(), "another window asks about it");
         drop(left);
-        // Nothing but the user's word removes it.
+        // It is removed only at the user's request.
         for left in store.left() {
             left.journal.remove();
         }
@@ -338,7 +340,7 @@ mod tests {
         let ended = store.begin().expect("made");
         let gone = ended.folder.clone();
         drop(ended);
-        // A window that starts has a folder before it has the lock.
+        // A window that is starting has a folder before it has the lock.
         let starting = store.folder.join("starting");
         fs::create_dir(&starting).expect("made");
         assert!(store.left().is_empty());

@@ -1,4 +1,4 @@
-//! The thread that keeps the copy of a window up to date.
+//! The thread that keeps a window's copy up to date.
 //!
 //! Callers never wait for a disk, and the copy never waits for the window: it is written even while the window hangs
 //! in a driver.
@@ -19,18 +19,18 @@ use crate::{
     scene::{Scene, save},
 };
 
-/// A copy is written this long after the first change that is not in it.
+/// Delay between the first change that is not in the copy and its writing.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// Keeps the copy of a window up to date. Clones share it.
+/// Keeps a window's copy up to date. Clones share it.
 #[derive(Clone)]
 pub struct Keeper(Arc<Shared>);
 
 struct Shared {
     state: Mutex<State>,
-    /// Signalled when there is something to do.
+    /// Signalled when there is work.
     work: Condvar,
-    /// Signalled when something was done.
+    /// Signalled when work was done.
     done: Condvar,
 }
 
@@ -38,50 +38,51 @@ struct Shared {
 #[derive(Clone)]
 struct Unsaved {
     about: About,
-    /// The scene. It may break rules: unfinished work is work.
+    /// The scene. It may break rules: unfinished work counts.
     scene: Scene,
-    /// The document's value that the scene is equal to but for names.
+    /// The document's revision, equal to the scene except for names.
     revision: Revision,
-    /// The registry at the time, for the order of parameters.
+    /// The registry at that time, for the order of parameters.
     registry: Arc<Registry>,
 }
 
 #[derive(Default)]
 struct State {
-    /// The document that should be on disk; none without unsaved changes. Shared with the thread while that writes it.
+    /// The document that should be on disk; `None` without unsaved changes. Shared with the thread while it
+    /// writes.
     wanted: Option<Arc<Unsaved>>,
-    /// A copy that another window left, to be continued.
+    /// A copy left by another window, to be continued.
     adopted: Option<Journal>,
-    /// Counts the changes of what is wanted, and up to which it is on disk.
+    /// Number of changes of `wanted`, and the number up to which it is on disk.
     change: u64,
     settled: u64,
-    /// The time of the first change that is not on disk.
+    /// Time of the first change that is not on disk.
     since: Option<Instant>,
-    /// A caller waits.
+    /// True if a caller waits.
     urgent: bool,
-    /// The copy that is on disk.
+    /// The copy on disk.
     copy: Option<PathBuf>,
-    /// The reason why there is none.
+    /// The reason why there is no copy on disk.
     problem: Option<String>,
     /// True if the problem was reported to the window.
     told: bool,
 }
 
-/// The fate of the unsaved changes.
+/// The outcome for the unsaved changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Settled {
-    /// There are none.
+    /// There were no unsaved changes.
     Nothing,
     /// They are in a copy.
     Kept {
-        /// The name of the document.
+        /// Name of the document.
         title: String,
-        /// The file of the copy.
+        /// File of the copy.
         file: PathBuf,
     },
     /// They could not be kept.
     Lost {
-        /// The name of the document.
+        /// Name of the document.
         title: String,
         /// The reason.
         why: String,
@@ -106,7 +107,8 @@ impl Settled {
 }
 
 impl Keeper {
-    /// Begins to keep copies in a store. `trouble` is called when one could not be written: see [`Self::problem`].
+    /// Starts keeping copies in a store. `trouble` is called when one could not be written: see
+    /// [`Self::problem`].
     #[must_use]
     pub fn start(store: Option<Store>, trouble: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() });
@@ -120,15 +122,15 @@ impl Keeper {
         keeper
     }
 
-    /// The document has unsaved changes: this is what must not be lost. Copies the parts that changed since it was kept
-    /// last, and does nothing if none did.
+    /// Records that the document has unsaved changes, which must not be lost. Copies the parts changed since
+    /// the last call, and does nothing if there are none.
     pub fn keep(&self, document: &Document, about: About, registry: &Arc<Registry>) {
         let mut state = self.0.lock();
         let parts = state.wanted.as_ref().and_then(|kept| document.changes_since(kept.revision));
         match (&mut state.wanted, parts) {
             (Some(kept), Some(parts)) if parts.is_empty() && kept.about == about => return,
             (Some(kept), Some(parts)) => {
-                // While the thread writes what is kept, this copies all of it, at most once in each writing.
+                // While the thread writes the kept scene, this copies all of it, at most once for each write.
                 let kept = Arc::make_mut(kept);
                 for part in parts {
                     part.copy(document, &mut kept.scene);
@@ -142,17 +144,17 @@ impl Keeper {
         self.0.changed(state);
     }
 
-    /// There are no unsaved changes: no copy is needed, and there is none soon.
+    /// Records that there are no unsaved changes: the copy is not needed, and is removed soon.
     pub fn forget(&self) {
         let mut state = self.0.lock();
         if state.wanted.take().is_some() {
-            // A copy that is no longer needed goes at once.
+            // A copy that is no longer needed is removed at once.
             state.urgent = true;
             self.0.changed(state);
         }
     }
 
-    /// The copy that another window left is the document now.
+    /// Continues the copy left by another window, which is the document now.
     pub fn adopt(&self, journal: Journal, document: &Document, about: About, registry: &Arc<Registry>) {
         let mut state = self.0.lock();
         state.wanted = Some(Arc::new(Unsaved::new(document, about, registry)));
@@ -166,7 +168,7 @@ impl Keeper {
         self.0.lock().wanted.is_some()
     }
 
-    /// The reason why there is no copy, if one is needed and could not be written. Reported once.
+    /// The reason why a needed copy could not be written, if so. Reported once.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let mut state = self.0.lock();
@@ -175,14 +177,15 @@ impl Keeper {
         news
     }
 
-    /// Brings the disk up to date now, waits for it at most `within`, and returns the fate of the unsaved changes.
+    /// Brings the disk up to date now, waits for it at most `within`, and returns the outcome for the unsaved
+    /// changes.
     #[must_use]
     pub fn settle(&self, within: Duration) -> Settled {
         let shared = &self.0;
         let mut state = shared.lock();
         state.urgent = true;
         if state.problem.is_some() {
-            // The disk may have room again.
+            // There may be space on the disk again.
             state.change += 1;
             state.since.get_or_insert_with(Instant::now);
         }
@@ -217,14 +220,14 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Something else is wanted than before.
+    /// Records a change of the wanted document.
     fn changed(&self, mut state: MutexGuard<'_, State>) {
         state.change += 1;
         state.since.get_or_insert_with(Instant::now);
         self.work.notify_all();
     }
 
-    /// The loop of the thread, for as long as the process runs.
+    /// The loop of the thread, for the lifetime of the process.
     fn run(&self, mut writer: Writer, trouble: &dyn Fn()) {
         loop {
             let (change, wanted, adopted) = self.next();
@@ -250,13 +253,13 @@ impl Shared {
         }
     }
 
-    /// Waits until there is something to do, and a caller waits or enough time has passed.
+    /// Waits until there is work, and a caller waits or enough time has passed.
     fn next(&self) -> (u64, Option<Arc<Unsaved>>, Option<Journal>) {
         let mut state = self.lock();
         loop {
             let waits = state.since.map(|since| DELAY.saturating_sub(since.elapsed()));
             state = match waits {
-                // Nothing is to be done for anybody who waits.
+                // Callers that wait have nothing to wait for.
                 None => {
                     state.urgent = false;
                     self.work.wait(state).unwrap_or_else(PoisonError::into_inner)
@@ -274,20 +277,20 @@ impl Shared {
     }
 }
 
-/// The state that only the thread uses.
+/// State used only by the thread.
 struct Writer {
     store: Option<Store>,
     journal: Option<Journal>,
 }
 
 impl Writer {
-    /// Writes or removes the copy. Returns its file, if there is one.
+    /// Writes or removes the copy. Returns the file of an existing copy.
     fn bring_up_to_date(
         &mut self,
         wanted: Option<&Unsaved>,
         adopted: Option<Journal>,
     ) -> io::Result<Option<PathBuf>> {
-        // One window has one copy. That of its own is of what the user gave up for the other.
+        // One window has one copy. Its earlier copy is of a document that the user gave up for the other.
         let own = adopted.and_then(|adopted| self.journal.replace(adopted));
         let Some(Unsaved { about, scene, registry, .. }) = wanted else {
             own.into_iter().chain(self.journal.take()).for_each(Journal::remove);
@@ -324,7 +327,7 @@ mod tests {
         scene::Object,
     };
 
-    /// Generous, since machines are busy.
+    /// Generous, since machines may be busy.
     const LONG: Duration = Duration::from_secs(60);
 
     fn about(title: &str) -> About {
@@ -344,7 +347,7 @@ mod tests {
         (Store::new(folder.path().join("copies")), folder)
     }
 
-    /// The path of the copy that must have been kept.
+    /// The path of the copy, which must exist.
     fn kept(keeper: &Keeper) -> PathBuf {
         match keeper.settle(LONG) {
             Settled::Kept { file, .. } => file,
@@ -352,7 +355,7 @@ mod tests {
         }
     }
 
-    /// Waits until something is so.
+    /// Waits until a condition holds.
     fn until(what: &str, so: impl Fn() -> bool) {
         let begin = Instant::now();
         while !so() {
@@ -361,7 +364,7 @@ mod tests {
         }
     }
 
-    /// The number of copies on disk, of windows that run or not.
+    /// The number of copies on disk, of running windows or others.
     fn copies(folder: &tempfile::TempDir) -> usize {
         let sessions = fs::read_dir(folder.path().join("copies")).into_iter().flatten().flatten();
         sessions.filter(|journal| journal.path().join("scene.json").exists()).count()
@@ -440,7 +443,7 @@ mod tests {
 
         let left = store.left().pop().expect("offered");
         let keeper = Keeper::start(Some(store.clone()), || {});
-        // A copy of its own gives way.
+        // The window's own copy is dropped.
         keep(&keeper, "own");
         assert_ne!(kept(&keeper), file);
         keeper.adopt(left.journal, &document("left"), about("left"), &Arc::new(Registry::builtin()));
@@ -454,7 +457,7 @@ mod tests {
 
     #[test]
     fn a_change_of_one_part_is_copied_alone_and_nothing_is_lost() {
-        // Without the thread, which would share what is kept while it writes.
+        // Without the thread, which would share the kept scene while it writes.
         let keeper =
             Keeper(Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() }));
         let registry = Arc::new(Registry::builtin());
@@ -483,7 +486,7 @@ mod tests {
         assert_eq!([0, 2].map(|i| after[i]), [0, 2].map(|i| before[i]), "the others are not copied");
         let (renamed, later) = keep(&document, "b");
         assert!(renamed == after && later == change + 2, "the file is another, the scene is not");
-        // The thread writes, meanwhile the document changes: what is written stays as it is.
+        // While the thread writes, the document changes: the scene being written stays unchanged.
         let written = keeper.0.lock().wanted.clone().expect("kept");
         edit(&mut document, 0.75);
         keep(&document, "b");

@@ -21,12 +21,12 @@ use crate::{
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
-/// Above this, a channel of the picture is cut off.
+/// Value above which a channel of the picture counts as clipped.
 const WHITE: f32 = 1.0005;
-/// The width of a stripe on the diagonal, pixels.
+/// Width of a diagonal stripe, in pixels.
 const STRIPE: u32 = 4;
 
-/// Everything that a channel is calculated from, beside the point.
+/// Everything from which a channel is calculated, apart from the point.
 #[derive(Clone)]
 pub(super) struct Sight(Arc<Parts>);
 
@@ -58,10 +58,10 @@ impl Sight {
         }))
     }
 
-    /// An object as the channel shows it.
+    /// The object as drawn by the channel.
     pub(super) fn seen<'a>(&self, draw: Draw<'a>) -> Draw<'a> {
         let of_light = self.0.setting.channel.is_of_light();
-        // The geometry is that of the mesh, whatever the shading model makes of it.
+        // The geometry is that of the mesh, independent of the shading model.
         let (stage, inner) = if of_light {
             (draw.stage, draw.shading)
         } else {
@@ -124,7 +124,7 @@ impl Parts {
         }
     }
 
-    /// The pixel in which a point is seen.
+    /// The pixel that shows a point.
     fn pixel(&self, position: Vec3) -> [u32; 2] {
         let at = self.clip_from_room.project_point3(position);
         [0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y].map({
@@ -133,7 +133,7 @@ impl Parts {
         })
     }
 
-    /// The colour for the geometry at a point, in display codes.
+    /// The colour of the geometry at a point, in display codes.
     fn of_geometry(&self, position: Vec3, normal: Vec3, face_normal: Vec3) -> Vec3 {
         let to_eye = self.eye - position;
         let v = to_eye.normalize_or_zero();

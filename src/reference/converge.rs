@@ -1,4 +1,4 @@
-//! Pictures with light with extent, sample by sample until there are enough.
+//! Pictures with lights with extent, refined sample by sample until they have converged.
 
 use std::sync::atomic::AtomicBool;
 
@@ -12,12 +12,12 @@ use crate::{
     scene::{Scene, has_extent},
 };
 
-/// The end of a picture that converges.
+/// The termination conditions of a converging picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Until {
-    /// The samples of each light that are taken at most.
+    /// Maximum number of samples of each light.
     pub samples: u32,
-    /// The noise at which it ends before; see [`Reached::noise`].
+    /// Noise at which it ends earlier; see [`Reached::noise`].
     pub noise: Option<f32>,
 }
 
@@ -27,30 +27,30 @@ impl Default for Until {
     }
 }
 
-/// How far a picture has converged.
+/// The state of convergence of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// The samples of each light; 0 where no light has extent.
+    /// Number of samples of each light; 0 without light with extent.
     pub samples: u32,
-    /// The noise: the standard error of the luminance of pixels that are lit, as the root of its mean square over them, divided
-    /// by their mean luminance. It is estimated from the blocks of samples that the picture is the mean of; as those are spread
-    /// more evenly together than alone, it is rather too large. `None` with fewer than
-    /// [`Until::FEWEST_FOR_NOISE`] samples.
+    /// The noise: the root mean square of the standard error of the luminance over all lit pixels, divided by
+    /// their mean luminance. It is estimated from the blocks of samples of which the picture is the mean;
+    /// since these are more evenly distributed together than alone, it is an overestimate. `None` with fewer
+    /// than [`Until::FEWEST_FOR_NOISE`] samples.
     pub noise: Option<f32>,
 }
 
-/// The samples that are taken at once: a power of two, so that each block is evenly spread.
+/// Number of samples in a block: a power of two, so that each block is evenly distributed.
 const AT_ONCE: u32 = 16;
 
-/// The blocks from which on noise can be estimated.
+/// Minimum number of blocks for estimating noise.
 const ENOUGH: u32 = 4;
 
 impl Until {
-    /// The fewest samples of which the noise can be told.
+    /// Minimum number of samples for estimating noise.
     pub const FEWEST_FOR_NOISE: u32 = AT_ONCE * ENOUGH;
 
-    /// The part of the work that is done, and what has been reached, in words. Noise falls at least with the root of the number of
-    /// samples, so the work ends no later than that says.
+    /// The fraction of the work that is done, and a description of the state. Noise falls at least with the
+    /// square root of the number of samples, so the work ends no later than this predicts.
     fn progress(self, Reached { samples, noise }: Reached) -> (f32, String) {
         let done = |all: f32| (samples as f32 / all).min(1.0);
         let all = self.samples.max(1) as f32;
@@ -61,17 +61,17 @@ impl Until {
                     format!("{samples} samples, noise {:.2} %, until {:.2} %", 100.0 * noise, 100.0 * wanted);
                 (done(needed.min(all)), said)
             }
-            // Nobody knows yet when it ends.
+            // The end is not predictable yet.
             (Some(_), None) => (0.0, format!("{samples} samples")),
             (None, _) => (done(all), format!("{samples} of {} samples", self.samples)),
         }
     }
 }
 
-/// Renders a scene to light until there are enough samples. The same samples give the same picture, whatever the machine.
+/// Renders a scene to light until it has converged. The same samples give the same picture on every machine.
 ///
 /// # Errors
-/// [`Cancelled`] if the user no longer wants it.
+/// Returns [`Cancelled`] if the user cancels.
 pub fn render_until(
     scene: &Scene,
     registry: &Registry,
@@ -93,7 +93,7 @@ pub fn render_until(
         let samples = LightSamples { first: taken, count };
         let block = render_samples(scene, registry, settings, samples, odd);
         taken += count;
-        // A last block with fewer samples tells less, and is left out of the estimate.
+        // A last block with fewer samples is less reliable, and is left out of the estimate.
         let is_whole = count == AT_ONCE;
         blocks += u32::from(is_whole);
         let share = count as f32 / taken as f32;
@@ -131,9 +131,9 @@ fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     if sums[1] > 0.0 { relative_error(sums, blocks, samples) } else { 0.0 }
 }
 
-/// The noise of a picture from sums over its pixels that are lit: the squares about the mean luminance, counted once for each
-/// sample of their block; the mean luminance; the number of pixels. That of a picture of several blocks with so many samples
-/// together.
+/// The noise of a picture from sums over its lit pixels: the squares about the mean luminance, counted once
+/// for each sample of their block; the mean luminance; the number of pixels. It is the noise of a picture of
+/// several blocks that have this many samples together.
 pub(crate) fn relative_error([squares, luminance, pixels]: [f64; 3], blocks: u32, samples: u32) -> f32 {
     let variance = squares / f64::from(blocks - 1) / f64::from(samples);
     ((variance / pixels).sqrt() / (luminance / pixels)) as f32
@@ -155,7 +155,7 @@ mod tests {
         scene
     }
 
-    /// Without anybody who watches.
+    /// Renders without reporting progress.
     fn until(scene: &Scene, registry: &Registry, samples: u32, noise: Option<f32>) -> (Picture, Reached) {
         let (odd, until) = (AtomicBool::default(), Until { samples, noise });
         render_until(scene, registry, &SMALL, until, &odd, &Progress::NONE).expect("nobody cancels")
@@ -190,7 +190,7 @@ mod tests {
         let noise = first.noise.expect("several blocks");
         assert!(noise <= 0.004 && second.noise.is_some_and(|noise| noise <= 0.001));
         assert!(first.samples < second.samples && second.samples < 4096, "{first:?} {second:?}");
-        // The real error, against many samples: no larger than three times what is said, rather less.
+        // The actual error, against many samples: at most three times the estimate, and usually smaller.
         let exact = render_samples(&scene, &registry, &SMALL, LightSamples::of(4096), &odd);
         let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
         for (a, b) in coarse.pixels.iter().zip(&exact.pixels) {
@@ -207,7 +207,8 @@ mod tests {
 
     #[test]
     fn noise_is_the_standard_error_over_the_mean() {
-        // Two pixels of the mean luminance 2, four blocks with the sums of squares 12 and 0: variances of the mean 1 and 0.
+        // Two pixels of the mean luminance 2, four blocks with the sums of squares 12 and 0: variances of the
+        // mean 1 and 0.
         let mean = [Vec4::new(2.0, 2.0, 2.0, 1.0); 2];
         let noise = noise_of(&mean, &[12.0, 0.0], 4, 4 * AT_ONCE);
         assert!((noise - 0.5f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
@@ -224,7 +225,7 @@ mod tests {
             let ratio = noise(samples) / (whole * (64.0 / samples as f32).sqrt());
             assert!((0.95..1.05).contains(&ratio), "{samples}: {ratio}");
         }
-        // A block more is another estimate.
+        // One more block gives another estimate.
         assert_ne!(noise(80), whole * 0.8f32.sqrt());
     }
 
@@ -269,7 +270,7 @@ mod tests {
         assert_eq!(*told.borrow(), expected);
         assert_eq!(watched(Until { samples: 4096, noise: None }, 2), Err(Cancelled));
         assert_eq!(told.borrow().len(), 2);
-        // Where noise decides, the end is estimated from it.
+        // If noise decides, the end is estimated from it.
         let end = watched(Until { samples: 4096, noise: Some(0.002) }, 999);
         let told = told.borrow();
         assert!(told[..3].iter().all(|(done, _)| *done == 0.0) && told[3].0 > 0.0, "{told:?}");

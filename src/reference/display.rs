@@ -12,11 +12,12 @@ use crate::{
     scene::Display,
 };
 
-/// Encodes to eight bits without a power per channel, and yet with exactly the result of `round(255 · srgb_encode(x))`.
+/// Encodes to eight bits without calculating powers, and with exactly the result of `round(255 ·
+/// srgb_encode(x))`.
 struct Encoder {
     /// The smallest number with each code.
     threshold: [f32; 256],
-    /// The code of the smallest number that begins with the same bits, from [`FIRST`](Self::FIRST) on.
+    /// The code of the smallest number that begins with these bits, from [`FIRST`](Self::FIRST) on.
     start: Vec<u8>,
 }
 
@@ -32,7 +33,7 @@ impl Encoder {
     fn new() -> Self {
         let mut threshold = [0.0; 256];
         for code in 1..=255u8 {
-            // The inverse function misses the threshold by at most a few of the last bits.
+            // The inverse function is off by at most a few of the last bits.
             let mut x = srgb_decode((f32::from(code) - 0.5) / 255.0);
             while srgb_encode8(x) >= code {
                 x = x.next_down();
@@ -74,29 +75,29 @@ pub fn encode8(x: f32) -> u8 {
     ENCODER.encode(x)
 }
 
-/// The way of a pixel from light to the display.
+/// The steps of a pixel from light to the display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplaySteps {
     /// The light of the objects: linear Rec. 709, before exposure.
     pub light: Vec3,
-    /// The fraction of the pixel that objects cover; the rest is background.
+    /// The fraction of the pixel covered by objects; the rest is background.
     pub coverage: f32,
     /// The factor of the exposure, `2^EV`.
     pub exposure: f32,
-    /// Light times exposure, plus the background, which has no exposure.
+    /// Light times exposure, plus the background, to which exposure does not apply.
     pub exposed: Vec3,
-    /// The input of the tone curve: without encoding, the numbers decoded, so that encoding gives them back; otherwise
-    /// the same.
+    /// The input of the tone curve: without encoding, the decoded numbers, so that encoding restores them;
+    /// otherwise unchanged.
     pub input: Vec3,
-    /// After the tone curve.
+    /// The result of the tone curve.
     pub mapped: Vec3,
     /// Clipped to the range of the display and sRGB-encoded, 0 to 1.
     pub encoded: Vec3,
-    /// The same in eight bits, rounded; 0 for NaN.
+    /// The encoded values in eight bits, rounded; 0 for NaN.
     pub codes: [u8; 3],
 }
 
-/// The steps from a pixel of light to a pixel on the display, with common parts calculated once.
+/// The conversion from a pixel of light to a pixel on the display, with common parts calculated once.
 pub(super) struct DisplayTransform {
     display: Display,
     exposure: f32,
@@ -114,18 +115,18 @@ impl DisplayTransform {
         }
     }
 
-    /// Light of objects, and the fraction of the pixel that they cover, to sRGB.
+    /// Converts the light of objects, and the fraction of the pixel that they cover, to sRGB.
     pub(super) fn apply(&self, pixel: Vec4) -> [u8; 3] {
         let [.., c] = self.curve(pixel);
         self.codes(c)
     }
 
-    /// The light after exposure, as the input of the tone curve, and after the curve.
+    /// The light after exposure, the input of the tone curve, and its result.
     fn curve(&self, pixel: Vec4) -> [Vec3; 3] {
         let exposed = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
         let input = match self.display.encoding {
             Encoding::Srgb => exposed,
-            // Encoding follows and must return the number itself.
+            // The encoding that follows must return the number itself.
             Encoding::Off => exposed.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode),
         };
         [exposed, input, self.display.tone_mapping.map(input)]
@@ -203,7 +204,7 @@ mod tests {
                             Vec4::new(0.01 * i, 0.003 * i, 2.0 / (i + 1.0), [0.0, 1.0, 0.5][i as usize % 3]);
                         let steps = transform.steps(pixel);
                         assert_eq!(steps.codes, transform.apply(pixel), "{tone_mapping:?} {pixel}");
-                        // Rounding is the last step: the code is within half of one.
+                        // Rounding is the last step: the code differs by at most a half.
                         for (code, encoded) in steps.codes.into_iter().zip(steps.encoded.to_array()) {
                             let rest = (f32::from(code) - 255.0 * encoded).abs();
                             assert!(rest < 0.501, "{tone_mapping:?} {pixel}: {code} {encoded}");

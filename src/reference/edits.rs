@@ -1,4 +1,4 @@
-//! Edited shaders that the CPU renderer does not follow.
+//! Edited shaders that have no effect on the CPU renderer.
 
 use std::collections::BTreeSet;
 
@@ -11,8 +11,8 @@ use crate::{
     scene::Scene,
 };
 
-/// The edited shaders that a scene uses on the GPU and not on the CPU, by their paths. There everything is Rust except
-/// custom models, with their imports and the functions that they share.
+/// The paths of the edited shaders that a scene uses on the GPU, but not on the CPU, where everything is Rust
+/// except custom models, with their imports and shared functions.
 #[must_use]
 pub fn ignored_edits(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
     if registry.sources().edited().all(|path| path.starts_with("models/")) {

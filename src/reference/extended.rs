@@ -1,5 +1,5 @@
-//! Light with extent at a point: the integral of a model's answer over the directions that lights fill, by samples of the
-//! lights and of the model's lobes, each weighted by the power heuristic (E. Veach, L. Guibas 1995).
+//! Light with extent at a point: the integral of a model's response over the directions of lights, by
+//! sampling both the lights and the model's lobes, with the power heuristic (E. Veach, L. Guibas 1995).
 
 use glam::{Vec2, Vec3};
 
@@ -15,20 +15,20 @@ use crate::{
     reflection::Surface,
 };
 
-/// The samples that are taken of each light with extent, and of the model's lobes: a part of a sequence.
+/// The samples taken of each light with extent, and of the model's lobes: a part of a sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightSamples {
-    /// The number of the first.
+    /// Index of the first sample.
     pub first: u32,
-    /// How many there are, at least one.
+    /// Number of samples, at least one.
     pub count: u32,
 }
 
 impl LightSamples {
-    /// The samples of a picture unless something else is said.
+    /// Default number of samples of a picture.
     pub const DEFAULT: u32 = 256;
 
-    /// The first so many.
+    /// The first `count` samples.
     #[must_use]
     pub const fn of(count: u32) -> Self {
         Self { first: 0, count }
@@ -44,25 +44,25 @@ impl Default for LightSamples {
 /// The lights with extent of a scene.
 #[derive(Default)]
 pub(super) struct Extended {
-    /// Neighbours of one type, and the number of the first among the lights that shine.
+    /// Consecutive lights of one type, and the index of the first among the active lights.
     groups: Vec<(Box<dyn Emitters>, u32)>,
     pub(super) samples: LightSamples,
 }
 
-/// The integral of a model's answer over a light, with red, green and blue of it.
+/// The integral of a model's response over a light, for red, green and blue.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Integral {
-    /// The answer by term, times the radiance.
+    /// The response by term, times the radiance.
     pub(crate) terms: Terms,
-    /// The standard error of each term.
+    /// Standard error of each term.
     pub(crate) errors: Terms,
-    /// That of the sum of the terms, whose errors may add up or cancel.
+    /// Standard error of the sum of the terms, whose errors may add up or cancel.
     pub(crate) error: Vec3,
-    /// The number of samples of the light, and as many of the lobes.
+    /// Number of samples of the light, and of the lobes.
     pub(crate) samples: u32,
-    /// The solid angle from which the light shines, sr, and its standard error.
+    /// Solid angle of the light, sr, and its standard error.
     pub(crate) solid_angle: [f32; 2],
-    /// Of the directions that were taken, the one in which radiance times answer is largest; none if all are dark.
+    /// The sampled direction with the largest product of radiance and response; `None` if all are dark.
     pub(crate) brightest: Option<Brightest>,
 }
 
@@ -71,16 +71,16 @@ pub(crate) struct Integral {
 pub(crate) struct Brightest {
     /// Unit vector to the light.
     pub(crate) l: Vec3,
-    /// The radiance from there, the colour of the light included.
+    /// The radiance from this direction, including the colour of the light.
     pub(crate) radiance: Vec3,
-    /// The answer of the model to light of unit intensity from there.
+    /// The response of the model to light of unit intensity from this direction.
     pub(crate) response: Terms,
 }
 
-/// Directions and what arrives from each, over its density.
+/// Receives directions with the light arriving from each, divided by its density.
 type Take<'a> = dyn FnMut(&[Arriving]) + 'a;
 
-/// The most directions that a model answers to at once.
+/// Maximum number of directions that a model evaluates at once.
 const AT_ONCE: usize = 4 * BLOCK;
 
 impl Extended {
@@ -110,7 +110,8 @@ impl Extended {
         sum / self.samples.count.max(1) as f32
     }
 
-    /// The integral over its one light by term, with its standard error from parts of the samples, and what explains it.
+    /// The integral over its single light by term, with the standard error from parts of the samples, and
+    /// data for explanations.
     pub(super) fn integral(
         &self,
         (emitter, record): (&dyn Emitter, &LightRecord),
@@ -120,7 +121,7 @@ impl Extended {
         frame: &Frame,
         seed: u32,
     ) -> Integral {
-        /// The parts: independently scrambled sequences of a sixteenth of the samples each.
+        /// Number of parts: independently scrambled sequences with a sixteenth of the samples each.
         const PARTS: u32 = 16;
         let LightSamples { first, count } = self.samples;
         let answer = |at: &At, first: u32, count: u32, watch: &mut dyn FnMut(Vec3, Terms)| {
@@ -160,7 +161,7 @@ impl Extended {
         }
     }
 
-    /// The solid angle from which its one light shines, and its standard error: the mean of the inverse densities.
+    /// The solid angle of its single light, and the standard error: the mean of the inverse densities.
     fn solid_angle(&self, (emitter, record): (&dyn Emitter, &LightRecord), p: Vec3, seed: u32) -> [f32; 2] {
         let number = self.groups.first().map_or(0, |(_, number)| *number);
         let sequence = Sequence::new(seed, number + 1);
@@ -174,8 +175,8 @@ impl Extended {
         [mean, standard_error(all()).x]
     }
 
-    /// Hands out what arrives by some samples, over its density: many directions at once, since a model calculates what depends
-    /// on the view alone anew each time.
+    /// Passes on the light arriving from samples, divided by its density: many directions at once, since a
+    /// model recalculates quantities that depend only on the view in each call.
     fn arrive(&self, at: &At, samples: LightSamples, take: &mut Take) {
         let mut waiting = [Arriving::default(); AT_ONCE];
         let mut count = 0;
@@ -193,7 +194,7 @@ impl Extended {
         take(&waiting[..count]);
     }
 
-    /// Hands out what arrives by a block of samples.
+    /// Passes on the light arriving from a block of samples.
     fn block(&self, at: &At, first: u32, count: usize, mut take: impl FnMut(Arriving)) {
         let mut directions =
             Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };
@@ -207,7 +208,7 @@ impl Extended {
         };
         for (i, u) in points(0).into_iter().enumerate().take(count) {
             let l = at.lobes.sample(u, at.v);
-            // Models answer to light from above the surface alone.
+            // Models respond only to light from above the surface.
             if l.z > 0.0 {
                 directions.l[i] = at.frame.t * l.x + at.frame.b * l.y + at.frame.n * l.z;
                 directions.pdf[i] = at.lobes.pdf(l, at.v);
@@ -236,21 +237,21 @@ impl Extended {
     }
 }
 
-/// Ambient, diffuse, specular.
+/// The ambient, diffuse and specular terms.
 fn by_term(terms: &Terms) -> [Vec3; 3] {
     [terms.ambient, terms.diffuse, terms.specular]
 }
 
-/// The standard error of the mean of independent values; zero of a single one.
+/// The standard error of the mean of independent values; zero for a single one.
 fn standard_error(values: impl ExactSizeIterator<Item = Vec3> + Clone) -> Vec3 {
     let n = values.len() as f32;
     let mean = values.clone().sum::<Vec3>() / n;
-    // From the mean, since the squares of nearly equal numbers lose the digits in which they differ.
+    // Relative to the mean, since the squares of nearly equal numbers lose the digits in which they differ.
     let squares: Vec3 = values.map(|x| (x - mean) * (x - mean)).sum();
     (squares / (n * (n - 1.0)).max(1.0)).map(f32::sqrt)
 }
 
-/// The point, the viewer and the lobes of the model there.
+/// The point, the viewer, and the lobes of the model there.
 struct At {
     lobes: Lobes,
     p: Vec3,
@@ -347,7 +348,7 @@ mod tests {
             _ => kind,
         };
         if given.contains_key("up") {
-            // The turn that brings the height from where it points by itself to where the file has it.
+            // The rotation that moves the height from its default direction to that in the file.
             let [x, y] = crate::light::extent::sides(record.direction, Vec2::Y);
             let up = vector("up") - vector("up").dot(record.direction) * record.direction;
             values.set("roll", Value::Number((-up.dot(x)).atan2(up.dot(y)).to_degrees()));
@@ -409,7 +410,7 @@ mod tests {
         model.instantiate(&values, Encoding::Srgb)
     }
 
-    /// The same surface with other lobes.
+    /// A surface with its lobes replaced.
     struct With(std::sync::Arc<dyn Surface>, Lobes);
 
     impl Surface for With {
@@ -437,7 +438,7 @@ mod tests {
         estimates(surface, light, v, count, 7..8)[0]
     }
 
-    /// The estimates with some seeds.
+    /// The estimates with these seeds.
     fn estimates(surface: &dyn Surface, light: &str, v: Vec3, count: u32, seeds: Range<u32>) -> Vec<f32> {
         let (entry, values, record) = golden_light(light);
         let mut extended = Extended { samples: LightSamples::of(count), ..Extended::default() };
@@ -512,7 +513,8 @@ mod tests {
     #[test]
     fn own_lobes_are_never_much_noisier_and_narrow_highlights_need_them() {
         use rayon::prelude::*;
-        // Model, its settings, and whether the samples of the default are too few for its highlight in light from everywhere.
+        // Model, settings, and whether the default number of samples is too small for its highlight in
+        // uniform light.
         let cases = [
             ("phong", "", false),
             ("phong", "alpha=5000", false),
@@ -588,7 +590,7 @@ mod tests {
         assert_eq!(wrong, [""; 0]);
     }
 
-    /// The lights of the golden values, each alone, with its emitter.
+    /// The lights of the golden values, one by one, with their emitters.
     fn lights() -> Vec<(String, Box<dyn Emitters>, Box<dyn Emitter>, LightRecord)> {
         let mut names: Vec<_> = golden().into_iter().map(|(light, ..)| light).collect();
         names.dedup();
@@ -634,7 +636,7 @@ mod tests {
                 let rises = group.rises(0, Vec3::ZERO, n);
                 assert!(rises || !reaches, "{name} for {n}");
                 left_out += usize::from(!rises);
-                // The wrong twin: as if lights were as small as their middles.
+                // The wrong twin: lights reduced to their centres.
                 let middle = emitter.bounds(&record, Vec3::ZERO);
                 lost_by_their_middle += usize::from(reaches && middle.is_some_and(|c| c.axis.dot(n) < 0.0));
             }

@@ -1,4 +1,5 @@
-//! Pictures whose light is not that of the light loop: the same places of the same objects, another calculation.
+//! Pictures whose light does not come from the light loop: the same points on the same objects, with another
+//! calculation.
 
 use std::sync::Arc;
 
@@ -7,16 +8,16 @@ use glam::Vec3;
 use super::object::Draw;
 use crate::shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying};
 
-/// The light that leaves a point towards the observer, from its place, unit normal and tangent as in
+/// The light that leaves a point towards the observer, from its position, unit normal and tangent as in
 /// [`Lighting::colour`].
 pub(crate) type Leaving = dyn Fn(Vec3, Vec3, Vec3) -> Vec3 + Send + Sync;
 
-/// Phong shading that asks for this light.
+/// Phong shading that uses this light.
 #[derive(Clone)]
 pub(super) struct Instead(pub(super) Arc<Leaving>);
 
 impl Instead {
-    /// An object with this light.
+    /// The object with this light.
     pub(super) fn on<'a>(&self, draw: Draw<'a>) -> Draw<'a> {
         Draw { stage: Stage::Pixel, shading: Box::new(self.clone()), ..draw }
     }

@@ -17,24 +17,24 @@ use crate::{
     shading::Lighting,
 };
 
-/// The light of any model is kept within these bounds, so that interpolating and adding it gives no infinity and no
-/// NaN.
+/// The light of all models is limited to these bounds, so that interpolation and sums give neither infinity
+/// nor NaN.
 const BRIGHTEST: f32 = 1e30;
 
-/// Light within these bounds; what is not a number is dark.
+/// Light limited to these bounds; NaN becomes dark.
 pub(super) fn within_bounds(light: Vec3) -> Vec3 {
     light.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
 }
 
 /// All lights of a scene, ready for calculation.
 pub(super) struct Lights {
-    /// Neighbours of one type together, in the order of the scene.
+    /// Consecutive lights of one type together, in the order of the scene.
     groups: Vec<Box<dyn Emitters>>,
-    /// Those with extent.
+    /// Lights with extent.
     extended: Extended,
     observer: Vec3,
     terms: TermSelection,
-    /// True if values that are no numbers, or too bright, stay as they are.
+    /// True if NaN and excessive values are kept.
     raw: bool,
     /// True once a sum was not finite.
     odd: AtomicBool,
@@ -62,29 +62,29 @@ impl Lights {
         Self { groups, extended, observer, terms, raw: false, odd: AtomicBool::new(false) }
     }
 
-    /// The same, with these samples of lights with extent.
+    /// Sets the samples of lights with extent.
     pub(super) fn sampled(mut self, samples: LightSamples) -> Self {
         self.extended.samples = samples;
         self
     }
 
-    /// The same, with values that are no numbers, or too bright, as they are.
+    /// Keeps NaN and excessive values.
     pub(super) fn raw(self) -> Self {
         Self { raw: true, ..self }
     }
 
-    /// True if a sum was not finite so far.
+    /// True if any sum was not finite so far.
     pub(super) fn was_odd(&self) -> bool {
         self.odd.load(Ordering::Relaxed)
     }
 
-    /// The lights as they shine on one surface.
+    /// The lights shining on one surface.
     pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface) -> LightsOn<'a> {
         LightsOn { lights: self, surface, lobes: OnceLock::new(), seed: AtomicU32::new(0) }
     }
 }
 
-/// The lights of a scene and the surface that they shine on.
+/// The lights of a scene and the surface on which they shine.
 pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
@@ -96,26 +96,26 @@ pub(super) struct LightsOn<'a> {
 }
 
 impl LightsOn<'_> {
-    /// The seed of the pixel that was begun, or of vertices.
+    /// The seed of the current pixel, or of vertices.
     pub(super) fn seed(&self) -> u32 {
         self.seed.load(Ordering::Relaxed)
     }
 
-    /// The same with another seed.
+    /// Sets the seed.
     fn seeded(self, seed: u32) -> Self {
         self.seed.store(seed, Ordering::Relaxed);
         self
     }
 
-    /// The direction to the viewer, and the direction that the model gets for it.
+    /// The direction to the viewer, and the direction passed to the model for it.
     fn view(&self, position: Vec3, normal: Vec3) -> [Vec3; 2] {
-        // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then mirrored in
-        // the surface, or rims would be black.
+        // An interpolated normal may face away from a viewer who can still see the surface: the viewer is
+        // then mirrored in the surface; otherwise rims would be black.
         let eye = (self.lights.observer - position).normalize_or_zero();
         [eye, eye - 2.0 * normal.dot(eye).min(0.0) * normal]
     }
 
-    /// The sum over the lights, as it comes.
+    /// The unmodified sum over the lights.
     fn sum(&self, position: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
         let terms = self.lights.terms;
         let (mut sum, mut uniform) = (Vec3::ZERO, Vec3::ZERO);
@@ -167,7 +167,7 @@ pub(crate) struct Point {
     pub(crate) tangent: Vec3,
     /// The result of the loop.
     pub(crate) colour: Vec3,
-    /// The seed of its samples of lights with extent.
+    /// The seed of the point's samples of lights with extent.
     pub(crate) seed: u32,
 }
 
@@ -175,30 +175,32 @@ pub(crate) struct Point {
 pub(crate) struct Loop {
     /// The direction to the observer.
     pub(crate) eye: Vec3,
-    /// The direction to the observer that the model gets: mirrored in the surface if the normal faces away.
+    /// The direction to the observer as passed to the model: mirrored in the surface if the normal faces
+    /// away.
     pub(crate) v: Vec3,
     pub(crate) frame: Frame,
     pub(crate) lights: Vec<LitBy>,
-    /// The sum before values that are no numbers, or too bright, are replaced.
+    /// The sum before NaN and excessive values are replaced.
     pub(crate) sum: Vec3,
 }
 
 /// One light at one point.
 pub(crate) struct LitBy {
-    /// Its place among the lights of the scene.
+    /// Index among the lights of the scene.
     pub(crate) index: usize,
     pub(crate) record: LightRecord,
     pub(crate) incident: Incident,
     pub(crate) factors: Vec<Factor>,
-    /// The answer of the model to light of unit intensity.
+    /// The response of the model to light of unit intensity.
     pub(crate) response: Terms,
-    /// Its part of the sum, with the selected terms.
+    /// The light's part of the sum, with the selected terms.
     pub(crate) contribution: Vec3,
-    /// Of a light with extent: the integral of the answer over the light.
+    /// For a light with extent: the integral of the response over the light.
     pub(crate) integral: Option<Integral>,
 }
 
-/// The light loop at a point, light by light: each contribution is what the loop gives for that light alone, up to rounding.
+/// The light loop at a point, light by light: each contribution equals the result of the loop for that light
+/// alone, up to rounding.
 pub(super) fn light_by_light(
     scene: &Scene,
     registry: &Registry,
@@ -212,7 +214,7 @@ pub(super) fn light_by_light(
     let frame = Frame::new(point.normal, point.tangent);
     let encoding = scene.display.encoding;
     let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
-    // The number of a light among those that shine and are known is that of its sequence.
+    // The index of a light among the active, known ones selects its sequence.
     let known = shining.filter(|(_, light)| registry.light(&light.light_type).is_some()).enumerate();
     let lit_by = |(number, (index, light)): (usize, (usize, &Light))| {
         let (entry, emitter, record) = emitter(light, registry, encoding)?;

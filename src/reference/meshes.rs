@@ -1,4 +1,4 @@
-//! The meshes of a scene, each once while it is needed.
+//! The meshes of a scene, each built once while it is needed.
 
 use std::{
     collections::HashMap,
@@ -14,12 +14,12 @@ use crate::{
     shape::{MeshKey, PolygonMesh, ShapeEntry},
 };
 
-/// Polygons of meshes held at a time, about 100 bytes each: bounds the memory for scenes in which every object has
-/// parameters of its own.
+/// Maximum number of polygons of meshes held at a time, about 100 bytes each: bounds the memory for scenes in
+/// which every object has different parameters.
 const POLYGONS_HELD: usize = 1 << 20;
-/// Meshes made at a time.
+/// Number of meshes built at a time.
 const AT_ONCE: usize = 16;
-/// Objects among which those are looked for.
+/// Number of objects among which these are looked for.
 const AHEAD: usize = 1024;
 
 /// A mesh with its normals, shared by all objects with equal keys.
@@ -51,11 +51,11 @@ impl Prepared {
     }
 }
 
-/// Meshes that are kept from one picture to the next.
+/// Meshes kept from one picture to the next.
 #[derive(Default)]
 pub(crate) struct MeshStore {
     known: HashMap<MeshKey, Arc<Prepared>>,
-    /// Polygons of all of them.
+    /// Number of polygons of all meshes.
     polygons: usize,
 }
 
@@ -70,17 +70,18 @@ impl<'a> Meshes<'a> {
         Self::with(registry, MeshStore::default())
     }
 
-    /// With those that are known already.
+    /// Starts with known meshes.
     pub(super) fn with(registry: &'a Registry, store: MeshStore) -> Self {
         Self { registry, store }
     }
 
-    /// What is known now.
+    /// Returns the known meshes.
     pub(super) fn into_store(self) -> MeshStore {
         self.store
     }
 
-    /// The mesh of the first of some objects that are drawn one after the other; `None` if its type is unknown.
+    /// The mesh of the first of several objects that are drawn one after the other; `None` if its type is
+    /// unknown.
     pub(super) fn first(&mut self, objects: &[&Object]) -> Option<Arc<Prepared>> {
         let (_, key) = self.entry(objects.first()?)?;
         if !self.store.known.contains_key(&key) {
@@ -94,10 +95,10 @@ impl<'a> Meshes<'a> {
         Some((entry, entry.key(&object.shape, object.tessellation)))
     }
 
-    /// Makes missing meshes of the first objects, in parallel.
+    /// Builds missing meshes of the first objects, in parallel.
     fn make(&mut self, objects: &[&Object]) {
         if self.store.polygons > POLYGONS_HELD {
-            // Those that are still needed are held by who needs them.
+            // Meshes that are still needed are held by their users.
             self.store.known.clear();
             self.store.polygons = 0;
         }

@@ -1,8 +1,9 @@
-//! The CPU renderer: the picture of a scene from the Rust functions alone.
+//! The CPU renderer: draws a scene with the Rust functions alone.
 //!
-//! It shares no code with the shaders, so that each checks the other, and needs neither a window nor a GPU. It follows
-//! the rules of graphics hardware (corners snapped to 1/256 pixel, top-left rule, perspective-correct interpolation,
-//! the standard four samples, colour once per pixel and triangle), so that both give the same picture up to rounding.
+//! It shares no code with the shaders, so that each checks the other, and needs neither a window nor a GPU.
+//! It follows the rules of graphics hardware (corners snapped to 1/256 pixel, top-left rule,
+//! perspective-correct interpolation, the standard four sample positions, one colour per pixel and triangle),
+//! so that both give the same picture up to rounding.
 //!
 //! ```
 //! use lights_camera_models::{reference, registry::Registry, scene::Scene};
@@ -87,7 +88,7 @@ pub struct Settings {
     pub height: u32,
     /// Samples per pixel: 4, the standard positions, or 1, the pixel's centre. Other numbers above 1 count as 4.
     pub samples: u32,
-    /// The terms of the equation that are calculated.
+    /// The calculated terms of the equation.
     pub terms: TermSelection,
 }
 
@@ -104,8 +105,8 @@ pub struct Picture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Row by row from the top: red, green and blue of the light of objects and of lights that are seen (linear Rec. 709, the
-    /// mean over the pixel's samples), and the fraction of samples that they cover. The rest is
+    /// Row by row from the top: red, green and blue of the light of objects and of visible lights (linear
+    /// Rec. 709, the mean over the pixel's samples), and the fraction of samples that they cover. The rest is
     /// [`BACKGROUND`].
     pub pixels: Vec<Vec4>,
 }
@@ -117,7 +118,7 @@ impl Picture {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// The way of a pixel from light to the codes that [`to_rgb8`](Self::to_rgb8) gives it, step by step.
+    /// The steps of a pixel from light to its codes in [`to_rgb8`](Self::to_rgb8).
     #[must_use]
     pub fn display_steps(pixel: Vec4, display: &Display) -> DisplaySteps {
         DisplayTransform::new(display).steps(pixel)
@@ -144,7 +145,8 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
     render_noting(scene, registry, settings, &AtomicBool::default())
 }
 
-/// The same; sets `odd` if light that is not finite was replaced, as the channel [`DebugChannel::NotANumber`] shows.
+/// Like [`render`]; sets `odd` if light that is not finite was replaced, as shown by the channel
+/// [`DebugChannel::NotANumber`].
 #[must_use]
 pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, odd: &AtomicBool) -> Picture {
     let pixels =
@@ -154,7 +156,7 @@ pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, od
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
-/// The same with some of the samples of lights with extent.
+/// Like [`render_noting`], with these samples of lights with extent.
 #[must_use]
 pub fn render_samples(
     scene: &Scene,
@@ -167,7 +169,7 @@ pub fn render_samples(
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
-/// Renders the objects of a scene, each point as bright as `leaving` says.
+/// Renders the objects of a scene with the light given by `leaving` at each point.
 pub(crate) fn render_instead(
     scene: &Scene,
     registry: &Registry,
@@ -188,7 +190,7 @@ pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> V
     render_rgb8_noting(scene, registry, settings, &AtomicBool::default())
 }
 
-/// The same; sets `odd` as [`render_noting`] does.
+/// Like [`render_rgb8`]; sets `odd` as [`render_noting`] does.
 #[must_use]
 pub fn render_rgb8_noting(
     scene: &Scene,
@@ -204,7 +206,7 @@ pub fn render_rgb8_noting(
     .into_flattened()
 }
 
-/// The same with some of the samples of lights with extent, unless it is not finished by then.
+/// Like [`render_rgb8_noting`], with these samples of lights with extent; `None` if it is not finished by `end`.
 #[must_use]
 pub fn render_rgb8_until(
     scene: &Scene,
@@ -220,13 +222,14 @@ pub fn render_rgb8_until(
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
-/// Renders a debug channel of a scene: red, green and blue of each pixel, as its legend has them.
+/// Renders a debug channel of a scene: red, green and blue of each pixel, as in its legend.
 #[must_use]
 pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, setting: &Setting) -> Vec<u8> {
     render_channel_by(scene, registry, settings, setting, LightSamples::default())
 }
 
-/// The same with some of the samples of lights with extent, but for the [channel that is a picture](DebugChannel::is_picture).
+/// Like [`render_channel`], with these samples of lights with extent, except for the [channel that is a
+/// picture](DebugChannel::is_picture).
 #[must_use]
 pub fn render_channel_by(
     scene: &Scene,
@@ -253,14 +256,14 @@ pub fn render_channel_by(
     rgb8
 }
 
-/// Polygons held at a time: bounds the memory for scenes of any size.
+/// Maximum number of polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
 
-/// An object that is shown in another way than by its light.
+/// Replaces the light of an object by another way of drawing it.
 type Seen<'s> = dyn for<'a> Fn(Draw<'a>) -> Draw<'a> + Sync + 's;
 
-/// Draws a scene: `background` where there is no object and no visible light, and elsewhere the result of `finish` on the light. Anything
-/// not done by `end` is skipped; `odd` is set if light was not finite.
+/// Draws a scene: `background` where there is neither an object nor a visible light, and elsewhere the result
+/// of `finish` for the light. Anything not done by `end` is skipped; `odd` is set if light was not finite.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
@@ -298,7 +301,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
-    // Other ways to be shown are those of objects alone.
+    // Other ways of drawing show only objects.
     let visible = sight.is_none().then(|| VisibleLights::new(scene, registry, settings));
 
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
@@ -335,8 +338,8 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             .collect();
         let bins = bin(&triangles, &screen);
 
-        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in memory, and
-        // the picture is assembled when all are.
+        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in
+        // memory; the picture is assembled when all are finished.
         let finished: Vec<(usize, Vec<T>)> = tiles
             .par_iter_mut()
             .zip(&bins)
@@ -385,7 +388,7 @@ fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
     [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
 }
 
-/// For each tile, the triangles that may touch it, in the order of drawing: object, triangle.
+/// For each tile, the triangles that may touch it, in drawing order: object, triangle.
 fn bin(triangles: &[Vec<Triangle>], screen: &Screen) -> Vec<Vec<(u32, u32)>> {
     let mut bins = vec![Vec::new(); screen.tiles()];
     for (object, triangles) in triangles.iter().enumerate() {

@@ -1,16 +1,16 @@
-//! The point of a surface that is nearest to another point.
+//! The point of a surface nearest to another point.
 
 use glam::Vec3;
 
 use super::object::Face;
 use crate::shape::PolygonMesh;
 
-/// A triangle that faces another way counts as so much farther away, in units of the mesh: of the two sides of a thin
-/// object, and of triangles that share an edge, the one that faces the same way is taken.
+/// Distance, in units of the mesh, added to triangles that face another way: of the two sides of a thin
+/// object, and of triangles that share an edge, the one that faces the right way is chosen.
 const TURNED: f32 = 1e-4;
 
-/// The triangle whose point is nearest to a point of a surface with that normal, and the weights of its corners there.
-/// Triangles without an area, which no pixel shows, are left out.
+/// The triangle nearest to a point of a surface with this normal, and the weights of its corners there.
+/// Triangles without area, which no pixel shows, are skipped.
 pub(super) fn nearest(mesh: &PolygonMesh, point: Vec3, normal: Vec3) -> Option<(Face, Vec3)> {
     let mut best: Option<(f32, Face, Vec3)> = None;
     for (polygon, corners) in mesh.triangles() {
@@ -26,7 +26,7 @@ pub(super) fn nearest(mesh: &PolygonMesh, point: Vec3, normal: Vec3) -> Option<(
     best.map(|(_, face, weights)| (face, weights))
 }
 
-/// The weights of the corners of a triangle at its point that is nearest to another one (C. Ericson 2005, *Real-Time
+/// The weights of a triangle's corners at its point nearest to another one (C. Ericson 2005, *Real-Time
 /// Collision Detection*, section 5.1.5).
 fn weights([a, b, c]: [Vec3; 3], point: Vec3) -> Vec3 {
     let (ab, ac) = (b - a, c - a);

@@ -1,4 +1,4 @@
-//! Objects: from the scene to triangles on the screen, shaded as far as their shading models do at corners.
+//! Objects: from the scene to triangles on the screen, shaded as far as the shading model works at corners.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::{
     shading::{Corner, Lighting, Shading, Stage, Varying},
 };
 
-/// The fewest vertices or polygons that one task shades.
+/// Minimum number of vertices or polygons shaded by one task.
 const SHADED_PER_TASK: usize = 256;
 
 /// True if an object certainly lies beyond one of the planes of a view frustum.
@@ -37,10 +37,10 @@ pub(super) struct Draw<'a> {
     pub(super) anisotropic: bool,
 }
 
-/// A polygon, and the corners of a triangle of it.
+/// A polygon, and the corners of one of its triangles.
 pub(super) type Face = (u32, [u32; 3]);
 
-/// An object in its place: its corners in the room and on the screen, and the triangles that may be seen.
+/// An object in its place: its corners in the room and on the screen, and the triangles that may be visible.
 pub(super) struct Posed {
     rotation: Mat3,
     pub(super) positions: Vec<Vec3>,
@@ -48,14 +48,14 @@ pub(super) struct Posed {
     pub(super) visible: Vec<Face>,
 }
 
-/// The rotation of an object: about x first, then y, then z of the room, degrees.
+/// The rotation of an object: first about x, then y, then z of the room, in degrees.
 fn rotation(degrees: Vec3) -> Mat3 {
     let r = degrees.map(f32::to_radians);
     Mat3::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
 }
 
 impl<'a> Draw<'a> {
-    /// None if the registry does not know its models.
+    /// `None` if the registry does not know the object's models.
     pub(super) fn new(
         scene: &'a Scene,
         registry: &Registry,
@@ -79,11 +79,11 @@ impl<'a> Draw<'a> {
         self.stage == Stage::Polygon
     }
 
-    /// Puts the object in its place.
+    /// Places the object in the room and on the screen.
     pub(super) fn posed(&self, clip_from_room: &Mat4, screen: &Screen) -> Posed {
         let mesh = &self.shape.mesh;
         if self.anisotropic {
-            // Made now: corners are shaded in parallel.
+            // Built now, since corners are shaded in parallel.
             self.shape.tangents();
         }
         let rotation = rotation(self.object.rotation);
@@ -104,8 +104,8 @@ impl<'a> Draw<'a> {
         rotation * (p * self.object.size) + self.object.position
     }
 
-    /// The polygon with that number or, for shading models that do not run per polygon, the vertex, as a corner to be
-    /// shaded.
+    /// The polygon with this index or, for shading models that do not run per polygon, the vertex, as a
+    /// corner to shade.
     pub(super) fn corner(&self, posed: &Posed, i: usize) -> Corner {
         let per_polygon = self.per_polygon();
         let (position, normals) = if per_polygon {
@@ -128,7 +128,7 @@ impl<'a> Draw<'a> {
         }
     }
 
-    /// The corners of a triangle with their values, `shaded` giving those of a polygon or a vertex.
+    /// The corners of a triangle with their values; `shaded` returns those of a polygon or a vertex.
     pub(super) fn varyings(
         &self,
         posed: &Posed,
@@ -154,7 +154,7 @@ impl<'a> Draw<'a> {
         set_up(placed, varyings, self.anisotropic, screen, emit);
     }
 
-    /// The triangles that may be visible, shaded as far as the shading model does at corners.
+    /// The triangles that may be visible, shaded as far as the shading model works at corners.
     pub(super) fn triangles(&self, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
         let posed = self.posed(clip_from_room, screen);
         let lighting = lights.on(&*self.surface);

@@ -1,4 +1,4 @@
-//! The outlines of objects: the borders between the pixels that show one of them and those that show another or none.
+//! The outlines of objects: the borders between pixels that show different objects or the background.
 
 use super::{Settings, render};
 use crate::{
@@ -8,10 +8,11 @@ use crate::{
     scene::{Light, Scene},
 };
 
-/// True for each pixel at whose right or lower edge another object begins, or the background, row by row from the top.
+/// True for each pixel whose right or lower neighbour shows another object or the background, row by row from
+/// the top.
 #[must_use]
 pub fn outlines(scene: &Scene, registry: &Registry, [width, height]: [u32; 2]) -> Vec<bool> {
-    // Each object has a light of its own, equal over all of it: the picture tells them apart.
+    // Each object gets a different, uniform light, so that the picture identifies objects.
     let even = Scene::default();
     let mut ids = Scene {
         reflection_model: even.reflection_model,
@@ -33,7 +34,7 @@ pub fn outlines(scene: &Scene, registry: &Registry, [width, height]: [u32; 2]) -
     let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
     let pixels = render(&ids, registry, &settings).pixels;
     let (across, down) = (width as usize, height as usize);
-    // Rounding in the light loop is smaller than a step of the darkest codes.
+    // Rounding in the light loop is smaller than a step between the darkest codes.
     let differ = |a: usize, b: usize| !pixels[a].abs_diff_eq(pixels[b], 2e-5);
     let at = |i: usize| {
         let (x, y) = (i % across, i / across);

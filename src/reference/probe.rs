@@ -1,4 +1,5 @@
-//! One pixel of a picture with everything that led to it: the renderer itself, on a picture of one pixel, watched.
+//! One pixel of a picture with everything that led to it: the renderer itself draws a picture of one pixel
+//! and records its calculation.
 
 use std::{
     cell::RefCell,
@@ -24,13 +25,13 @@ use crate::{
 
 pub(crate) use super::lighting::{LitBy, Loop, Point};
 
-/// The object at a pixel, and the way from its corners to the light of the pixel.
+/// The object at a pixel, and the calculation of the pixel's light.
 pub(crate) struct Probe {
-    /// Its place among the objects of the scene.
+    /// Index among the objects of the scene.
     pub(crate) object: usize,
     pub(crate) surface: Arc<dyn Surface>,
     pub(crate) stage: Stage,
-    /// The number of the polygon in the mesh.
+    /// Index of the polygon in the mesh.
     pub(crate) polygon: usize,
     /// The corners of that polygon.
     pub(crate) outline: Vec<Vec3>,
@@ -42,9 +43,10 @@ pub(crate) struct Probe {
     pub(crate) face_normal: Vec3,
     /// The points at which the light loop ran for the polygon, or for each of its corners.
     pub(crate) at_corners: Vec<(usize, Point)>,
-    /// The points at which it ran for the pixel.
+    /// The points at which the light loop ran for the pixel.
     pub(crate) at_pixel: Vec<Point>,
-    /// The point at which Phong shading would have run it, unless the shading model runs it per pixel.
+    /// The point at which Phong shading would have run the light loop, unless the shading model runs it per
+    /// pixel.
     pub(crate) phong: Option<Point>,
     /// The light of the pixel and its coverage.
     pub(crate) light: Vec4,
@@ -53,10 +55,10 @@ pub(crate) struct Probe {
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProbeCorner {
-    /// The number of the vertex in the mesh.
+    /// Index of the vertex in the mesh.
     pub(crate) vertex: usize,
     pub(crate) position: Vec3,
-    /// Its weight in the pixel, perspective corrected.
+    /// Weight in the pixel, with perspective correction.
     pub(crate) weight: f32,
     /// The colour calculated there, if the shading model does so.
     pub(crate) colour: Vec3,
@@ -71,7 +73,7 @@ struct Found<'a> {
     weights: Vec3,
 }
 
-/// The object at a pixel within the picture; none if there is only background.
+/// The object at a pixel within the picture; `None` for background.
 pub(crate) fn probe(
     store: &mut MeshStore,
     scene: &Scene,
@@ -86,8 +88,8 @@ pub(crate) fn probe(
     Some(shaded(&found, scene, registry, settings, &At::Pixel(&screen, pixel)))
 }
 
-/// The point of an object's surface that is nearest to a point with a normal, in the coordinates of its mesh: as it would
-/// be shaded if a pixel showed it.
+/// The point of an object's surface nearest to a point with a normal, in the coordinates of its mesh: shaded
+/// as if a pixel showed it.
 pub(crate) fn probe_point(
     store: &mut MeshStore,
     scene: &Scene,
@@ -107,14 +109,14 @@ pub(crate) fn probe_point(
     Some(shaded(&found, scene, registry, settings, &At::Point(weights)))
 }
 
-/// What the observer sees in the direction of a point: the object and the place.
+/// The object and the position that the observer sees in the direction of a point.
 pub(crate) fn towards(
     store: &mut MeshStore,
     scene: &Scene,
     registry: &Registry,
     point: Vec3,
 ) -> Option<(usize, Vec3)> {
-    /// The field of view of a picture of one pixel, degrees.
+    /// Field of view of a picture of one pixel, in degrees.
     const NARROW: f32 = 0.1;
     let position = scene.observer.position;
     let observer = Observer { position, direction: point - position, field_of_view: NARROW };
@@ -124,7 +126,7 @@ pub(crate) fn towards(
     Some((object, a * weights.x + b * weights.y + c * weights.z))
 }
 
-/// The first triangle at a pixel.
+/// The nearest triangle at a pixel.
 fn first<'a>(
     store: &mut MeshStore,
     scene: &'a Scene,
@@ -140,7 +142,7 @@ fn first<'a>(
     let (indices, shown): (Vec<_>, Vec<_>) =
         scene.objects.iter().enumerate().filter(|(_, object)| object.visible).unzip();
 
-    // In the order of the renderer: of equally near triangles, the first is seen.
+    // In the renderer's order: the first of equally near triangles is visible.
     let mut nearest = Tile::<1, 1>::new();
     let mut found = None;
     for (i, &object) in shown.iter().enumerate() {
@@ -151,8 +153,8 @@ fn first<'a>(
         let posed = draw.posed(&clip_from_room, &screen);
         let mut front = None;
         for &face in &posed.visible {
-            // Red at the first corner, green at the second and blue at the third: the colour interpolated by the
-            // renderer is the weights.
+            // Red at the first corner, green at the second and blue at the third: the interpolated colour
+            // consists of the weights.
             let mut colours = [Vec3::X, Vec3::Y, Vec3::Z].into_iter();
             let varyings = draw.varyings(&posed, face, |_| Varying {
                 colour: colours.next().unwrap_or_default(),
@@ -184,18 +186,18 @@ pub(crate) fn light_loop(
     light_by_light(scene, registry, settings.terms, surface, point)
 }
 
-/// The change of clip space that makes a pixel, and a pixel around it, all of the picture.
+/// The clip-space transformation that makes a pixel, with a pixel around it, fill the picture.
 fn narrowed(size: [usize; 2], pixel: [usize; 2]) -> Mat4 {
     let [x, y]: [f32; 2] = std::array::from_fn(|i| 2.0 * (pixel[i] as f32 + 0.5) / size[i] as f32 - 1.0);
     let [across, down] = size.map(|side| side as f32 / 3.0);
     Mat4::from_scale(Vec3::new(across, down, 1.0)) * Mat4::from_translation(Vec3::new(-x, y, 0.0))
 }
 
-/// Where a triangle is shaded.
+/// The position at which a triangle is shaded.
 enum At<'a> {
-    /// At the centre of a pixel, by the renderer.
+    /// The centre of a pixel, shaded by the renderer.
     Pixel(&'a Screen, [usize; 2]),
-    /// Where its corners have these weights.
+    /// The point with these weights of the corners.
     Point(Vec3),
 }
 
@@ -224,7 +226,7 @@ impl At<'_> {
     }
 }
 
-/// Shades a triangle, once more and watched.
+/// Shades a triangle again, recording the calculation.
 fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings, at: &At) -> Probe {
     let Found { object, draw, posed, face, weights } = found;
     let (object, face) = (*object, *face);
@@ -251,7 +253,7 @@ fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings
     let at_pixel = lighting.points.take();
 
     let phong = (draw.stage != Stage::Pixel).then(|| {
-        // Its corners are vertices, whatever those of the shading model are.
+        // These corners are vertices, whatever the shading model uses.
         let phong = Draw {
             object: draw.object,
             shape: draw.shape.clone(),
@@ -304,7 +306,7 @@ fn render(
     });
 }
 
-/// The light loop, which remembers where it ran.
+/// A light loop that records where it ran.
 struct Asked<'a> {
     lighting: LightsOn<'a>,
     points: RefCell<Vec<Point>>,
@@ -336,8 +338,7 @@ impl Lighting for NoLight {
     }
 }
 
-/// A shading model, or none, and the last pixel that was to be shaded with it: interpolated values, normal of the
-/// triangle.
+/// A shading model, if any, and its last pixel: interpolated values, normal of the triangle.
 struct Watched<'a> {
     shading: Option<&'a dyn Shading>,
     seen: Mutex<Option<(Varying, Vec3)>>,

@@ -1,4 +1,4 @@
-//! The colours that shading models calculate at the vertices of an object.
+//! The colours calculated by shading models at the vertices of an object.
 
 use glam::{Mat4, Vec3};
 
@@ -15,8 +15,9 @@ use crate::{
     shading::Stage,
 };
 
-/// The luminance of the brightest vertex of an object among those of triangles that face an eye. None if its shading
-/// model does not evaluate the equation at vertices, if no triangle faces the eye, or if no vertex is lit.
+/// The luminance of the brightest vertex of an object among those of triangles that face an eye. `None` if
+/// its shading model does not evaluate the equation at vertices, if no triangle faces the eye, or if no
+/// vertex is lit.
 #[must_use]
 pub fn brightest_vertex(
     scene: &Scene,
@@ -44,7 +45,7 @@ pub fn brightest_vertex(
     if draw.stage != Stage::Vertex {
         return None;
     }
-    // Its corners in the room; where they are in a picture does not matter.
+    // Only the corners in the room matter, not those in a picture.
     let posed = draw.posed(&Mat4::IDENTITY, &Screen::new(1, 1, 1));
     let lights = Lights::new(scene, registry, terms);
     let lighting = lights.on(&*draw.surface);

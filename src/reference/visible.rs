@@ -1,4 +1,4 @@
-//! Lights with extent as they are seen in the picture: the nearest in each direction, with its radiance.
+//! Lights with extent visible in the picture: the nearest in each direction, with its radiance.
 
 use glam::{Mat3, Vec3};
 
@@ -12,18 +12,18 @@ use crate::{
     },
 };
 
-/// What is seen of lights in one direction.
+/// The visible lights in one direction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
-    /// Their places among the lights of the scene: one, or several that are infinitely far away.
+    /// Indices among the lights of the scene: one, or several at infinity.
     pub(crate) lights: Vec<usize>,
     /// The radiance, cd/m².
     pub(crate) radiance: Vec3,
-    /// `1 / w`, as objects have it; 0 if infinitely far away.
+    /// `1 / w`, as for objects; 0 at infinity.
     pub(crate) nearness: f32,
 }
 
-/// The same without their places.
+/// Radiance and nearness, without the indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sight {
     radiance: Vec3,
@@ -33,16 +33,17 @@ struct Sight {
 struct Visible {
     emitter: Box<dyn Emitter>,
     record: LightRecord,
-    /// Its place among the lights of the scene.
+    /// Index among the lights of the scene.
     index: usize,
-    /// The cone beside which it is not, and the cosine of half its angle; none if it may be anywhere.
+    /// The cone that contains the light, and the cosine of its half angle; `None` if the light may be
+    /// anywhere.
     cone: Option<(Cone, f32)>,
 }
 
 impl Visible {
-    /// Its radiance and nearness in a direction, if it is there.
+    /// The light's radiance and nearness in a direction, if it is there.
     fn seen(&self, ray: &Ray, eye: Vec3) -> Option<Sight> {
-        // Rounding of small angles must leave nothing out.
+        // Rounding of small angles must not exclude any part.
         if self.cone.is_some_and(|(cone, cosine)| ray.l.dot(cone.axis) < cosine - 1e-6) {
             return None;
         }
@@ -55,19 +56,19 @@ impl Visible {
 /// A direction from the eye.
 struct Ray {
     l: Vec3,
-    /// One over the cosine to where the observer looks.
+    /// One over the cosine to the viewing direction.
     stretch: f32,
 }
 
-/// The lights of a scene that are seen, and the eye.
+/// The visible lights of a scene, and the eye.
 pub(super) struct VisibleLights {
     lights: Vec<Visible>,
     eye: Vec3,
-    /// From pixels right, down, and 1 to directions.
+    /// Maps pixels right, down, and 1 to directions.
     rays: Mat3,
 }
 
-/// The lights that are seen at the centre of a pixel in front of a point, or of nothing.
+/// The lights visible at the centre of a pixel in front of a point, or of the background.
 pub(crate) fn in_front(
     scene: &Scene,
     registry: &Registry,
@@ -114,7 +115,7 @@ impl VisibleLights {
         Ray { l: d / stretch, stretch }
     }
 
-    /// What is seen at a place of the picture, in pixels from the top left; none if no light is.
+    /// The lights visible at a position in the picture, in pixels from the top left; `None` if there is none.
     pub(super) fn at(&self, place: [f32; 2]) -> Option<Shown> {
         let ray = self.ray(place);
         let all: Vec<_> = self.lights.iter().collect();
@@ -124,7 +125,7 @@ impl VisibleLights {
         Some(Shown { lights, radiance, nearness })
     }
 
-    /// Those that may be seen in a square part of the picture; none if there are none.
+    /// The lights that may be visible in a square part of the picture; `None` if there are none.
     pub(super) fn within(&self, [left, top]: [usize; 2], edge: usize) -> Option<Part<'_>> {
         if self.lights.is_empty() {
             return None;
@@ -148,17 +149,17 @@ impl VisibleLights {
 pub(super) struct Part<'a> {
     of: &'a VisibleLights,
     bounded: Vec<&'a Visible>,
-    /// Those that may be anywhere.
+    /// Lights that may be anywhere.
     around: Vec<&'a Visible>,
     origin: [usize; 2],
     edge: usize,
-    /// What the latter show at the centres of the pixels, and of those around the part.
+    /// The light of the latter at the centres of the pixels, and of those around the part.
     centres: Vec<Option<Sight>>,
 }
 
 impl Part<'_> {
-    /// Makes ready to give [`pixel`](Self::pixel): where something that is all around is even, it is asked once for a pixel,
-    /// not for each of its samples.
+    /// Prepares for [`pixel`](Self::pixel): surrounding light that is nearly uniform is evaluated once for
+    /// each pixel, not for each sample.
     fn prepare(&mut self) {
         if self.around.is_empty() || !self.centres.is_empty() {
             return;
@@ -171,7 +172,7 @@ impl Part<'_> {
         self.centres = (0..side * side).map(centre).collect();
     }
 
-    /// What is seen at the samples of a pixel, which are given within it: radiance and `1 / w`.
+    /// The visible lights at the samples of a pixel, which are given relative to it: radiance and `1 / w`.
     pub(super) fn pixel<const S: usize>(
         &mut self,
         [x, y]: [usize; 2],
@@ -188,9 +189,9 @@ impl Part<'_> {
         })
     }
 
-    /// What is all around at the centre of a pixel, if it is nearly the same at those beside it.
+    /// The surrounding light at the centre of a pixel, if it is nearly the same at its neighbours.
     fn even(&self, x: usize, y: usize) -> Option<Sight> {
-        /// The largest difference, as a part of the value.
+        /// Maximum relative difference.
         const EVEN: f32 = 1.0 / 64.0;
         let side = self.edge + 2;
         let i = (y + 1) * side + x + 1;
@@ -202,13 +203,13 @@ impl Part<'_> {
                 .then_some(())
         };
         [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
-        // Something near has a nearness of its own at each sample.
+        // Something near has a different nearness at each sample.
         (here.nearness == 0.0).then_some(here)
     }
 }
 
-/// What lights show in a direction, beside what is known of others: the nearest, and of those that are infinitely far
-/// away the sum.
+/// The light visible in a direction, combined with the known light: the nearest, or the sum of lights at
+/// infinity.
 fn sum(lights: &[&Visible], known: Option<Sight>, ray: &Ray, eye: Vec3) -> Option<Sight> {
     lights.iter().filter_map(|light| light.seen(ray, eye)).fold(known, |known, sight| match known {
         Some(known) if sight.nearness > known.nearness => Some(sight),
@@ -241,7 +242,8 @@ mod tests {
     fn scene(light_type: &str, z: f32) -> Scene {
         let registry = Registry::builtin();
         let declaration = registry.light(light_type).expect("built in").declaration;
-        // The cylinder stands upright; the others shine to the observer, and the sun from where it looks.
+        // The cylinder stands upright; the others shine towards the observer, and the sun from the viewing
+        // direction.
         let direction = if light_type == "cylinder" { Vec3::Y } else { Vec3::Z };
         let mut light = Light {
             light_type: light_type.to_owned(),
@@ -279,7 +281,7 @@ mod tests {
         picture(scene, 4).pixel(SIZE / 2, SIZE / 2).truncate()
     }
 
-    /// What a light of the scene sends to the observer from straight ahead.
+    /// The light that the observer receives from straight ahead.
     fn ahead(scene: &Scene) -> Vec3 {
         let shown = in_front(scene, &Registry::builtin(), &settings(1), [SIZE / 2; 2], None);
         shown.expect("it is in the middle").radiance

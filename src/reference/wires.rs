@@ -1,7 +1,7 @@
-//! Lines and dots of meshes over a picture: edges of polygons, vertices, vertex normals, as far as they are in sight.
+//! Lines and dots of meshes over a picture: visible edges of polygons, vertices, and vertex normals.
 //!
-//! What hides them is found in a map of depths, which is drawn from the same triangles as the picture. They are places in
-//! the room, so that the window can draw them as the camera moves on.
+//! Hidden parts are found with a depth map, drawn from the same triangles as the picture. Lines and dots have
+//! positions in the room, so that the window can draw them as the camera moves on.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -20,66 +20,66 @@ use crate::{
     shading::Stage,
 };
 
-/// Nothing nearer to the eye is drawn, metres.
+/// Minimum distance from the eye, in metres.
 const NEAR: f32 = 0.05;
-/// What is farther than the surface by no more than this part lies on it.
+/// Relative distance behind the surface up to which a point lies on it.
 const ON_IT: f32 = 0.003;
-/// The most steps along an edge.
+/// Maximum number of steps along an edge.
 const STEPS: f32 = 4096.0;
-/// A shorter piece of a hidden edge shows beside the rim of what hides it, pixels.
+/// Length, in pixels, below which a piece of a hidden edge is only a speck at the rim of the object in front.
 const SPECK: f32 = 2.0;
-/// Length of a normal as a part of the height of the picture.
+/// Length of a normal, relative to the height of the picture.
 const NORMAL: f32 = 0.026;
-/// A shorter edge is fainter, pixels.
+/// Length of an edge below which it is fainter, in pixels.
 const SHORT: f32 = 9.0;
-/// The least opacity of an edge.
+/// Minimum opacity of an edge.
 const FAINT: f32 = 0.2;
-/// Objects that are worked on at a time: bounds the memory.
+/// Number of objects processed at a time: bounds the memory.
 const AT_ONCE: usize = 64;
 
 /// A line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Its ends in the room.
+    /// End points in the room.
     pub ends: [Vec3; 2],
-    /// Its display code.
+    /// Display code.
     pub colour: [u8; 3],
-    /// Its opacity: fine meshes have faint edges, so that the surface is still seen.
+    /// Opacity: fine meshes have faint edges, so that the surface stays visible.
     pub opacity: f32,
 }
 
 /// A dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dot {
-    /// Its place in the room.
+    /// Position in the room.
     pub at: Vec3,
-    /// Its display code.
+    /// Display code.
     pub colour: [u8; 3],
 }
 
 impl Dot {
-    /// The display code of its rim, which is seen beside it.
+    /// The display code of the dot's rim, for contrast.
     #[must_use]
     pub fn rim(&self) -> [u8; 3] {
         if self.colour.iter().any(|code| *code > 70) { [8; 3] } else { [150; 3] }
     }
 }
 
-/// The lines and dots of some objects that are in sight.
+/// The visible lines and dots of some objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wires {
     /// The lines.
     pub lines: Vec<Line>,
     /// The dots.
     pub dots: Vec<Dot>,
-    /// The number of objects that they are of.
+    /// Number of objects drawn.
     pub drawn: usize,
-    /// The number of objects in the picture; more than those where there would be too many lines.
+    /// Number of objects in the picture; larger than `drawn` if there would be too many lines.
     pub objects: usize,
 }
 
 impl Wires {
-    /// The objects that are left out, in words; none if there are none.
+    /// A remark about omitted objects, if any.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         (self.drawn < self.objects)
@@ -87,7 +87,7 @@ impl Wires {
     }
 }
 
-/// Finds lines and dots, and makes the meshes of the scene only once.
+/// Finds lines and dots, building the meshes of the scene only once.
 #[derive(Default)]
 pub struct WireDrawer {
     meshes: MeshStore,
@@ -100,8 +100,8 @@ impl std::fmt::Debug for WireDrawer {
 }
 
 impl WireDrawer {
-    /// The lines and dots of a channel in a picture of a scene: those of the nearest objects, until there are at least
-    /// `most`.
+    /// The lines and dots of a channel in a picture of a scene: those of the nearest objects, until there are
+    /// at least `most`.
     pub fn wires(
         &mut self,
         scene: &Scene,
@@ -124,7 +124,7 @@ impl WireDrawer {
         all
     }
 
-    /// Hands lines and dots over, some objects at a time and the nearest first, until `take` returns false.
+    /// Passes on lines and dots, some objects at a time and the nearest first, until `take` returns false.
     fn each(
         &mut self,
         scene: &Scene,
@@ -202,7 +202,7 @@ pub fn draw_wires(
     let aspect = size[0] as f32 / size[1] as f32;
     let clip_from_room = clip_from_room(&scene.observer, aspect);
     let mut canvas = Canvas { rgb8, size: size.map(|side| side as usize) };
-    // As thick as they are in a picture of 720 lines.
+    // As thick as in a picture of 720 lines.
     let unit = (size[1] as f32 / 720.0).max(1.0);
     let place = |p: Vec3| on_screen(clip_from_room * p.extend(1.0), size.map(|side| side as f32));
     WireDrawer::default().each(scene, registry, settings, channel, &mut |wires| {
@@ -221,7 +221,7 @@ pub fn draw_wires(
     });
 }
 
-/// The place of a point in a picture; none behind the eye.
+/// The position of a point in a picture; `None` behind the eye.
 fn on_screen(clip: Vec4, [width, height]: [f32; 2]) -> Option<Vec2> {
     (clip.w > NEAR).then(|| {
         let at = clip.truncate() / clip.w;
@@ -229,12 +229,12 @@ fn on_screen(clip: Vec4, [width, height]: [f32; 2]) -> Option<Vec2> {
     })
 }
 
-/// The picture for one object after the other.
+/// The picture, for one object after the other.
 struct View<'a> {
     clip_from_room: Mat4,
     depths: &'a Depths,
     eye: Vec3,
-    /// Length of a normal, pixels.
+    /// Length of a normal, in pixels.
     up: f32,
 }
 
@@ -274,7 +274,7 @@ impl View<'_> {
                 let colour = if gouraud { display.apply(light().extend(1.0)) } else { of_normal };
                 wires.dots.push(Dot { at: corner.position, colour });
             } else {
-                // As long in every part of the room as it is in the picture.
+                // Normals have the same length in the picture, wherever they are in the room.
                 let scale = self.depths.points_per_tangent(&self.clip_from_room);
                 let length = self.up * clip.w / scale;
                 let ends = [corner.position, corner.position + length * normal];
@@ -285,7 +285,7 @@ impl View<'_> {
         wires
     }
 
-    /// The pieces of an edge that nothing hides.
+    /// The visible pieces of an edge.
     fn in_sight(&self, ends: [Vec3; 2]) -> Vec<Line> {
         let mut clip = ends.map(|p| self.clip_from_room * p.extend(1.0));
         let mut part = [0.0, 1.0];
@@ -324,7 +324,7 @@ impl View<'_> {
     }
 }
 
-/// The edges of the polygons that may be seen, each once.
+/// The edges of the visible polygons, each once.
 fn edges(draw: &Draw, visible: &[Face]) -> Vec<[u32; 2]> {
     let mut polygons: Vec<u32> = visible.iter().map(|(polygon, _)| *polygon).collect();
     polygons.dedup();
@@ -339,7 +339,7 @@ fn edges(draw: &Draw, visible: &[Face]) -> Vec<[u32; 2]> {
     edges
 }
 
-/// The nearest surface at the centre of each pixel: 1/w, 0 for none.
+/// The nearest surface at the centre of each pixel: 1/w, 0 without a surface.
 struct Depths {
     width: usize,
     height: usize,
@@ -357,13 +357,13 @@ impl Depths {
 
     /// Pixels per unit of the tangent.
     fn points_per_tangent(&self, clip_from_room: &Mat4) -> f32 {
-        // The row of y has the length of its scale: rotations keep lengths.
+        // The row of y has the length of its scale: rotations preserve lengths.
         0.5 * self.height as f32 * clip_from_room.row(1).truncate().length()
     }
 
     /// Draws a triangle in clip space.
     fn triangle(&mut self, clip: [Vec4; 3]) {
-        // What is behind the eye is cut off.
+        // The part behind the eye is clipped.
         let mut corners: Vec<Vec4> = Vec::with_capacity(4);
         for i in 0..3 {
             let (a, b) = (clip[i], clip[(i + 1) % 3]);
@@ -410,7 +410,8 @@ impl Depths {
         }
     }
 
-    /// True if no surface hides a point; one that lies on the farthest surface of the pixels around is not hidden.
+    /// True if no surface hides a point; a point on the farthest surface of the surrounding pixels is not
+    /// hidden.
     fn shows(&self, clip: Vec4) -> bool {
         let Some(at) = on_screen(clip, self.sides()) else { return false };
         if at.x < 0.0 || at.y < 0.0 || at.x >= self.width as f32 || at.y >= self.height as f32 {
@@ -427,14 +428,14 @@ impl Depths {
     }
 }
 
-/// A picture that is drawn on.
+/// A picture on which lines are drawn.
 struct Canvas<'a> {
     rgb8: &'a mut [u8],
     size: [usize; 2],
 }
 
 impl Canvas<'_> {
-    /// A line with round ends and smooth sides, or a disc where its ends are the same.
+    /// Draws a line with round ends and smooth sides, or a disc if its ends are equal.
     fn line(&mut self, [a, b]: [Vec2; 2], half: f32, colour: [u8; 3], opacity: f32) {
         let along = b - a;
         let squared = along.length_squared();
@@ -444,7 +445,7 @@ impl Canvas<'_> {
         };
         let [width, height] = self.size;
         for y in range(a.y.min(b.y), a.y.max(b.y), height) {
-            // Only the part of the row that the line reaches.
+            // Only the part of the row that the line covers.
             let row = y as f32 + 0.5;
             let (mut low, mut high) = (a.x.min(b.x), a.x.max(b.x));
             if along.y.abs() > 1e-3 {

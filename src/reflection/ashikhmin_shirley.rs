@@ -155,7 +155,7 @@ impl ReflectionModel for AshikhminShirley {
         }
     }
 
-    /// F_0 as the colour of the highlight. A metal has no diffuse reflection.
+    /// Sets F_0 as the colour of the highlight. A metal has no diffuse reflection.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         let mut values =
             vec![(K_S.name, Value::Number(1.0)), (SPECULAR_COLOUR.name, preset::colour(material.f0))];

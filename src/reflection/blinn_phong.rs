@@ -85,7 +85,8 @@ impl ReflectionModel for BlinnPhong {
     }
 
     fn lobes(&self) -> Lobes {
-        // The highlight is as bright whatever its width: a narrow one has little light, and needs no narrower lobe.
+        // The brightness of the highlight does not depend on its width: a narrow one has little light, and
+        // needs no narrower lobe.
         let exponent = self.alpha.min(200.0);
         let highlight = Lobe::of_half_vectors(exponent, exponent);
         let reflected = self.k_s * 8.0 / (exponent + 8.0) * self.specular_colour;

@@ -1,4 +1,5 @@
-//! Declarations of reflection models, step by step: another field of [`Declaration`] changes none of them.
+//! Builder methods for declarations of reflection models: adding a field to [`Declaration`] does not break
+//! existing declarations.
 
 use super::{
     declaration::{Ambient, Declaration, EquationPart, Family, Laws, Term},
@@ -7,8 +8,8 @@ use super::{
 use crate::shader::Source;
 
 impl Declaration {
-    /// A model with an id and a name, and its twin in WGSL. It claims no law, answers uniform light by a formula, is
-    /// isotropic, and stands among the custom models.
+    /// A model with an id, a name, and its twin in WGSL. By default it claims no laws, responds to uniform
+    /// light by a formula, is isotropic, and belongs to the custom models.
     ///
     /// ```
     /// use lights_camera_models::{reflection::Declaration, shader::Source};
@@ -37,79 +38,79 @@ impl Declaration {
         }
     }
 
-    /// The same with another id.
+    /// Sets the id.
     #[must_use]
     pub const fn id(self, id: &'static str) -> Self {
         Self { id, ..self }
     }
 
-    /// The same with another twin in WGSL.
+    /// Sets the twin in WGSL.
     #[must_use]
     pub const fn wgsl(self, wgsl: Source) -> Self {
         Self { wgsl, ..self }
     }
 
-    /// The same in another family.
+    /// Sets the family.
     #[must_use]
     pub const fn family(self, family: Family) -> Self {
         Self { family, ..self }
     }
 
-    /// The same with author and year, in short, and the publication.
+    /// Sets author and year, in short, and the publication.
     #[must_use]
     pub const fn published(self, author: &'static str, source: &'static str) -> Self {
         Self { author, source, ..self }
     }
 
-    /// The same with its purpose and look, in one or two sentences.
+    /// Sets the summary: purpose and look, in one or two sentences.
     #[must_use]
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }
     }
 
-    /// The same with other names by which people look for it.
+    /// Sets other names by which people search for it.
     #[must_use]
     pub const fn synonyms(self, synonyms: &'static [&'static str]) -> Self {
         Self { synonyms, ..self }
     }
 
-    /// The same with its equation.
+    /// Sets the equation.
     #[must_use]
     pub const fn equation(self, equation: &'static [EquationPart]) -> Self {
         Self { equation, ..self }
     }
 
-    /// The same with the quantities of its equation.
+    /// Sets the quantities of the equation.
     #[must_use]
     pub const fn quantities(self, quantities: &'static [Quantity]) -> Self {
         Self { quantities, ..self }
     }
 
-    /// The same with the claim that light may go backwards.
+    /// Claims reciprocity: the path of light may be reversed.
     #[must_use]
     pub const fn reciprocal(self) -> Self {
         Self { laws: Laws { reciprocal: true, ..self.laws }, ..self }
     }
 
-    /// The same with the claim that no light is made.
+    /// Claims energy conservation: no light is created.
     #[must_use]
     pub const fn energy_conserving(self) -> Self {
         Self { laws: Laws { energy_conserving: true, ..self.laws }, ..self }
     }
 
-    /// The same with the claim that no light is negative.
+    /// Claims that no light is negative.
     #[must_use]
     pub const fn non_negative(self) -> Self {
         Self { laws: Laws { non_negative: true, ..self.laws }, ..self }
     }
 
-    /// The same, answering uniform light by its directional albedo: it has no ambient function.
+    /// Makes the directional albedo the response to uniform light: the model has no ambient function.
     #[must_use]
     pub const fn ambient_by_albedo(self) -> Self {
         Self { ambient: Ambient::Albedo, ..self }
     }
 
-    /// The same with a response that depends on the tangent.
+    /// Makes the response depend on the tangent.
     #[must_use]
     pub const fn anisotropic(self) -> Self {
         Self { anisotropic: true, ..self }

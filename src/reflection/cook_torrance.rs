@@ -20,7 +20,7 @@ use crate::{
     shader::wgsl,
 };
 
-/// The share of the specular part; the rest is diffuse.
+/// The fraction of the specular part; the rest is diffuse.
 pub(super) const SPECULAR_WEIGHT: Parameter = Parameter {
     name: "specular_weight",
     symbol: "s",
@@ -184,7 +184,8 @@ impl ReflectionModel for CookTorrance {
     }
 }
 
-/// n and k; a metal has no diffuse reflection. That of a dielectric depends on its pigments, so it stays.
+/// Sets n and k; a metal has no diffuse reflection. That of a dielectric depends on its pigments, so it
+/// stays.
 pub(super) fn conductor_preset(material: &Measured) -> Vec<(&'static str, Value)> {
     let mut values = preset::conductor(material);
     if material.metal {

@@ -3,33 +3,33 @@
 use super::quantity::Quantity;
 use crate::{optics::TermSelection, shader::Source};
 
-/// The name, the source and the claims of a model.
+/// The name, source and claims of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Declaration {
-    /// The name in scene files: lower case, underscores.
+    /// Name in scene files: lower case, underscores.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
-    /// Its family in lists of models.
+    /// Family in lists of models.
     pub family: Family,
     /// Author and year, in short: "B. T. Phong 1975".
     pub author: &'static str,
     /// Author, year, title and place of publication.
     pub source: &'static str,
-    /// Its purpose and look, in one or two sentences.
+    /// Purpose and look, in one or two sentences.
     pub summary: &'static str,
-    /// Other names by which people look for it: "GGX", "PBR", "plastic".
+    /// Other names by which people search for it: "GGX", "PBR", "plastic".
     pub synonyms: &'static [&'static str],
     /// The equation, one part per term so that the window can colour them.
     pub equation: &'static [EquationPart],
-    /// The quantities that the equation names and does not define, each with its own equation.
+    /// The quantities used in the equation without a definition there, each with its own equation.
     pub quantities: &'static [Quantity],
-    /// The physical laws that the model keeps for all directions and legal parameters.
+    /// The physical laws that the model obeys for all directions and legal parameters.
     pub laws: Laws,
     /// The response to uniform light.
     pub ambient: Ambient,
-    /// True if the response depends on the tangent: turning the surface about its normal changes it.
+    /// True if the response depends on the tangent: rotating the surface about its normal changes it.
     pub anisotropic: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
@@ -41,8 +41,8 @@ pub struct Declaration {
 pub enum Ambient {
     /// A formula: [`ambient_response`](super::ReflectionModel::ambient_response) and its twin in WGSL.
     Formula,
-    /// Its directional albedo `E(v) = ∫ f_r cos θ dω`, calculated from the response. The model has no ambient function,
-    /// neither in Rust nor in WGSL.
+    /// The directional albedo `E(v) = ∫ f_r cos θ dω`, calculated from the response. The model has no ambient
+    /// function, neither in Rust nor in WGSL.
     Albedo,
 }
 
@@ -50,7 +50,7 @@ pub enum Ambient {
 /// subscript and `^x` a superscript; braces group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EquationPart {
-    /// Its term, which decides its colour.
+    /// Term of the equation, which determines its colour.
     pub term: Term,
     /// The mathematics.
     pub text: &'static str,
@@ -70,7 +70,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Its symbol in equations: `I_d`.
+    /// The symbol in equations: `I_d`.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
         match self {
@@ -81,7 +81,7 @@ impl Term {
         }
     }
 
-    /// The choice that shows it alone; none for the sum.
+    /// The selection that shows only this term; `None` for the sum.
     #[must_use]
     pub fn alone(self) -> Option<TermSelection> {
         match self {
@@ -125,23 +125,24 @@ impl Family {
     }
 }
 
-/// The physical laws that a model claims to keep. Tests assert each claimed law, and the violation of each other one.
+/// The physical laws that a model claims to obey. Tests assert each claimed law, and the violation of each
+/// other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Laws {
     /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
     pub reciprocal: bool,
-    /// `E(μ) ≤ 1`: never more light out than in.
+    /// `E(μ) ≤ 1`: no more light leaves than arrives.
     pub energy_conserving: bool,
     /// `f_r ≥ 0`.
     pub non_negative: bool,
 }
 
 impl Laws {
-    /// None of them.
+    /// No laws.
     pub const NONE: Self = Self { reciprocal: false, energy_conserving: false, non_negative: false };
 
-    /// The laws with their names, and true for those kept.
+    /// The laws with their names, and true for each claimed one.
     #[must_use]
     pub fn list(self) -> [(&'static str, bool); 3] {
         [

@@ -166,7 +166,7 @@ parameters! {
 }
 
 impl Disney {
-    /// The base colour at luminance 1: its hue; white for black.
+    /// The base colour scaled to luminance 1: its hue; white for black.
     fn tint(&self) -> Vec3 {
         let luminance = self.base_colour.dot(Vec3::new(0.3, 0.6, 0.1));
         if luminance > 0.0 { self.base_colour / luminance } else { Vec3::ONE }
@@ -313,7 +313,7 @@ impl ReflectionModel for Disney {
         let sheen = self.sheen * fresnel * Vec3::ONE.lerp(self.tint(), self.sheen_tint);
         let body = FRAC_1_PI * diffuse * self.base_colour + sheen;
 
-        // Disney's G is the visibility: it holds the quotient of Smith's term and the cosines.
+        // Disney's G is the visibility: it contains the quotient of Smith's term and the cosines.
         let lobe =
             |d: f32, alpha: Vec2| d * separable(cos_l, cos_v, smith_ggx(l, alpha), smith_ggx(v, alpha));
         let alpha = self.alpha();
@@ -344,7 +344,7 @@ impl ReflectionModel for Disney {
         vec![Readout::of_f0(self.f0()), Readout::of_alpha(self.roughness * self.roughness)]
     }
 
-    /// Those of the main lobe, without the clear coat.
+    /// The factors of the main lobe, without the clear coat.
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = self.alpha();
         Some(match factor {
@@ -360,7 +360,7 @@ impl ReflectionModel for Disney {
         if material.metal {
             return preset::base_colour_metallic(material);
         }
-        // At most 1, F_0 = 8 %: diamond's 17 % are out of reach.
+        // At most 1, F_0 = 8 %: diamond's 17 % are out of range.
         let specular = preset::fraction(luminance(material.f0) / 0.08);
         vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR.name, specular)]
     }

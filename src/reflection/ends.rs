@@ -1,4 +1,5 @@
-//! Models that run too long, perhaps endlessly: nothing can stop a GPU, but the interpreter stops itself, so the CPU tries a model first.
+//! Detects models that run too long, perhaps endlessly: a GPU cannot be stopped, but the interpreter stops
+//! itself, so the CPU tries a model first.
 
 use glam::Vec3;
 use thiserror::Error;
@@ -15,14 +16,14 @@ use crate::{
 #[error("{0} was not run on the GPU: on the CPU, which interprets it, {limit}", limit = StepLimit)]
 pub struct Endless(pub &'static str);
 
-/// The number of pairs of a batch that the CPU tries first.
+/// Number of pairs of a batch that the CPU tries first.
 const SAMPLE: usize = 32;
 
-/// Fails if a model with these values runs too long for some of a few directions: nothing can stop a GPU, but the
-/// interpreter stops itself. Built-in models always pass.
+/// Fails if a model with these values runs too long for any of a few directions: a GPU cannot be stopped, but
+/// the interpreter stops itself. Built-in models always pass.
 ///
 /// # Errors
-/// [`Endless`].
+/// Returns [`Endless`] if a function runs too long.
 pub fn check_that_it_ends(model: &ModelEntry, values: &Values, encoding: Encoding) -> Result<(), Endless> {
     if !model.is_interpreted() {
         return Ok(());
@@ -34,10 +35,10 @@ pub fn check_that_it_ends(model: &ModelEntry, values: &Values, encoding: Encodin
     ends(model, model.instantiate(values, encoding).as_ref(), &pairs)
 }
 
-/// The same for one surface and some of these pairs of directions.
+/// Like [`check_that_it_ends`], for one surface and some of these pairs of directions.
 ///
 /// # Errors
-/// [`Endless`].
+/// Returns [`Endless`] if a function runs too long.
 pub fn ends(model: &ModelEntry, surface: &dyn Surface, pairs: &[(Vec3, Vec3)]) -> Result<(), Endless> {
     for (l, v) in pairs.iter().step_by(pairs.len().div_ceil(2 * SAMPLE).max(1)) {
         surface.response(*l, *v, &Frame::LOCAL);

@@ -34,7 +34,7 @@ use crate::{
 pub struct ModelEntry {
     /// Name, source, laws, equation, shader.
     pub declaration: &'static Declaration,
-    /// Its parameters.
+    /// Parameters of the model.
     pub parameters: &'static [Parameter],
     /// See [`ReflectionModel::GROUPS`].
     pub groups: &'static [Group],
@@ -50,7 +50,7 @@ pub struct ModelEntry {
     kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
 }
 
-/// The values by which entries of one id are told apart.
+/// Values that distinguish entries with the same id.
 #[derive(Clone, Copy)]
 struct Identity {
     /// See [`ModelEntry::version`].
@@ -63,7 +63,8 @@ impl Identity {
     fn new(declaration: &Declaration, parameters: &[Parameter]) -> Self {
         static VERSIONS: AtomicU64 = AtomicU64::new(1);
         let mut hasher = DefaultHasher::new();
-        // The text of the shader is told apart where it is composed. Parameters have floats, which have no hash.
+        // The text of the shader is compared where it is composed. Parameters contain floats, which cannot be
+        // hashed.
         let wgsl = Source { text: "", ..declaration.wgsl };
         format!("{:?} {parameters:?}", Declaration { wgsl, ..*declaration }).hash(&mut hasher);
         Self { version: VERSIONS.fetch_add(1, Ordering::Relaxed), declared: hasher.finish() }
@@ -72,21 +73,21 @@ impl Identity {
 
 /// The state of a model whose WGSL the CPU interprets.
 pub(crate) trait Interpreted: Send + Sync {
-    /// The reason why the CPU cannot run the model, or could not at the last attempt.
+    /// The reason why the CPU cannot run the model, if the last attempt failed.
     fn trouble(&self) -> Option<String>;
     /// True if a function ran too long.
     fn runs_too_long(&self) -> bool;
-    /// Forgets that a function ran too long: with other parameters it may not.
+    /// Clears the record of a function that ran too long: with other parameters it may not.
     fn run_again(&self);
 }
 
 /// Creates a surface from parameters.
 pub(crate) type Instantiate = Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>;
 
-/// The specular lobe whose albedo the shader of a model reads.
+/// The specular lobe with the albedo that a model's shader reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lobe {
-    /// None.
+    /// No lobe.
     None,
     /// The lobe of the model itself.
     Own,
@@ -94,7 +95,7 @@ pub(crate) enum Lobe {
     Of(&'static str),
 }
 
-/// The number of surfaces with curves to keep.
+/// Number of surfaces with curves to keep.
 const KEPT: usize = 1024;
 
 impl ModelEntry {
@@ -118,7 +119,7 @@ impl ModelEntry {
         }
     }
 
-    /// The entry of a model from a file; the shader reads the lobe and the curves of the same model.
+    /// The entry of a model from a file; `lobe` is the model whose lobe and curves the shader reads.
     pub(crate) fn custom(
         declaration: &'static Declaration,
         parameters: &'static [Parameter],
@@ -145,7 +146,7 @@ impl ModelEntry {
         }
     }
 
-    /// The same with its parameters in groups.
+    /// Puts the parameters into groups.
     pub(crate) fn grouped(self, groups: &'static [Group]) -> Self {
         Self { groups, ..self }
     }
@@ -162,21 +163,21 @@ impl ModelEntry {
         self.identity.declared
     }
 
-    /// The reason why the CPU cannot run the model, if any: it interprets the WGSL of custom models, but not every
-    /// construct, while the GPU runs them all. An endless function shows only when it runs.
+    /// The reason why the CPU cannot run the model, if any: it interprets the WGSL of custom models, but not
+    /// every construct, while the GPU runs them all. An endless function is detected only when it runs.
     #[must_use]
     pub fn not_on_cpu(&self) -> Option<String> {
         self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
     }
 
-    /// True if the CPU interprets the model and found an endless function. It would be endless on the GPU too, and
-    /// nothing could stop it there.
+    /// True if the CPU interprets the model and found an endless function. It would be endless on the GPU
+    /// too, which cannot be stopped.
     #[must_use]
     pub fn runs_too_long(&self) -> bool {
         self.on_cpu.as_ref().is_some_and(|on_cpu| on_cpu.runs_too_long())
     }
 
-    /// Lets a function run again that ran too long, for a scene that may have other parameters.
+    /// Allows a function that ran too long to run again, for a scene that may have other parameters.
     pub(crate) fn run_again(&self) {
         if let Some(on_cpu) = &self.on_cpu {
             on_cpu.run_again();
@@ -189,7 +190,7 @@ impl ModelEntry {
         self.on_cpu.is_some()
     }
 
-    /// True if the model has a specular lobe whose albedo its shader reads, or other curves.
+    /// True if the model has a specular lobe with an albedo that its shader reads, or other curves.
     #[must_use]
     pub fn has_lobe(&self) -> bool {
         self.lobe == Lobe::Own
@@ -224,7 +225,7 @@ impl ModelEntry {
         kept.entry(key).or_insert(surface).clone()
     }
 
-    /// True if the row of an object has a curve beside the parameters.
+    /// True if the row of an object contains a curve in addition to the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
         self.lobe != Lobe::None || !self.curves.is_empty() || self.declaration.ambient == Ambient::Albedo
@@ -236,27 +237,28 @@ impl ModelEntry {
         if self.declaration.anisotropic { 3 } else { 1 }
     }
 
-    /// The further curves that the shader reads; see [`ReflectionModel::CURVES`].
+    /// The additional curves that the shader reads; see [`ReflectionModel::CURVES`].
     #[must_use]
     pub fn curves(&self) -> &'static [NamedCurve] {
         self.curves
     }
 
-    /// The curves in the language of web pages.
+    /// The curves as JavaScript for web pages.
     #[must_use]
     pub fn on_pages(&self) -> Option<OnPages> {
         self.on_pages
     }
 
-    /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the further curves.
+    /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the additional
+    /// curves.
     #[must_use]
     pub fn curve_length(&self) -> usize {
         self.harmonics() * NODES + self.curves.iter().map(NamedCurve::length).sum::<usize>()
     }
 
-    /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
-    /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and the curve for models that have one.
-    /// Its colours are zero unless `uniform_light`: the scene has uniform light.
+    /// The row of an object in the shader's table, with the layout of the WGSL struct `Row` (see
+    /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and the curve for models that
+    /// have one. The colours of the curve are zero unless the scene has `uniform_light`.
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding, uniform_light: bool) -> Vec<u8> {
         let mut row = pack(self.parameters, values, encoding);
@@ -268,14 +270,14 @@ impl ModelEntry {
         row
     }
 
-    /// The values of the further curves of a surface; zeros for one that has none, such as a stand-in.
+    /// The values of a surface's additional curves; zeros for a surface without any, such as a fallback.
     pub(crate) fn curves_of(&self, surface: &dyn Surface) -> Vec<Vec4> {
         let mut values = surface.curves();
         values.resize(self.curve_length() - self.harmonics() * NODES, Vec4::ZERO);
         values
     }
 
-    /// The parameter with that name, if the model uses it.
+    /// The parameter with this name, if the model uses it.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)

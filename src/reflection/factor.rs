@@ -1,9 +1,9 @@
-//! The factors of a microfacet lobe, each alone.
+//! The factors of a microfacet lobe, one by one.
 
 use glam::Vec3;
 
-/// One factor of the lobe `D F G / (4 (N·L)(N·V))`, with the directions or the angle at which it is asked for. All
-/// vectors are unit vectors in the local frame (normal +z, tangent +x), above the surface.
+/// A factor of the lobe `D F G / (4 (N·L)(N·V))`, with the directions or the angle at which it is evaluated.
+/// All vectors are unit vectors in the local frame (normal +z, tangent +x), above the surface.
 ///
 /// K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular Reflection from Roughened Surfaces*; R. L. Cook,
 /// K. E. Torrance (1982), *A Reflectance Model for Computer Graphics*.
@@ -19,17 +19,17 @@ pub enum Factor {
         /// The normal of the facet.
         h: Vec3,
     },
-    /// `G`: the fraction of the facets that the light reaches and the viewer sees, 0 to 1. Equal in all three channels.
+    /// `G`: the fraction of the facets that are both lit and visible, 0 to 1. Equal in all three channels.
     Masking {
-        /// To the light.
+        /// Direction to the light.
         l: Vec3,
-        /// To the viewer.
+        /// Direction to the viewer.
         v: Vec3,
     },
 }
 
 impl Factor {
-    /// `G` from the quotient `G / (4 (N·L)(N·V))` that models calculate with.
+    /// `G` from the quotient `G / (4 (N·L)(N·V))` used by models.
     #[must_use]
     pub fn of_visibility(visibility: f32, l: Vec3, v: Vec3) -> Vec3 {
         Vec3::splat(4.0 * l.z * v.z * visibility)

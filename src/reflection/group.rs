@@ -1,4 +1,4 @@
-//! Groups of parameters: the layers of a surface, for the panel of its properties.
+//! Groups of parameters: the layers of a surface, for the properties panel.
 
 use std::collections::HashSet;
 
@@ -7,12 +7,12 @@ use crate::{
     text::{did_you_mean, quoted},
 };
 
-/// Some parameters of a model that belong together, such as those of one layer of the surface.
+/// Related parameters of a model, such as those of one layer of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// Its name: "Clear coat".
+    /// Name: "Clear coat".
     pub name: &'static str,
-    /// The names of its parameters, in the order of their knobs.
+    /// Names of the parameters, in display order.
     pub parameters: &'static [&'static str],
 }
 
@@ -28,7 +28,7 @@ impl Group {
         self.parameters.iter().filter_map(|name| all.iter().find(|p| p.name == *name))
     }
 
-    /// What is wrong with the groups of a model with these parameters: the number of the group, and the sentence.
+    /// The error in the groups of a model with these parameters: the index of the group, and the sentence.
     #[must_use]
     pub fn problem(groups: &[Self], all: &[Parameter]) -> Option<(usize, String)> {
         let (mut names, mut known) = (HashSet::new(), HashSet::new());
@@ -57,7 +57,7 @@ impl Group {
     }
 }
 
-/// The parameters of a model that are in none of its groups.
+/// The parameters of a model that are not in any group.
 pub fn ungrouped<'p>(groups: &[Group], all: &'p [Parameter]) -> impl Iterator<Item = &'p Parameter> {
     all.iter().filter(move |p| !groups.iter().any(|group| group.parameters.contains(&p.name)))
 }

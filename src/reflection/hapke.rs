@@ -142,7 +142,7 @@ parameters! {
 /// Guards denominators that reach 0 at the normal, at the horizon or at θ̄ = 0.
 const TINY: f32 = 1e-10;
 
-/// A direction on the slopes: the quantities of the roughness correction for the light or the view.
+/// A direction on the slopes: the quantities of the roughness correction for light or view.
 struct Slanted {
     cosine: f32,
     /// `tan θ̄ sin x`.
@@ -167,8 +167,8 @@ impl Slanted {
     }
 }
 
-/// The effective cosines of light and view in either order, and their product times `S/(cos θ_i μ_l)`: the effect of
-/// slopes of that mean tangent on the reflection of a level surface. Symmetric in light and view.
+/// The effective cosines of light and view in either order, and their product times `S/(cos θ_i μ_l)`: the
+/// effect of slopes with this mean tangent on the reflection of a level surface. Symmetric in light and view.
 fn roughen(l: Vec3, v: Vec3, n: Vec3, tangent: f32) -> (f32, f32, f32) {
     let (cos_l, cos_v) = (n.dot(l), n.dot(v));
     let (across_l, across_v) = (l - cos_l * n, v - cos_v * n);

@@ -13,34 +13,34 @@ use super::{
 /// The findings about a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawReport {
-    /// The id of the model.
+    /// Id of the model.
     pub model: String,
-    /// The number of responses examined.
+    /// Number of responses examined.
     pub responses: usize,
-    /// The number of NaN or infinite ones among them.
+    /// Number of non-finite ones among them.
     pub not_finite: usize,
-    /// The place of the first of those.
+    /// Location of the first of those.
     pub first_not_finite: Vec<String>,
     /// The laws.
     pub laws: Vec<LawVerdict>,
-    /// How well the model's lobes sample it.
+    /// Quality of sampling with the model's lobes.
     pub sampling: Sampling,
 }
 
-/// How well the lobes of a model sample it, for light with extent. No law: with any lobes pictures become right, with bad ones
-/// later.
+/// The quality of sampling with a model's lobes, for light with extent. Not a law: with any lobes pictures
+/// become correct, with bad ones more slowly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sampling {
     /// True if the error is small.
     pub fits: bool,
-    /// The largest relative error of a directional albedo by samples.
+    /// Maximum relative error of a directional albedo from samples.
     pub error: String,
-    /// The place of that error, as that of a law.
+    /// Location of that error, in the format of laws.
     pub at: Vec<String>,
 }
 
 impl Sampling {
-    /// What it was judged by.
+    /// The criterion.
     #[must_use]
     pub fn measure() -> String {
         format!("largest relative error of a directional albedo by {SAMPLES} samples")
@@ -60,22 +60,23 @@ impl Sampling {
 /// The findings about a law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawVerdict {
-    /// Its name.
+    /// Name of the law.
     pub law: String,
-    /// True if the model claims to keep it.
+    /// True if the model claims to obey it.
     pub claimed: bool,
     /// True if no violation was found.
     pub kept: bool,
-    /// The quantity that it was judged by: `largest directional albedo`.
+    /// The quantity that decides: `largest directional albedo`.
     pub measure: String,
-    /// Its value.
+    /// Value of that quantity.
     pub size: String,
-    /// The place of that value: directions in degrees, and the parameters in the syntax of `--set`.
+    /// Location of that value: directions in degrees, and the parameters in the syntax of `--set`.
     pub at: Vec<String>,
 }
 
 impl LawVerdict {
-    /// The verdict. If some values are not numbers, no law counts as kept, but a violation is still a violation.
+    /// The verdict. If some responses are not finite, no law counts as obeyed, but a violation remains a
+    /// violation.
     fn verdict(&self, finite: bool) -> &'static str {
         match (self.claimed, self.kept) {
             (_, true) if !finite => "cannot be judged: some values are NaN or infinite",
@@ -126,13 +127,13 @@ impl LawReport {
         }
     }
 
-    /// True if all responses are numbers.
+    /// True if all responses are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.not_finite == 0
     }
 
-    /// The laws that are claimed and broken.
+    /// The claimed laws that are violated.
     #[must_use]
     pub fn broken(&self) -> Vec<&str> {
         self.laws.iter().filter(|law| law.claimed && !law.kept).map(|law| law.law.as_str()).collect()
@@ -184,7 +185,7 @@ fn number(v: f32) -> String {
     }
 }
 
-/// A place: directions in degrees, and the parameters in the syntax of `--set`.
+/// A location: directions in degrees, and the parameters in the syntax of `--set`.
 fn place(model: &ModelEntry, case: Option<&Case>) -> Vec<String> {
     let Some(case) = case else { return Vec::new() };
     let angles = |d: Vec3| {

@@ -1,6 +1,6 @@
-//! A search for violations of a model's laws: over random directions and legal parameters, the same ones in every run,
-//! and at the ends of all ranges. Tests judge the built-in models by it on the CPU, `lcm models check` judges any model
-//! on the GPU.
+//! A search for violations of a model's laws: over random directions and legal parameters, identical in every
+//! run, and at the ends of all ranges. Tests use it on the CPU for the built-in models, `lcm models check` on
+//! the GPU for any model.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,26 +20,27 @@ use crate::{
     parameter::{Parameter, ParameterKind, Value, Values},
 };
 
-/// The largest relative difference between both directions attributed to rounding.
+/// Maximum relative difference after exchanging directions that is attributed to rounding.
 pub const RECIPROCITY_TOLERANCE: f32 = 2e-3;
-/// The largest directional albedo that the quadrature may return for 1.
+/// Maximum directional albedo that the quadrature may return for 1.
 pub const LARGEST_ALBEDO: f32 = 1.01;
-/// The lowest response below 0 attributed to rounding.
+/// Most negative response attributed to rounding.
 pub const NEGATIVE_TOLERANCE: f32 = 1e-6;
-/// Samples by the lobes of a model, and as many of the light, that must give the directional albedo.
+/// Number of samples from a model's lobes, and from the light, that must yield the directional albedo.
 pub const SAMPLES: u32 = 1 << 14;
-/// Their largest error, relative to an albedo of at least [`DARKEST`].
+/// Maximum error of these samples, relative to an albedo of at least [`DARKEST`].
 pub const SAMPLING_TOLERANCE: f32 = 1e-2;
-/// The error of darker albedos is measured against this one.
+/// Albedo relative to which the errors of darker albedos are measured.
 pub const DARKEST: f32 = 0.02;
 /// Steps of the quadrature of an albedo along tangent and bitangent.
 pub const COARSE: usize = 48;
-/// The same where the coarse one finds nearly 1 or more, so its error matters.
+/// Steps of the finer quadrature, used where the coarse one returns nearly 1 or more, so that its error
+/// matters.
 pub const FINE: usize = 160;
-/// The finer quadrature is used from this albedo on.
+/// Albedo from which the finer quadrature is used.
 pub const NEARLY_ALL: f32 = 0.98;
 
-/// A small generator of random numbers: the same ones in every run (G. Marsaglia 2003, xorshift).
+/// A small random number generator with the same sequence in every run (G. Marsaglia 2003, xorshift).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
@@ -63,13 +64,13 @@ impl Random {
     pub fn above(&mut self, frame: &Frame) -> Vec3 {
         let d = self.direction();
         let d = if d.dot(frame.n) < 0.0 { -d } else { d };
-        // Every fourth near grazing.
+        // Every fourth direction is near grazing.
         let tilt = if self.unit() < 0.25 { self.unit() * 0.05 } else { 1.0 };
         let flat = d - d.dot(frame.n) * frame.n;
         (flat + tilt * d.dot(frame.n) * frame.n).normalize_or(frame.n)
     }
 
-    /// A legal value; the ends of the range often.
+    /// A legal value, often at an end of the range.
     pub fn value(&mut self, parameter: &Parameter) -> Value {
         let pick = self.unit();
         let within = self.unit();
@@ -111,7 +112,7 @@ impl Random {
         values
     }
 
-    /// Every number at one of its ends, colours white or black.
+    /// Every number at one end of its range, colours white or black.
     pub fn corner(&mut self, model: &ModelEntry) -> Values {
         let mut values = Values::default();
         for parameter in model.parameters {
@@ -122,7 +123,7 @@ impl Random {
     }
 }
 
-/// The smallest or largest value of a parameter; any value of a choice.
+/// The minimum or maximum of a parameter; any value of a choice.
 fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
     match parameter.kind {
         ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
@@ -156,8 +157,8 @@ fn ends(model: &ModelEntry, high: bool) -> Values {
     values
 }
 
-/// The difference of a BRDF with both directions exchanged, relative to the larger value; differences of dark values do
-/// not count. 0 where a cosine is so small that rounding decides.
+/// The difference of a BRDF with light and view exchanged, relative to the larger value; differences of dark
+/// values do not count. 0 where a cosine is so small that rounding decides.
 #[must_use]
 pub fn reciprocity_error(there: Terms, back: Terms, l: Vec3, v: Vec3, frame: &Frame) -> f32 {
     if frame.n.dot(l) < 0.01 || frame.n.dot(v) < 0.01 {
@@ -174,9 +175,10 @@ pub fn smallest(terms: &Terms) -> f32 {
     terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
 }
 
-/// Directions to the light with weights, such that the weighted sum of the responses is about the directional albedo for a
-/// view in the local frame: sampled as an environment that shines evenly is, by `count` directions of a way of sampling
-/// with its density, and as many of all directions above the surface, weighted by the power heuristic.
+/// Directions to the light with weights, such that the weighted sum of the responses approximates the
+/// directional albedo for a view in the local frame: sampled like a uniform environment, by `count`
+/// directions from a sampling technique with its density, and as many from all directions above the surface,
+/// weighted by the power heuristic.
 #[must_use]
 pub fn sampled_directions(
     sample: impl Fn(Vec2) -> Vec3,
@@ -204,9 +206,9 @@ pub fn is_finite(terms: &Terms) -> bool {
     terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()
 }
 
-/// Directions to the light with weights, such that the weighted sum of the responses is the directional albedo for a
-/// view: `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint rule with `rows` steps
-/// along the tangent and as many along the bitangent.
+/// Directions to the light with weights, such that the weighted sum of the responses is the directional
+/// albedo for a view: `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint
+/// rule with `rows` steps along the tangent and along the bitangent.
 #[must_use]
 pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)> {
     // Slopes are spaced as u³/(1 − u²), which resolves lobes that are narrow in one direction or both: those of all
@@ -242,14 +244,14 @@ pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Te
     weighted.sum::<Vec3>().max_element()
 }
 
-/// The place of a finding, in the local frame (normal +z, tangent +x).
+/// The location of a finding, in the local frame (normal +z, tangent +x).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
     /// The parameters.
     pub values: Values,
-    /// To the light; `None` for integrals over it.
+    /// Direction to the light; `None` for integrals over it.
     pub l: Option<Vec3>,
-    /// To the viewer.
+    /// Direction to the viewer.
     pub v: Vec3,
 }
 
@@ -258,7 +260,7 @@ pub struct Case {
 pub struct Extreme {
     /// The value.
     pub size: f32,
-    /// Its place; `None` if nothing could be compared.
+    /// Location of the value; `None` if nothing could be compared.
     pub case: Option<Case>,
 }
 
@@ -273,9 +275,9 @@ impl Extreme {
 /// The extent of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Sets of parameters.
+    /// Number of sets of parameters.
     pub sets: usize,
-    /// Pairs of directions for each.
+    /// Number of pairs of directions for each set.
     pub pairs: usize,
 }
 
@@ -294,11 +296,11 @@ pub struct Findings {
     pub albedo: Extreme,
     /// The smallest number in a response.
     pub smallest: Extreme,
-    /// The largest error of a directional albedo by samples of the model's lobes, see [`sampling_errors`].
+    /// The largest error of a directional albedo from samples of the model's lobes, see [`sampling_errors`].
     pub sampling: Extreme,
     /// The number of responses.
     pub responses: usize,
-    /// The number of those with NaN or infinity.
+    /// The number of non-finite responses.
     pub not_finite: usize,
     /// The first of those.
     pub first_not_finite: Option<Case>,
@@ -320,7 +322,7 @@ impl Findings {
 /// viewer) in the local frame.
 ///
 /// # Errors
-/// Those of `ask`.
+/// Returns the errors of `ask`.
 pub fn examine<E>(
     model: &ModelEntry,
     effort: Effort,
@@ -336,7 +338,7 @@ pub fn examine<E>(
             3..40 if set % 2 == 1 => random.corner(model),
             _ => random.values(model),
         };
-        // A few sets are enough: lobes that fit the parameters fit their ends, too.
+        // A few sets are enough: lobes that suit the parameters also suit the ends of their ranges.
         if set < 3 {
             let lobes = model.instantiate(&values, Encoding::Srgb).lobes();
             for (v, error) in sampling_errors(&lobes, |pairs| ask(&values, pairs))? {
@@ -350,12 +352,13 @@ pub fn examine<E>(
     Ok(findings)
 }
 
-/// How far directional albedos by [`SAMPLES`] of some lobes are from those by quadrature, from several views. Any lobes give the
-/// albedo in the end, so a large error means that they miss the directions from which the model reflects most. Not
-/// compared with samples by the cosine alone, which are no better for narrow highlights.
+/// The deviation of directional albedos from [`SAMPLES`] of some lobes from those by quadrature, for several
+/// views. Any lobes yield the albedo eventually, so a large error means that they miss the directions in
+/// which the model reflects most. Not compared with samples of the cosine lobe alone, which are no better for
+/// narrow highlights.
 ///
 /// # Errors
-/// Those of `ask`.
+/// Returns the errors of `ask`.
 pub fn sampling_errors<E>(
     lobes: &Lobes,
     mut ask: impl FnMut(&[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
@@ -376,7 +379,7 @@ pub fn sampling_errors<E>(
     Ok(errors)
 }
 
-/// Responses in any directions, and with light and view exchanged.
+/// Compares responses in random directions, and with light and view exchanged.
 fn compare<E>(
     values: &Values,
     pairs: usize,
@@ -418,7 +421,7 @@ fn compare<E>(
     Ok(())
 }
 
-/// Directional albedos, the largest by the finer quadrature.
+/// Directional albedos, the largest with the finer quadrature.
 fn integrate<E>(
     values: &Values,
     random: &mut Random,
@@ -428,7 +431,7 @@ fn integrate<E>(
     let tilts = [0.02, 0.5, 0.8, 0.95, 0.99, random.unit() * 0.99];
     for (i, tilt) in tilts.into_iter().enumerate() {
         let (sin, cos) = (FRAC_PI_2 * tilt).sin_cos();
-        // From the side and along the tangent in turn.
+        // Alternately from the side and along the tangent.
         let (sin_azimuth, cos_azimuth) =
             if i % 2 == 0 { (0.0, 1.0) } else { (TAU * random.unit()).sin_cos() };
         let v = Vec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);

@@ -127,8 +127,9 @@ impl ReflectionModel for MetallicRoughness {
         if cos_l.min(cos_v) < 1e-9 {
             return Terms::default();
         }
-        // Only angles to the normal matter, so each vector is in a frame with x along its tangential part. Half vector
-        // by the cross product, since 1 − (N·H)² would cancel where the lobe is narrow.
+        // Only angles to the normal matter, so each vector is in a frame with x along its tangential part.
+        // The half vector comes from the cross product, since 1 − (N·H)² would cancel where the lobe is
+        // narrow.
         let leaning = |cosine: f32| Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         let h = half_vector(l, v);
         let cos_d = 0.5 * (l + v).length();

@@ -476,7 +476,7 @@ impl Microfacet {
             .sum()
     }
 
-    /// The albedo of the lobe with F = 1, where it is needed.
+    /// The albedo of the lobe with F = 1, if needed.
     fn lobe_of(&self) -> LobeAlbedo {
         if self.multiple_scattering == 0 {
             return LobeAlbedo::default();

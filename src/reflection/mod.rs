@@ -1,8 +1,8 @@
 //! Reflection models: the equations for how light leaves a surface.
 //!
 //! **To add one**: write `reflection/x.rs` and `assets/shaders/reflection/x.wgsl`, and add its name to
-//! [`register_builtin`]. Everything else (scene files, knobs, hot-swap, laws, parity, CPU renderer,
-//! row in docs/reflection-models.md) follows from the declaration.
+//! [`register_builtin`]. Everything else (scene files, controls, hot-swap, laws, parity, CPU renderer, row in
+//! docs/reflection-models.md) follows from the declaration.
 
 pub mod ends;
 pub mod law_report;
@@ -81,7 +81,7 @@ pub trait Take {
     fn take<T: ReflectionModel>(&mut self);
 }
 
-/// The built-in models, in the order of all lists: the one list.
+/// Registers the built-in models, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Lambert>();
     to.take::<ModLambert>();

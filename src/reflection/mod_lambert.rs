@@ -8,8 +8,8 @@ use crate::{
     shader::wgsl,
 };
 
-/// The exponent of the wrapped cosine. The CA writes a square and also says that `k_d = 1` equals Lambert, which is
-/// true only of exponent 1; hence a parameter.
+/// The exponent of the wrapped cosine. The CA writes a square and also states that `k_d = 1` equals Lambert,
+/// which holds only for exponent 1; hence a parameter.
 const WRAP_EXPONENT: Parameter = Parameter {
     name: "wrap_exponent",
     symbol: "p",

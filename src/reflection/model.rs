@@ -12,34 +12,37 @@ use crate::{
     parameter::{ParameterSet, Value},
 };
 
-/// The curves of a model in the language of web pages.
+/// The curves of a model as JavaScript, for web pages.
 #[derive(Clone, Copy, Debug)]
 pub struct OnPages {
-    /// A function in JavaScript, `(m, table) => curves`: from the parameters by name, colours as linear light, to the
-    /// quadruples of each of the [`CURVES`](ReflectionModel::CURVES) by name, as [`ReflectionModel::curves`] gives them.
+    /// A JavaScript function, `(m, table) => curves`: from the parameters by name, with colours as linear
+    /// light, to the quadruples of each of the [`CURVES`](ReflectionModel::CURVES) by name, as in
+    /// [`ReflectionModel::curves`].
     pub script: &'static str,
-    /// Numbers that the function reads; often none.
+    /// Numbers that the function reads; often empty.
     pub table: fn() -> Vec<f32>,
 }
 
-/// A reflection model. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)).
+/// A reflection model. The implementing struct contains its parameters (see
+/// [`parameters!`](crate::parameters)).
 pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
 
-    /// Its parameters in groups, such as one for each layer of the surface. Those in none stand before the groups.
+    /// Parameters in groups, such as one for each layer of the surface. Ungrouped parameters come before the
+    /// groups.
     const GROUPS: &'static [Group] = &[];
 
     /// True if the model has a [`lobe`](Self::lobe); then its WGSL may call
     /// `lobe_albedo(mu)` and `average_lobe_albedo()`.
     const LOBE: bool = false;
 
-    /// Further curves over a cosine that the model calculates once per surface, see [`curves`](Self::curves). Its WGSL may
-    /// call `curve_NAME(mu)` and `mean_NAME()` of each.
+    /// Additional curves over a cosine that the model calculates once per surface, see
+    /// [`curves`](Self::curves). Its WGSL may call `curve_NAME(mu)` and `mean_NAME()` for each.
     const CURVES: &'static [NamedCurve] = &[];
 
-    /// The same curves in the language of web pages, whose knobs change the parameters where the program is not there. A model
-    /// with [`CURVES`](Self::CURVES) and none of this has knobs that are fixed there, and the export says so.
+    /// The curves as JavaScript, for web pages that change parameters without the program. A model with
+    /// [`CURVES`](Self::CURVES) but without this has fixed parameters there, which the export reports.
     const ON_PAGES: Option<OnPages> = None;
 
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
@@ -51,40 +54,40 @@ pub trait ReflectionModel: ParameterSet + Copy {
         Vec3::ZERO
     }
 
-    /// The albedo of the specular lobe alone with F = 1, for models that compensate multiple scattering and set
-    /// [`LOBE`](Self::LOBE). A model keeps it as a derived field (see [`parameters!`](crate::parameters)); the shader
-    /// receives the same numbers.
+    /// The albedo of the specular lobe alone with F = 1, for models that compensate multiple scattering and
+    /// set [`LOBE`](Self::LOBE). A model stores it as a derived field (see
+    /// [`parameters!`](crate::parameters)); the shader receives the same numbers.
     fn lobe(&self) -> Option<LobeAlbedo> {
         None
     }
 
-    /// The values of the [`CURVES`](Self::CURVES), in their order: for each the nodes, then the mean. A model keeps them as
-    /// derived fields, as it does the lobe; [`Albedos`](crate::optics::albedo::Albedos) and
-    /// [`Lines`](crate::optics::albedo::Lines) have them ready.
+    /// The values of the [`CURVES`](Self::CURVES), in their order: for each the nodes, then the mean. A model
+    /// stores them as derived fields, like the lobe; [`Albedos`](crate::optics::albedo::Albedos) and
+    /// [`Lines`](crate::optics::albedo::Lines) provide them in this form.
     fn curves(&self) -> Vec<Vec4> {
         Vec::new()
     }
 
-    /// The directions from which it reflects most, for sampling light with extent. Any lobes give the same picture in the end; good
-    /// ones sooner.
+    /// The directions in which the model reflects most, for sampling light with extent. Any lobes give the
+    /// same picture eventually, good ones sooner.
     fn lobes(&self) -> Lobes {
         Lobes::default()
     }
 
-    /// Values derived from the parameters to help interpret them: the reflectance at normal incidence, the same
-    /// roughness on another scale.
+    /// Derived values that help interpret the parameters: the reflectance at normal incidence, the roughness
+    /// on another scale.
     fn readouts(&self) -> Vec<Readout> {
         Vec::new()
     }
 
-    /// A factor of the lobe alone, as [`response`](Self::response) uses it, for plots. `None` for a factor that the
-    /// model lacks, whatever the angles.
+    /// A single factor of the lobe, as used by [`response`](Self::response), for plots. `None` at all angles
+    /// for a factor that the model lacks.
     fn factor(&self, _factor: Factor) -> Option<Vec3> {
         None
     }
 
-    /// A quantity that the [equation](Declaration::equation) names and no line of it defines, such as an albedo from a
-    /// table: by its symbol, and the arguments of a function, `E(N·L)`. `None` for any other.
+    /// A quantity used in the [equation](Declaration::equation) without a definition there, such as an albedo
+    /// from a table: by its symbol, and the arguments of a function, `E(N·L)`. `None` for any other.
     fn quantity(&self, _symbol: &str, _arguments: &[f32]) -> Option<Vec3> {
         None
     }

@@ -23,7 +23,7 @@ use crate::{
     shader::wgsl,
 };
 
-/// The smallest cosine that is told from 0.
+/// The smallest cosine distinguished from 0.
 const GRAZING: f32 = 1e-9;
 
 const fn fraction(name: &'static str, default: f32) -> Parameter {
@@ -106,7 +106,7 @@ const THIN_FILM_IOR: Parameter = index("thin_film_ior", 1.4)
     .label("refractive index of the film")
     .help("The refractive index of the film: soap 1.33, oxides of metals 2 to 2.7.");
 
-/// Wavelengths of the film's interference for red, green and blue, in µm: those of Adobe's program.
+/// Wavelengths of the film's interference for red, green and blue, in µm: those of Adobe's implementation.
 const WAVELENGTHS: Vec3 = Vec3::new(0.62, 0.54, 0.45);
 
 parameters! {
@@ -234,12 +234,12 @@ parameters! {
 /// The number of quadruples of [`Prepared::values`].
 const PREPARED: usize = 7;
 
-/// What a material prepares before any direction is known.
+/// The values of a material that are calculated before any direction is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prepared {
-    /// The index above the base and that of the base.
+    /// The refractive indices above the base and of the base.
     indices: Vec2,
-    /// The ratio of both at the dielectric boundary, inverted under a denser coat.
+    /// The ratio of the indices at the dielectric boundary, inverted under a denser coat.
     ratio: f32,
     /// α of the base without anisotropy.
     alpha: f32,
@@ -257,9 +257,9 @@ pub struct Prepared {
     mean: Vec3,
     /// `Δ'`.
     darkening: Vec3,
-    /// The share of the film.
+    /// The weight of the film.
     film: f32,
-    /// n and k of metal under a film, from its colours at normal and at grazing incidence.
+    /// n and k of metal under a film, from its colours at normal and grazing incidence.
     metal_index: [Vec3; 2],
 }
 
@@ -268,7 +268,8 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
     a * (1.0 - t) + b * t
 }
 
-/// `(1 + ε)/(1 − ε)`: the ratio of indices whose reflectance at normal incidence is that of `ratio`, times a factor.
+/// `(1 + ε)/(1 − ε)`: the ratio of indices with the reflectance of `ratio` at normal incidence times a
+/// factor.
 fn scaled_ratio(ratio: f32, factor: f32) -> f32 {
     let r = (ratio - 1.0) / (ratio + 1.0);
     let e = (factor * r * r).min(0.9999).sqrt().copysign(r);
@@ -298,7 +299,7 @@ fn metal_index(f0: Vec3, edge: Vec3) -> [Vec3; 2] {
     [n, k2.max(Vec3::ZERO).map(f32::sqrt)]
 }
 
-/// α of a roughness, and the same along and across the tangent: `α_t² + α_b² = 2 α²`.
+/// α of a roughness, and α along and across the tangent: `α_t² + α_b² = 2 α²`.
 fn alphas(roughness: f32, anisotropy: f32) -> (f32, Vec2) {
     let alpha = roughness * roughness;
     let aspect = 1.0 - anisotropy;
@@ -352,7 +353,7 @@ impl Prepared {
         }
     }
 
-    /// What the shader reads, by the index of `value_prepared`.
+    /// The values that the shader reads, by the index of `value_prepared`.
     fn values(&self) -> [Vec4; PREPARED] {
         [
             Vec4::new(self.indices.x, self.indices.y, self.ratio, self.film),
@@ -377,7 +378,7 @@ fn facets(l: Vec3, v: Vec3, alpha: Vec2) -> f32 {
     ggx(half_vector(l, v), alpha) * separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha))
 }
 
-/// Nodes of the table of fuzz over the cosine of the view, and as many over the roughness.
+/// Nodes of the fuzz table over the cosine of the view, and over the roughness.
 const FUZZ_NODES: usize = 32;
 
 /// a, b, R of the fuzz by roughness and cosine, from the authors' table.
@@ -420,7 +421,7 @@ impl OpenPbr {
         Albedos::of([all, base, coat, LobeAlbedo::default()])
     }
 
-    /// The reflectance of the base, the mixture of a dielectric boundary and of metal, both with their film.
+    /// The reflectance of the base, a mixture of a dielectric boundary and metal, both with their film.
     fn fresnel(&self, cos_d: f32) -> Vec3 {
         let p = &self.prepared;
         let film = |bare: Vec3, [n, k]: [Vec3; 2]| {
@@ -431,7 +432,7 @@ impl OpenPbr {
             if p.film > 0.0 { bare.lerp(Vec3::from_array([0, 1, 2].map(covered)), p.film) } else { bare }
         };
         let mut reflected = Vec3::ZERO;
-        // Films are expensive, and of the two most materials have one.
+        // Films are expensive, and most materials have only one of the two.
         if self.metallic < 1.0 {
             let bare = Vec3::splat(dielectric(p.ratio, cos_d));
             let covered = film(bare, [Vec3::splat(p.indices.y), Vec3::ZERO]);
@@ -444,7 +445,7 @@ impl OpenPbr {
         reflected
     }
 
-    /// The fraction of light that passes the coat once, at a cosine.
+    /// The fraction of light that passes through the coat once, at a cosine.
     fn through_coat(&self, mu: f32) -> Vec3 {
         let inside = (1.0 - (1.0 - mu * mu) / (self.coat_ior * self.coat_ior)).max(1e-4).sqrt();
         let passed = self.coat_colour.max(Vec3::splat(1e-9)).powf(0.5 / inside);
@@ -897,7 +898,7 @@ impl ReflectionModel for OpenPbr {
         vec![Readout::of_f0(self.fresnel(1.0)), Readout::of_alpha(self.prepared.alpha)]
     }
 
-    /// Those of the base, without its coat and fuzz.
+    /// The factors of the base, without coat and fuzz.
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = self.prepared.base;
         Some(match factor {
@@ -909,7 +910,7 @@ impl ReflectionModel for OpenPbr {
         })
     }
 
-    /// A metal by its reflectances at normal incidence and at 82°, a dielectric by its refractive index.
+    /// Sets a metal by its reflectances at normal incidence and at 82°, a dielectric by its refractive index.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         let mut values = if material.metal {
             let tint = material.f82 / schlick(material.f0, 1.0 / 7.0);
@@ -924,7 +925,7 @@ impl ReflectionModel for OpenPbr {
                 (SPECULAR_IOR.name, Value::Number(material.n[1])),
             ]
         };
-        // What was measured is bare; layers of another material would change it.
+        // The measurement is of the bare material; layers of another material would change it.
         values.push((SPECULAR_STRENGTH.name, Value::Number(1.0)));
         let layers = [COAT_WEIGHT, FUZZ_WEIGHT, THIN_FILM_WEIGHT];
         values.extend(layers.map(|layer| (layer.name, Value::Number(0.0))));

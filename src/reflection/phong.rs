@@ -85,7 +85,8 @@ impl ReflectionModel for Phong {
     }
 
     fn lobes(&self) -> Lobes {
-        // The highlight is as bright whatever its width: a narrow one has little light, and needs no narrower lobe.
+        // The brightness of the highlight does not depend on its width: a narrow one has little light, and
+        // needs no narrower lobe.
         let exponent = self.alpha.min(50.0);
         let reflected = self.k_s * 2.0 / (exponent + 2.0) * self.specular_colour;
         Lobes::diffuse_and(Lobe::Power { exponent }, (self.k_a + self.k_d) * self.base_colour, reflected)

@@ -17,9 +17,9 @@ use crate::{
 /// A material with a measured refractive index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The name in files: lower case, underscores.
+    /// Name in files: lower case, underscores.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
     /// True for a metal: opaque, with the colour of its reflection.
     pub metal: bool,
@@ -29,7 +29,7 @@ pub struct Measured {
     pub k: [f32; 3],
     /// Unpolarised reflectance at normal incidence, linear sRGB under D65, clamped to [0, 1].
     pub f0: Vec3,
-    /// The same at 82° (the cosine 1/7).
+    /// The reflectance at 82° (the cosine 1/7).
     pub f82: Vec3,
     /// The source of the measurement and its publication.
     pub source: &'static str,
@@ -58,7 +58,7 @@ pub fn all() -> &'static [Measured] {
     &ALL
 }
 
-/// The material with that id.
+/// The material with this id.
 #[must_use]
 pub fn by_id(id: &str) -> Option<&'static Measured> {
     all().iter().find(|m| m.id == id)
@@ -113,7 +113,8 @@ pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// The settings of a measured material for a model with these parameters, judged by their names: for custom models.
+/// Returns the function that sets a measured material for a model with these parameters, identified by their
+/// names: for custom models.
 #[must_use]
 pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'static str, Value)> {
     let has = |wanted: &[&Parameter]| wanted.iter().all(|w| parameters.iter().any(|p| p == *w));
@@ -126,8 +127,8 @@ pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'stat
     }
 }
 
-/// A number as the value of a parameter that ends at 1, with as many digits as a knob shows, so that the displayed
-/// value is the value.
+/// A number as the value of a parameter with the maximum 1, with the digits that a control shows, so that the
+/// displayed value is the value.
 #[must_use]
 pub fn fraction(v: f32) -> Value {
     Value::Number((v.min(1.0) * 1e4).round() / 1e4)
@@ -170,13 +171,13 @@ mod tests {
     fn every_material_is_what_it_is_called() {
         for m in all() {
             assert!(m.f0.cmple(Vec3::ONE).all() && m.f0.cmpgt(Vec3::ZERO).all(), "{}", m.name);
-            // Author, year in brackets, title, publication: three commas at least.
+            // Author, year in brackets, title, publication: at least three commas.
             let year = m.source.split_once(" (").and_then(|(_, rest)| rest.get(..4)?.parse::<u32>().ok());
             assert!(year.is_some_and(|y| (1900..2030).contains(&y)), "{}", m.source);
             // Dielectrics are transparent: absorption within a wavelength is negligible.
             let dark = m.k.iter().all(|k| *k > 0.01);
             assert!(if m.metal { dark } else { m.k.iter().all(|k| *k < 1e-6) }, "{}", m.name);
-            // The colour is near the reflectance at the three wavelengths; saturated ones lie further off.
+            // The colour is near the reflectance at the three wavelengths; saturated ones are further off.
             for c in 0..3 {
                 let single = normal_reflectance(m.n[c], m.k[c]);
                 assert!((m.f0[c] - single).abs() < 0.11, "{}: {} and {single}", m.name, m.f0[c]);

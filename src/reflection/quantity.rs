@@ -1,6 +1,6 @@
-//! The quantities of an equation, each with its own equation.
+//! The quantities of an equation, each with its definition.
 
-/// A quantity that the equation of a model names: explanations put its value in, and show how it follows.
+/// A quantity used in the equation of a model: explanations substitute its value, and show its derivation.
 ///
 /// ```
 /// use lights_camera_models::reflection::Quantity;
@@ -12,15 +12,16 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Quantity {
-    /// Its definition in the notation of [`expression`](crate::text::expression): `D = α^2/…`, or that of a function,
-    /// `H(μ) = (1 + 2 μ)/…`. A symbol alone, such as `E_V`, or `E(μ)`, for one that the model itself gives
-    /// ([`ReflectionModel::quantity`](super::ReflectionModel::quantity)), such as an albedo from a table.
+    /// The definition in the notation of [`expression`](crate::text::expression): `D = α^2/…`, or that of a
+    /// function, `H(μ) = (1 + 2 μ)/…`. Only a symbol, such as `E_V`, or `E(μ)`, for a quantity that the model
+    /// itself provides ([`ReflectionModel::quantity`](super::ReflectionModel::quantity)), such as an albedo
+    /// from a table.
     pub text: &'static str,
-    /// Its name in words.
+    /// Name in words.
     pub label: &'static str,
-    /// Author and year; empty where it is that of the model.
+    /// Author and year; empty if they are those of the model.
     pub source: &'static str,
-    /// The choices for which it holds: names of parameters, each with ids.
+    /// The choices for which the quantity is valid: names of parameters, each with ids.
     pub when: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -31,19 +32,20 @@ impl Quantity {
         Self { text, label, source: "", when: &[] }
     }
 
-    /// The same with author and year.
+    /// Sets author and year.
     #[must_use]
     pub const fn source(self, source: &'static str) -> Self {
         Self { source, ..self }
     }
 
-    /// The same for some choices only: names of parameters, each with the ids for which it holds.
+    /// Restricts the quantity to certain choices: names of parameters, each with the ids for which it is
+    /// valid.
     #[must_use]
     pub const fn when(self, when: &'static [(&'static str, &'static [&'static str])]) -> Self {
         Self { when, ..self }
     }
 
-    /// The symbol, without the arguments of a function: `H` of `H(μ) = …`.
+    /// The symbol, without the arguments of a function: `H` for `H(μ) = …`.
     #[must_use]
     pub fn symbol(&self) -> &'static str {
         let head = self.text.split_once('=').map_or(self.text, |(head, _)| head).trim();

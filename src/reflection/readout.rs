@@ -7,11 +7,11 @@ use crate::optics::equivalence;
 /// A number or colour derived from the parameters of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readout {
-    /// The symbol, e.g. `F_0`.
+    /// Symbol, e.g. `F_0`.
     pub symbol: &'static str,
-    /// Its name.
+    /// Name.
     pub label: &'static str,
-    /// Its meaning, one sentence.
+    /// Meaning, in one sentence.
     pub help: &'static str,
     /// The number or colour.
     pub value: ReadoutValue,

@@ -36,13 +36,13 @@ const TRANSPARENCY: Parameter = Parameter {
     used_when: None,
 };
 
-/// Shape of F, the stand-in for Fresnel's equations, as published.
+/// Shape of F, which replaces Fresnel's equations, as published.
 const K_F: f32 = 1.12;
-/// Shape of G, the stand-in for masking, as published.
+/// Shape of G, which replaces masking, as published.
 const K_G: f32 = 1.01;
 /// The reflection of even dull surfaces at grazing angles, as published.
 const K_J: f32 = 0.1;
-/// The largest exponent of the highlight, in place of infinity at s = 1.
+/// Maximum exponent of the highlight, in place of infinity at s = 1.
 const SHARPEST: f32 = 30_000.0;
 
 parameters! {
@@ -90,8 +90,8 @@ parameters! {
     }
 }
 
-/// The angle of a direction above the surface, in right angles: 1 − x of the published functions. Measured from the
-/// horizon, near which it is exact and F and G are steep.
+/// The angle of a direction above the surface, as a fraction of a right angle: 1 − x of the published
+/// functions. Measured from the horizon, near which it is exact and F and G are steep.
 fn elevation(cosine: f32, d: Vec3, n: Vec3) -> f32 {
     FRAC_2_PI * cosine.atan2((d - cosine * n).length())
 }
@@ -181,13 +181,14 @@ impl ReflectionModel for Strauss {
         let (s, passed) = (self.smoothness, 1.0 - self.transparency);
         let straight = s * s * s;
         let diffuse = (1.0 - straight) * passed * (1.0 - self.metallic * s) * self.base_colour;
-        // The highlight is as bright whatever its width: a narrow one has little light, and needs no narrower lobe.
+        // The brightness of the highlight does not depend on its width: a narrow one has little light, and
+        // needs no narrower lobe.
         let exponent = self.exponent().min(50.0);
         let reflected = (straight * passed + K_J) * 2.0 / (exponent + 2.0);
         Lobes::diffuse_and(Lobe::Power { exponent }, diffuse, Vec3::splat(reflected))
     }
 
-    /// Metals only: the specular share follows from the smoothness, not from the material.
+    /// Sets metals only: the specular fraction follows from the smoothness, not from the material.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         if material.metal { preset::base_colour_metallic(material) } else { Vec::new() }
     }

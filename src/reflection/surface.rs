@@ -16,7 +16,7 @@ use crate::optics::{
 pub trait Surface: Send + Sync {
     /// See [`ReflectionModel::response`].
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
-    /// The response to uniform light of 1 lx, by formula or by albedo.
+    /// The response to uniform light of 1 lx, from a formula or the albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
     /// The directional albedo over the view, for models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
@@ -37,8 +37,8 @@ pub trait Surface: Send + Sync {
         None
     }
 
-    /// A quantity of the equation that no line defines; see [`ReflectionModel::quantity`]. Custom models also know the
-    /// values of their WGSL for these directions.
+    /// A quantity of the equation without a definition there; see [`ReflectionModel::quantity`]. Custom
+    /// models also provide values from their WGSL for these directions.
     fn quantity(
         &self,
         _symbol: &str,
@@ -50,8 +50,9 @@ pub trait Surface: Send + Sync {
         None
     }
 
-    /// The light that leaves towards `v` under some lights: the sum of the responses. Each model has its own copy of this
-    /// loop, from which the compiler moves what depends on the object or on the view alone.
+    /// The light that leaves towards `v` under these lights: the sum of the responses. Each model has its own
+    /// copy of this loop, from which the compiler hoists everything that depends only on the object or the
+    /// view.
     fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
         let respond = |l: Vec3| self.response(l, v, frame);
         match terms {
@@ -67,7 +68,7 @@ fn sum(lights: &[Arriving], response: impl Fn(Vec3) -> Vec3) -> Vec3 {
     lights.iter().fold(Vec3::ZERO, |sum, at| sum + response(at.l) * at.light)
 }
 
-/// A model alone: it calculates its albedo anew at every call, to [`albedo::ACCURACY`].
+/// A model on its own: it recalculates its albedo at every call, to [`albedo::ACCURACY`].
 impl<M: ReflectionModel> Surface for M {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         ReflectionModel::response(self, l, v, frame)
@@ -116,7 +117,7 @@ impl<M: ReflectionModel> Surface for M {
     }
 }
 
-/// A model that calculates its curve once, at the first call, and then uses it: for pictures.
+/// A model that calculates its curve at the first call and then uses it: for pictures.
 pub(super) struct Instance<M> {
     pub(super) model: M,
     pub(super) curve: OnceLock<Option<AlbedoCurve>>,
@@ -163,8 +164,8 @@ impl<M: ReflectionModel> Surface for Instance<M> {
     }
 }
 
-/// The BRDF `f_r` in sr⁻¹ of a surface: diffuse plus specular response over `π cos θ_i`; the ambient
-/// term is left out. Zero where the light or the viewer is below the surface.
+/// The BRDF `f_r` in sr⁻¹ of a surface: diffuse plus specular response over `π cos θ_i`, without the ambient
+/// term. Zero where the light or the viewer is below the surface.
 #[must_use]
 pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
     brdf_of(surface.response(l, v, frame), l, v, frame)

@@ -75,7 +75,7 @@ parameters! {
     }
 }
 
-/// `c²/π exp(−c² θ²)`, of the sine and cosine of θ, with c = 1/`spread` (degrees).
+/// `c²/π exp(−c² θ²)`, from the sine and cosine of θ, with c = 1/`spread` (degrees).
 fn gaussian(sin_h: f32, cos_h: f32, spread: f32) -> f32 {
     if cos_h <= 0.0 {
         return 0.0;

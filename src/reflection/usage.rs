@@ -1,4 +1,4 @@
-//! The parameters of a model used by its chosen options.
+//! The parameters used by a model with its present choices.
 
 use crate::parameter::{Parameter, ParameterKind, UsedWhen, Values};
 
@@ -10,7 +10,7 @@ fn unmet<'a>(
     values: &Values,
 ) -> Option<(UsedWhen, &'a Parameter)> {
     let mut here = parameter;
-    // No chain is longer, unless it is circular.
+    // Chains cannot be longer unless they are circular.
     for _ in parameters {
         let condition = here.used_when?;
         let other = parameters.iter().find(|p| p.name == condition.parameter)?;
@@ -24,7 +24,7 @@ fn unmet<'a>(
     None
 }
 
-/// The reason why a parameter has no effect at present, without a full stop; `None` if it has one.
+/// The reason why a parameter has no effect at present, without a full stop; `None` if it has an effect.
 ///
 /// ```
 /// use lights_camera_models::{parameter::Values, reflection::usage, registry::Registry};
@@ -36,7 +36,7 @@ fn unmet<'a>(
 /// ```
 #[must_use]
 pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) -> Option<String> {
-    /// Further choices are not listed.
+    /// Maximum number of choices listed.
     const FEW: usize = 2;
     let (condition, other) = unmet(parameters, parameter, values)?;
     let ParameterKind::Choice { options, .. } = &other.kind else { return None };
@@ -61,8 +61,8 @@ pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) 
     Some(format!("Not used with {chosen}: only {} {verb} {what}", users.join(" and ")))
 }
 
-/// The error in a condition, as a rule: the other parameter must be a choice of the same model, the choices must exist,
-/// and no circle may close.
+/// The error in a condition, as a rule: the other parameter must be a choice of the same model, the choices
+/// must exist, and the conditions must not form a cycle.
 #[must_use]
 pub fn problem(parameters: &[Parameter], parameter: &Parameter) -> Option<String> {
     let condition = parameter.used_when?;
@@ -110,7 +110,7 @@ mod tests {
             .collect()
     }
 
-    /// The response at many pairs of directions, bit by bit.
+    /// The bits of the response for many pairs of directions.
     fn responses(model: &ModelEntry, values: &Values) -> Vec<u32> {
         let surface = (model.instantiate)(values, Encoding::Srgb);
         let directions = directions();
@@ -146,7 +146,7 @@ mod tests {
         candidates.into_iter().filter(|v| v != now && p.allows(v)).collect()
     }
 
-    /// The model with its defaults, and with each choice and each pair of choices that is not too costly.
+    /// The model with its defaults, and with each choice and each pair of choices that is cheap enough.
     fn settings(model: &ModelEntry) -> Vec<Values> {
         let choices: Vec<(&Parameter, &str)> = model
             .parameters
@@ -162,7 +162,7 @@ mod tests {
             one.set(p.name, Value::Choice((*a).into()));
             all.push(one.clone());
             for (q, b) in &choices[i + 1..] {
-                // The compensation of multiple scattering integrates anew for every value.
+                // The compensation of multiple scattering is integrated again for every value.
                 if q.name != p.name && q.name != "multiple_scattering" {
                     let mut two = one.clone();
                     two.set(q.name, Value::Choice((*b).into()));

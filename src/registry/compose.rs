@@ -1,10 +1,10 @@
-//! The source that a model is drawn with, and the one that evaluates it alone, put together from the registered
-//! parts.
+//! Composes the source with which a model is drawn, and the source that evaluates it alone, from the
+//! registered parts.
 //!
-//! A source for drawing holds, in this order: terms, the light record, the row of an object (generated
+//! A source for drawing contains, in this order: terms, the light record, the row of an object (generated
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
-//! types, the dispatch over light types (generated), the light loop, the shading model after its parameters (generated),
-//! the debug channels, the last step of a pixel, and the wrapper with bindings and entry points.
+//! types, the dispatch over light types (generated), the light loop, the shading model after its parameters
+//! (generated), the debug channels, the last step of a pixel, and the wrapper with bindings and entry points.
 
 use std::fmt::Write as _;
 
@@ -26,9 +26,9 @@ use crate::{
     shading::{self, ShadingEntry},
 };
 
-/// The WGSL struct `Row` of a model, what one object has in the table that the shader reads, and the
-/// functions that read the curve in it; `more` are further fields. The array of rows is `parameter_table`, the index
-/// of the object is `object_row`. Curves are read in place: a copy would cost every pixel.
+/// The WGSL struct `Row` of a model, the data of one object in the shader's table, and the functions that
+/// read its curve; `more` are additional fields. The array of rows is `parameter_table`, the index of the
+/// object is `object_row`. Curves are read in place: a copy would cost time for every pixel.
 #[must_use]
 pub fn row_struct(model: &ModelEntry, more: &str) -> String {
     let mut text = parameter_struct("Parameters", model.parameters);
@@ -57,7 +57,7 @@ fn lobe_mean() -> f32 {{
     text
 }
 
-/// The functions that read the further curves of a model by name: each begins where the one before ends.
+/// The functions that read the additional curves of a model by name: each begins where the one before ends.
 #[must_use]
 pub fn named_curves(model: &ModelEntry) -> String {
     let mut text = String::new();
@@ -97,7 +97,7 @@ pub fn named_curves(model: &ModelEntry) -> String {
     text
 }
 
-/// The row of a model, and the model.
+/// Adds the row of a model, and the model.
 fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     c.push("(row)", &row_struct(model, more));
     if model.has_curve() {
@@ -112,15 +112,15 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     }
 }
 
-/// The response to uniform light of models that declare to give it by their albedo.
+/// The response to uniform light for models that declare their albedo as such.
 pub(crate) const AMBIENT: &str =
     "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return directional_albedo(v, frame);
 }
 ";
 
-/// The values of a struct of parameters in WGSL, from its [`words`](crate::parameter::words): `word` reads the one of an index as a
-/// type.
+/// The values of a parameter struct in WGSL, from its [`words`](crate::parameter::words): `word` reads the
+/// one with an index as a type.
 fn values(parameters: &[Parameter], word: impl Fn(usize, &str) -> String) -> String {
     let mut at = 0;
     let mut next = |kind: &str| {
@@ -137,7 +137,7 @@ fn values(parameters: &[Parameter], word: impl Fn(usize, &str) -> String) -> Str
     fields.join(", ")
 }
 
-/// A shading model, after the struct of its parameters and the function that reads them.
+/// Adds a shading model, after the struct of its parameters and the function that reads them.
 fn push_shading(c: &mut Composer, shading: &ShadingEntry) {
     let all = shading.parameters;
     if !all.is_empty() {
@@ -156,7 +156,7 @@ fn push_shading(c: &mut Composer, shading: &ShadingEntry) {
     c.source(&shading.declaration.wgsl);
 }
 
-/// A light type, after the struct of its parameters.
+/// Adds a light type, after the struct of its parameters.
 fn push_light(c: &mut Composer, light: &LightEntry) {
     let fields = light.fields();
     if !fields.is_empty() {
@@ -166,13 +166,13 @@ fn push_light(c: &mut Composer, light: &LightEntry) {
     c.source(&light.declaration.wgsl);
 }
 
-/// True if any light type has extent, so that the loop samples.
+/// True if any light type has extent, so that the light loop takes samples.
 fn any_extent(lights: &[LightEntry]) -> bool {
     lights.iter().any(|light| light.declaration.extent)
 }
 
-/// The functions that hand a light to its type, by the number of the type in the registry, with its own parameters, of
-/// which [`words`](LightEntry::words) are the source. Lights of other types give no light.
+/// The functions that dispatch a light to its type, by the index of the type in the registry, with the
+/// light's own parameters, read from its [`words`](LightEntry::words). Lights of other types are dark.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
@@ -225,21 +225,21 @@ fn light_number(light: Light, i: u32) -> f32 {
     text
 }
 
-/// The files that every source for drawing needs beside the vocabulary, and those for other uses.
+/// The files that every source for drawing needs besides the vocabulary, and those for other uses.
 pub(crate) const SHARED: [Source; 12] =
     [ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
 
-/// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
+/// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
 
-/// The source of a light type alone, with a function that calls its own. The numbers of its files are not in
+/// The source of a single light type, with a function that calls it. The numbers of its files are not in
 /// `light_words`, but in a table of one row with room for those of its defaults.
 #[must_use]
 pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS]).for_each(|s| c.source(s));
     if light.declaration.extent {
-        // The directions of lobes are not chosen here.
+        // No directions of lobes are sampled here.
         c.source(&SAMPLING);
         c.push("(lobes)", NO_LOBES);
     }
@@ -272,9 +272,9 @@ fn illumination_number(i: u32) -> f32 {{
     c.composed
 }
 
-/// The source of a shading model alone, with the function `pixel_alone` that calls its `shade_pixel` within a plane triangle,
-/// whose edges to the right and downwards on the screen are given. The light at a point is a formula of its place, normal
-/// and tangent, and derivatives are those of the place.
+/// The source of a single shading model, with the function `pixel_alone` that calls its `shade_pixel` within
+/// a plane triangle, given by its edges to the right and downwards on the screen. The light at a point is a
+/// formula of its position, normal and tangent, and derivatives are those of the position.
 #[must_use]
 pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
     let mut c = Composer::new(sources);
@@ -313,26 +313,26 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
     c.composed
 }
 
-/// The lobes of the object that is drawn.
+/// The lobes of the object being drawn.
 const LOBE_ROW: &str = "fn lobe_row(i: u32) -> vec4<f32> {
     return parameter_table[object_row].lobes[i];
 }
 ";
 
-/// The same where no object is drawn.
+/// The lobes if no object is drawn.
 const NO_LOBES: &str = "fn lobe_row(i: u32) -> vec4<f32> {
     return vec4(0.0);
 }
 ";
 
-/// The part of lights with extent where there are none.
+/// Replaces the code of lights with extent if there are none.
 const NOT_EXTENDED: &str = "fn extended(position: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec3<f32> {
     return vec3(0.0);
 }
 ";
 
-/// The complete source for drawing with a model and a shading model under the given light types, those of the scene: a
-/// mistake in another one takes no picture away.
+/// The complete source for drawing with a model and a shading model under the given light types, those of the
+/// scene: an error in another type does not affect the picture.
 #[must_use]
 pub fn compose(
     sources: &Sources,
@@ -369,7 +369,7 @@ pub fn compose(
     c.composed
 }
 
-/// The complete source for drawing lights with extent themselves, of the given light types.
+/// The complete source for drawing lights with extent themselves, of the given types.
 #[must_use]
 pub fn compose_seen(sources: &Sources, lights: &[LightEntry]) -> Composed {
     let mut c = Composer::new(sources);
@@ -384,7 +384,8 @@ pub fn compose_seen(sources: &Sources, lights: &[LightEntry]) -> Composed {
     c.composed
 }
 
-/// The function that tells if a light is to be seen in the picture, the twin of [`LightEntry::is_visible`].
+/// The function that returns whether a light is visible in the picture, the twin of
+/// [`LightEntry::is_visible`].
 fn visible(lights: &[LightEntry]) -> String {
     let mut text = "fn light_is_visible(light: Light) -> bool {\n    switch light.light_type {\n".to_owned();
     for light in lights {
@@ -397,12 +398,12 @@ fn visible(lights: &[LightEntry]) -> String {
     text
 }
 
-/// The purpose of a file in a composed source, in the order in which authors look for them.
+/// The role of a file in a composed source, in the order in which authors look for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
     /// The reflection model.
     Model,
-    /// A file of the author's that another one asks for.
+    /// A file imported by another file of the author.
     Import,
     /// The shading model.
     ShadingModel,
@@ -425,15 +426,15 @@ pub enum Part {
 /// A file of a composed source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// Its purpose.
+    /// Role of the file.
     pub part: Part,
-    /// Its path, as messages name it.
+    /// Path, as in messages.
     pub path: String,
-    /// True if its text differs from the built-in one. Custom models have none to differ from.
+    /// True if the text differs from the built-in one; false for custom models.
     pub edited: bool,
 }
 
-/// The files that [`compose`] joins; what is generated is left out.
+/// The files joined by [`compose`], without generated text.
 #[must_use]
 pub fn files(
     sources: &Sources,
@@ -472,7 +473,7 @@ pub fn files(
     all
 }
 
-/// The source for evaluating a model alone in a compute pass: directions in, terms out.
+/// The source for evaluating a single model in a compute pass: directions in, terms out.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     let mut c = Composer::new(sources);

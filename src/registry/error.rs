@@ -1,4 +1,4 @@
-//! Why something cannot be registered.
+//! Errors of registration.
 
 use std::any::type_name;
 
@@ -6,24 +6,24 @@ use thiserror::Error;
 
 use crate::shader::check::ShaderProblem;
 
-/// The reason why something cannot be registered, in the terms of its author.
+/// The reason why something cannot be registered, phrased for its author.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{part} `{id}` ({type_name}): {what}")]
 #[non_exhaustive]
 pub struct RegistrationError {
     /// "reflection model", "shading model", "light type" or "object type".
     pub part: &'static str,
-    /// Its id.
+    /// Id of the type.
     pub id: &'static str,
     /// The type in Rust.
     pub type_name: &'static str,
-    /// What is wrong, where, and what would be right.
+    /// The error, where it is, and what would be right.
     pub what: String,
-    /// The same with its place in the file, if it is in the WGSL.
+    /// The error with its position in the file, if it is in the WGSL.
     pub shader: Option<Box<ShaderProblem>>,
 }
 
-/// A mistake, by itself.
+/// An error without its context.
 pub(super) enum Mistake {
     /// In the declaration, or in a mesh.
     Declared(String),

@@ -1,4 +1,4 @@
-//! The files that the registry was read from: folders, custom models, and how much of each was read.
+//! The files from which the registry was read: folders, custom models, and how much of each file was read.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,23 +12,23 @@ use crate::{reflection::ModelEntry, watch::Print};
 /// A model from a file.
 #[derive(Clone, Debug)]
 pub struct CustomModel {
-    /// The entry. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is a stand-in that
-    /// is drawn as long as the file has no good version.
+    /// The entry. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is a
+    /// fallback, drawn as long as the file has no valid version.
     pub entry: ModelEntry,
     /// The file.
     pub path: PathBuf,
-    /// Its text, declaration included, so that lines count as in the file.
+    /// The text, including the declaration, so that line numbers match the file.
     pub text: Arc<str>,
 }
 
 /// The part of a custom model that was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// The declaration. The rest is read when the model is used; until then a stand-in is drawn.
+    /// The declaration. The rest is read when the model is used; until then a fallback is drawn.
     Declaration,
-    /// The declaration. The rest is no good: the last text that was is drawn with, or a stand-in.
+    /// The declaration. The rest is invalid: the last valid text is drawn, or a fallback.
     StandIn,
-    /// All of it.
+    /// The whole file.
     Whole,
 }
 
@@ -43,24 +43,24 @@ struct CustomSource {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Files {
     pub(super) folders: Folders,
-    /// The source paths of WGSL that other crates compiled in.
+    /// The source paths of WGSL compiled into other crates.
     pub(super) foreign: BTreeSet<&'static str>,
     /// The files of custom models, by id.
     custom: BTreeMap<&'static str, CustomSource>,
-    /// The mistakes of files that give no model, by id.
+    /// The errors of files without a valid model, by id.
     broken: BTreeMap<String, String>,
-    /// The state of each file whose declaration was looked for, at that time.
+    /// The state of each file when its declaration was looked for.
     seen: BTreeMap<PathBuf, Print>,
 }
 
 impl Registry {
-    /// The folders that shaders and custom models are read from.
+    /// The folders from which shaders and custom models are read.
     #[must_use]
     pub fn folders(&self) -> &Folders {
         &self.files.folders
     }
 
-    /// Notes the folder that shaders are read from.
+    /// Sets the folder from which shaders are read.
     pub fn set_shader_folder(&mut self, folder: &Path) {
         self.files_mut().folders.shaders = Some(folder.to_owned());
     }
@@ -71,13 +71,14 @@ impl Registry {
         !self.files.foreign.is_empty()
     }
 
-    /// True if the WGSL of a source path was compiled in by another crate, so that no test of this one has tried it.
+    /// True if the WGSL of a source path was compiled in by another crate, and is not covered by this crate's
+    /// tests.
     #[must_use]
     pub fn is_foreign(&self, source: &str) -> bool {
         self.files.foreign.contains(source)
     }
 
-    /// The existing file behind a source path.
+    /// The existing file for a source path.
     #[must_use]
     pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
         let custom = self
@@ -91,10 +92,10 @@ impl Registry {
         })
     }
 
-    /// The files that it was read from: those of custom models and of edited shaders.
+    /// The files from which the registry was read: custom models and edited shaders.
     pub fn files_on_disk(&self) -> impl Iterator<Item = PathBuf> {
         let models = self.custom_models().map(|(_, path)| path.to_owned());
-        // Looking for each of many models' files among all of them would take a while.
+        // Searching all files for each of many models would take a while.
         let shaders = self.sources().edited().filter_map(|source| match source.strip_prefix(MODELS) {
             Some(file) => Some(self.custom_folder()?.join(file)),
             None => self.path_on_disk(source),
@@ -102,21 +103,19 @@ impl Registry {
         models.chain(shaders)
     }
 
-    /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its
-    /// place.
+    /// Adds a model from a file, with its text. A model with the same id is replaced in its place.
     pub fn put_custom_model(&mut self, model: CustomModel) {
         self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
         self.put_custom(model, Extent::Whole);
     }
 
-    /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
-    /// none a stand-in is drawn.
+    /// Adds a model from a file without a valid text: a known text is kept; otherwise a fallback is drawn.
     pub fn put_stand_in(&mut self, model: CustomModel) {
         self.put_custom(model, Extent::StandIn);
     }
 
-    /// Makes a model from a file known of which only the declaration was read. A stand-in is drawn until the rest is
-    /// read, which [`wants_reading`](Self::wants_reading) asks for.
+    /// Adds a model from a file of which only the declaration was read. A fallback is drawn until the rest is
+    /// read, which [`wants_reading`](Self::wants_reading) requests.
     pub fn put_declared(&mut self, model: CustomModel) {
         self.sources.forget(model.entry.declaration.wgsl.path);
         self.put_custom(model, Extent::Declaration);
@@ -130,7 +129,7 @@ impl Registry {
         put(Arc::make_mut(&mut self.models), model.entry, |m| m.declaration.id);
     }
 
-    /// Puts the custom models in the order of their ids, whichever was read first.
+    /// Sorts the custom models by id, whatever the order of reading.
     pub(crate) fn sort_custom_models(&mut self) {
         let is_custom = |m: &ModelEntry| self.files.custom.contains_key(m.declaration.id);
         let places: Vec<_> = (0..self.models.len()).filter(|i| is_custom(&self.models[*i])).collect();
@@ -145,7 +144,7 @@ impl Registry {
         Arc::make_mut(&mut self.files)
     }
 
-    /// Forgets a model, and its text if it came from a file.
+    /// Removes a model, and its text if it came from a file.
     pub fn remove_model(&mut self, id: &str) {
         let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
         let model = Arc::make_mut(&mut self.models).remove(at);
@@ -154,13 +153,13 @@ impl Registry {
         }
     }
 
-    /// The file of a model that came from one.
+    /// The file of a custom model.
     #[must_use]
     pub fn custom_file(&self, id: &str) -> Option<&Path> {
         self.files.custom.get(id).map(|custom| custom.path.as_path())
     }
 
-    /// The part that was read of the file of a custom model.
+    /// The part of a custom model's file that was read.
     #[must_use]
     pub fn extent(&self, id: &str) -> Option<Extent> {
         self.files.custom.get(id).map(|custom| custom.extent)
@@ -172,7 +171,7 @@ impl Registry {
         self.custom_file(id).filter(|_| self.extent(id) == Some(Extent::Declaration))
     }
 
-    /// The files that are to be read now that these models are used: of some only the declaration is known. See
+    /// The files to read now that these models are used, because only their declarations are known. See
     /// [`custom::read`](crate::custom::read).
     pub fn wants_reading<'a>(
         &'a self,
@@ -181,38 +180,38 @@ impl Registry {
         used.into_iter().filter_map(|id| self.unread_file(id))
     }
 
-    /// The state of each file whose declaration was looked for, at that time.
+    /// The state of each file when its declaration was looked for.
     pub(crate) fn files_seen(&self) -> &BTreeMap<PathBuf, Print> {
         &self.files.seen
     }
 
-    /// Notes the state of a file whose declaration is looked for.
+    /// Records the state of a file whose declaration is looked for.
     pub(crate) fn note_seen(&mut self, file: &Path, print: Print) {
         self.files_mut().seen.insert(file.to_owned(), print);
     }
 
-    /// The models that came from files, with these.
+    /// The models from files, each with its file.
     pub fn custom_models(&self) -> impl Iterator<Item = (&ModelEntry, &Path)> {
         self.models.iter().filter_map(|m| Some((m, self.custom_file(m.declaration.id)?)))
     }
 
-    /// Notes the folder that custom models are read from.
+    /// Sets the folder from which custom models are read.
     pub fn set_custom_folder(&mut self, folder: &Path) {
         self.files_mut().folders.models = Some(folder.to_owned());
     }
 
-    /// The folder that custom models are read from, if there is one.
+    /// The folder from which custom models are read, if any.
     #[must_use]
     pub fn custom_folder(&self) -> Option<&Path> {
         self.folders().models.as_deref()
     }
 
-    /// Notes the reason why the file of that id gives no model, or none as it is.
+    /// Records the reason why the file with this id contains no valid model.
     pub fn mark_broken(&mut self, id: &str, why: String) {
         self.files_mut().broken.insert(id.to_owned(), why);
     }
 
-    /// The reason why the file of that id gives no model: place and mistake.
+    /// The reason why the file with this id contains no valid model: position and error.
     #[must_use]
     pub fn broken_model(&self, id: &str) -> Option<&str> {
         self.files.broken.get(id).map(String::as_str)

@@ -1,14 +1,14 @@
-//! The folders that shaders and custom models are read from, and the names of the files in them.
+//! The folders from which shaders and custom models are read, and the names of the files in them.
 
 use std::path::{Path, PathBuf};
 
-/// The beginning of the source path of a custom model, and of what custom models share.
+/// Prefix of the source paths of custom models and their shared files.
 pub(crate) const MODELS: &str = "models/";
 
-/// The folders that shaders and custom models are read from.
+/// The folders from which shaders and custom models are read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Folders {
-    /// The folder whose files replace the built-in shaders; none when those are used.
+    /// The folder whose files replace the built-in shaders; `None` to use those.
     pub shaders: Option<PathBuf>,
     /// The folder whose files are custom models. It need not exist yet.
     pub models: Option<PathBuf>,
@@ -17,7 +17,7 @@ pub struct Folders {
 }
 
 impl Folders {
-    /// The source path of a file on disk, as messages name it; none if it is no shader of these folders.
+    /// The source path of a file on disk, as in messages; `None` if it is not a shader in these folders.
     #[must_use]
     pub fn source_of(&self, file: &Path) -> Option<String> {
         if file.extension().is_none_or(|e| e != "wgsl") {
@@ -33,8 +33,8 @@ impl Folders {
         below(self.models.as_ref(), MODELS).or_else(|| folders.find_map(shader))
     }
 
-    /// The file on disk of a source path, whether it is there or not; none of generated text. Of several folders that
-    /// may hold it, the first that does.
+    /// The file on disk for a source path, existing or not; `None` for generated text. If several folders
+    /// could contain it, the first that does.
     #[must_use]
     pub fn file_of(&self, source: &str) -> Option<PathBuf> {
         if source.starts_with('(') {
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn files_and_source_paths_lead_to_each_other() {
-        // The folder of the models may lie within that of the shaders.
+        // The model folder may be inside the shader folder.
         let folders = Folders {
             shaders: Some("/a/shaders".into()),
             models: Some("/a/shaders/mine".into()),

@@ -1,5 +1,5 @@
-//! The scene formats from outside the crate, by name and extension. Reading and writing is the business of
-//! [`scene::formats`](crate::scene::formats), which stands below the registry: here a format is opaque.
+//! Scene formats from other crates, by name and extension. They are read and written by
+//! [`scene::formats`](crate::scene::formats), which depends on the registry: here a format is opaque.
 
 use std::{any::Any, fmt, sync::Arc};
 
@@ -9,11 +9,11 @@ use super::{Registry, put};
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct FormatEntry {
-    /// Its name for people.
+    /// Display name.
     pub name: &'static str,
-    /// The extensions of its files, without the dot.
+    /// File extensions, without the dot.
     pub extensions: &'static [&'static str],
-    /// The format itself, for those who know its type.
+    /// The format itself, for code that knows its type.
     pub(crate) format: Arc<dyn Any + Send + Sync>,
 }
 
@@ -34,7 +34,8 @@ impl FormatEntry {
 }
 
 impl Registry {
-    /// The scene formats from outside the crate. [`scene::formats`](crate::scene::formats) lists the built-in ones too.
+    /// The scene formats from other crates. [`scene::formats`](crate::scene::formats) lists the built-in ones
+    /// too.
     #[must_use]
     pub fn scene_formats(&self) -> &[FormatEntry] {
         &self.formats

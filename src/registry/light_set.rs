@@ -1,9 +1,9 @@
-//! Sets of light types: a shader is composed of those that its scene uses.
+//! Sets of light types: a shader contains those that its scene uses.
 
 use super::Registry;
 use crate::light::LightEntry;
 
-/// The most light types that a registry has room for.
+/// Maximum number of light types in a registry.
 pub const MAX_LIGHT_TYPES: usize = 64;
 
 /// A set of registered light types.
@@ -17,7 +17,7 @@ impl LightSet {
         self.0 >> light.index & 1 == 1
     }
 
-    /// The set as a number, different for each.
+    /// The set as a unique number.
     #[must_use]
     pub fn bits(self) -> u64 {
         self.0
@@ -31,7 +31,7 @@ impl<'a> FromIterator<&'a LightEntry> for LightSet {
 }
 
 impl Registry {
-    /// The light types of these ids, as far as they are known.
+    /// The known light types among these ids.
     #[must_use]
     pub fn light_set<'a>(&self, ids: impl IntoIterator<Item = &'a str>) -> LightSet {
         ids.into_iter().filter_map(|id| self.light(id)).collect()
@@ -43,7 +43,7 @@ impl Registry {
         self.lights.iter().filter(|light| set.has(light)).copied().collect()
     }
 
-    /// True if a light type of a set has extent.
+    /// True if any light type in a set has extent.
     #[must_use]
     pub fn has_extent(&self, set: LightSet) -> bool {
         self.lights.iter().any(|light| set.has(light) && light.declaration.extent)

@@ -1,9 +1,9 @@
-//! Everything that is known, looked up by id: reflection models, shading models, light types and object types; with the
-//! formats of scene files from outside, the texts of shaders and the folders that they are read from.
+//! All registered types, looked up by id: reflection models, shading models, light types and object types;
+//! also scene formats from other crates, shader texts, and the folders from which they are read.
 //!
-//! The registry is a value. The command line and the CPU renderer use it as it is; in the Bevy app it
-//! is a resource, and `App` offers the same calls, so that a plugin outside this crate registers
-//! exactly as the built-in list does:
+//! The registry is a value. The command line and the CPU renderer use it directly; in the Bevy app it is a
+//! resource, and `App` offers the same methods, so that a plugin in another crate registers types exactly as
+//! the built-in list does:
 //!
 //! ```no_run
 //! # use bevy::prelude::App;
@@ -42,7 +42,7 @@ use crate::{
     shape::{self, ObjectType, ShapeEntry},
 };
 
-/// The keys that lights of every type may have in scene files.
+/// The keys that lights of all types may have in scene files.
 pub const LIGHT_KEYS: &[&str] = &[
     "type",
     "name",
@@ -54,7 +54,7 @@ pub const LIGHT_KEYS: &[&str] = &[
     "intensity",
     "luminous_flux",
 ];
-/// The keys that objects of every type may have in scene files.
+/// The keys that objects of all types may have in scene files.
 pub const OBJECT_KEYS: &[&str] = &[
     "type",
     "name",
@@ -67,19 +67,19 @@ pub const OBJECT_KEYS: &[&str] = &[
     "shading_model",
     "material",
 ];
-/// The letters that do something in the window other than to choose a shading model.
+/// Letters used by the window for anything but choosing a shading model.
 pub const WINDOW_KEYS: &[char] = &['C', 'E', 'H', 'R', 'T', 'V', 'X'];
 
-/// The trust with which something is registered.
+/// The origin of a registered type, which determines how it is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Admission {
-    /// It ships with this crate, whose tests have tried its meshes and its WGSL.
+    /// The type ships with this crate, whose tests cover its meshes and its WGSL.
     BuiltIn,
-    /// It is new. Its WGSL is tried when it is drawn with.
+    /// The type is new. Its WGSL is checked when it is first drawn.
     New,
-    /// It is new, and its WGSL is checked at once.
+    /// The type is new, and its WGSL is checked at once.
     Checked,
-    /// It replaces the one of its id, and its WGSL is checked at once.
+    /// The type replaces the one with its id, and its WGSL is checked at once.
     Replacing,
 }
 
@@ -125,15 +125,15 @@ pub trait Register {
     calls!("a light type" LightType add_light_type try_add_light_type replace_light_type admit_light_type);
     calls!("an object type" ObjectType add_object_type try_add_object_type replace_object_type admit_object_type);
 
-    /// Names a folder with the shaders of other crates: `concat!(env!("CARGO_MANIFEST_DIR"), "/shaders")`. Files in it
-    /// are known by their paths below it. The window follows them while they are edited; where there is no such
-    /// folder, the texts that were compiled in are used.
+    /// Adds a folder with the shaders of another crate: `concat!(env!("CARGO_MANIFEST_DIR"), "/shaders")`.
+    /// Files in it are identified by their paths below it. The window reloads them while they are edited; if
+    /// the folder does not exist, the compiled-in texts are used.
     fn add_shader_folder(&mut self, folder: impl Into<PathBuf>) -> &mut Self;
 
     /// Registers a reflection model.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Returns the first error.
     #[doc(hidden)]
     fn admit_reflection_model<M: ReflectionModel>(
         &mut self,
@@ -142,28 +142,28 @@ pub trait Register {
     /// Registers a shading model.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Returns the first error.
     #[doc(hidden)]
     fn admit_shading_model<S: ShadingModel>(&mut self, admission: Admission)
     -> Result<(), RegistrationError>;
     /// Registers a light type.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Returns the first error.
     #[doc(hidden)]
     fn admit_light_type<L: LightType>(&mut self, admission: Admission) -> Result<(), RegistrationError>;
     /// Registers an object type.
     ///
     /// # Errors
-    /// The first mistake.
+    /// Returns the first error.
     #[doc(hidden)]
     fn admit_object_type<T: ObjectType>(&mut self, admission: Admission) -> Result<(), RegistrationError>;
 }
 
-/// Registers everything built in. The app and the registry both go through here.
+/// Registers all built-in types, for both the app and the registry.
 ///
 /// # Panics
-/// If something built in is declared wrongly.
+/// Panics if a built-in type is declared incorrectly.
 pub fn register_builtin(to: &mut impl Register) {
     let to = &mut Adding(to);
     reflection::register_builtin(to);
@@ -175,7 +175,7 @@ pub fn register_builtin(to: &mut impl Register) {
 /// Registers everything that it takes.
 struct Adding<'a, R>(&'a mut R);
 
-/// What ships with the crate is right: tests see to it.
+/// Shipped types are valid: tests ensure it.
 fn admitted(result: Result<(), RegistrationError>) {
     result.unwrap_or_else(|error| panic!("{error}"));
 }
@@ -238,7 +238,7 @@ impl Registry {
         &self.shadings
     }
 
-    /// All light types, in the order of their numbers.
+    /// All light types, in the order of their indices.
     #[must_use]
     pub fn lights(&self) -> &[LightEntry] {
         &self.lights
@@ -250,48 +250,48 @@ impl Registry {
         &self.shapes
     }
 
-    /// The model of that id.
+    /// The model with this id.
     #[must_use]
     pub fn model(&self, id: &str) -> Option<&ModelEntry> {
         self.models.iter().find(|m| m.declaration.id == id)
     }
 
-    /// The shading model of that id.
+    /// The shading model with this id.
     #[must_use]
     pub fn shading_model(&self, id: &str) -> Option<&ShadingEntry> {
         self.shadings.iter().find(|m| m.declaration.id == id)
     }
 
-    /// The light type of that id.
+    /// The light type with this id.
     #[must_use]
     pub fn light(&self, id: &str) -> Option<&LightEntry> {
         self.lights.iter().find(|l| l.declaration.id == id)
     }
 
-    /// The number that shaders know a light type by.
+    /// The index of a light type in shaders.
     #[must_use]
     pub fn light_index(&self, id: &str) -> Option<u32> {
         self.light(id).map(|light| light.index)
     }
 
-    /// The object type of that id.
+    /// The object type with this id.
     #[must_use]
     pub fn shape(&self, id: &str) -> Option<&ShapeEntry> {
         self.shapes.iter().find(|s| s.declaration.id == id)
     }
 
-    /// The current texts of shader files, where they differ from the built-in ones, and those of custom models.
+    /// The current texts of shader files, where they differ from the built-in ones, and of custom models.
     #[must_use]
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
 
-    /// The current texts of shader files, to change them.
+    /// The current texts of shader files, for changes.
     pub fn sources_mut(&mut self) -> &mut Sources {
         &mut self.sources
     }
 
-    /// Adds the types of another registry that are not known here, and its folders of shaders.
+    /// Adds the types of another registry that are missing here, and its shader folders.
     pub fn add_missing(&mut self, other: &Self) {
         fn extend<T: Clone>(list: &mut Vec<T>, other: &[T], id: impl Fn(&T) -> &'static str) {
             for entry in other {
@@ -315,13 +315,14 @@ impl Registry {
         extend(Arc::make_mut(&mut self.formats), &other.formats, |f| f.name);
     }
 
-    /// Every parameter that some reflection or shading model declares, each name once, in order of first declaration.
+    /// Every parameter declared by a reflection or shading model, each name once, in the order of the first
+    /// declaration.
     pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
         let mut known = HashSet::new();
         self.material_users().flat_map(|(_, all)| all).filter(move |p| known.insert(p.name))
     }
 
-    /// The ids of reflection and shading models, with the parameters that these have in materials.
+    /// The ids of reflection and shading models, with their parameters in materials.
     pub fn material_users(&self) -> impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone + '_ {
         let models = self.models.iter().map(|m| (m.declaration.id, m.parameters));
         models.chain(self.shadings.iter().map(|s| (s.declaration.id, s.parameters)))
@@ -334,9 +335,9 @@ impl Registry {
     }
 }
 
-/// The values that choosing a measured material for one model sets: the parameters of that model, and those of the
-/// microfacet and standard models that do not contradict them, so that gold stays gold when the model is
-/// exchanged.
+/// The values set by choosing a measured material for one model: the parameters of that model, and those of
+/// the microfacet and standard models that do not contradict them, so that gold stays gold when the model
+/// changes.
 #[must_use]
 pub fn along(model: &ModelEntry, material: &Measured, registry: &Registry) -> Vec<(&'static str, Value)> {
     let mut values = (model.preset)(material);
@@ -363,7 +364,7 @@ fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
     }
 }
 
-/// Checks that an id is new, or known if something is to be replaced.
+/// Checks that an id is new, or known if it is to be replaced.
 fn place(known: bool, id: &str, admission: Admission, part: &str) -> Result<(), Mistake> {
     let call = part.replace(' ', "_");
     match (admission == Admission::Replacing, known) {
@@ -378,12 +379,12 @@ fn place(known: bool, id: &str, admission: Admission, part: &str) -> Result<(), 
 }
 
 impl Registry {
-    /// True if the WGSL of a new part is to be checked at once.
+    /// True if the WGSL of a new part must be checked at once.
     fn wants_wgsl(admission: Admission) -> bool {
         matches!(admission, Admission::Checked | Admission::Replacing)
     }
 
-    /// Notes where the WGSL of a part comes from.
+    /// Records the origin of a part's WGSL.
     fn note_origin(&mut self, path: &'static str, admission: Admission) {
         if admission == Admission::BuiltIn {
             self.files_mut().foreign.remove(path)
@@ -392,7 +393,7 @@ impl Registry {
         };
     }
 
-    /// The ids of all parts that have WGSL, with it.
+    /// The ids of all parts with WGSL, and their sources.
     fn parts(&self) -> impl Iterator<Item = (&'static str, Source)> + '_ {
         let models = self.models.iter().map(|m| (m.declaration.id, m.declaration.wgsl));
         let shadings = self.shadings.iter().map(|s| (s.declaration.id, s.declaration.wgsl));
@@ -528,7 +529,7 @@ mod tests {
                 }
             }
         }
-        // A base that is black on purpose makes no black metal of others.
+        // A base that is black on purpose must not blacken other metals.
         let lacquer = along(registry.model("ashikhmin_shirley").expect("built in"), gold, &registry);
         assert!(!lacquer.iter().any(|(name, _)| *name == crate::parameter::METALLIC.name), "{lacquer:?}");
     }

@@ -1,4 +1,4 @@
-//! Changes of entities go into the scene, if the rules of scenes allow it; those that are refused go back.
+//! Transfers changes of entities to the scene, if the rules of scenes allow them; refused changes are undone.
 
 use std::mem::discriminant;
 
@@ -32,7 +32,7 @@ use crate::{
     text::sentence,
 };
 
-/// Components whose change may change a part, beside its transform and that of its type.
+/// Components that belong to a part, besides its transform and the component of its type.
 type OfPart = (
     IsPart,
     Or<(
@@ -46,21 +46,22 @@ type OfPart = (
     )>,
 );
 
-/// What was refused.
+/// Refusals that were reported.
 #[derive(Default)]
 pub struct Reported {
-    /// Refusals that were reported, by entity. Each is reported again only after a change that was accepted.
+    /// Reported refusals by entity. Each is reported again only after an accepted change.
     changes: EntityHashMap<Vec<String>>,
-    /// Last parts that could not go, likewise: each time they get another entity.
+    /// Last parts that cannot be removed and were reported: each time they get another entity.
     last: Vec<Extent>,
-    /// New entities that are no parts. Another scene may have room for them.
+    /// New entities that could not become parts. Another scene may have room for them.
     waiting: EntityHashSet,
-    /// The tick of the last change of the scene for which these were tried.
+    /// Tick of the last change of the scene for which these were tried.
     tried: Option<Tick>,
 }
 
-/// Adopts what others changed in the entities of parts, spawned and despawned. What [`reconcile`] wrote itself reads as
-/// what the scene has, and changes nothing. Exclusive, since each type has a component of its own.
+/// Adopts what other systems changed in the entities of parts, spawned and despawned. Values written by
+/// [`reconcile`] itself equal those of the scene, and change nothing. Exclusive, since each type has a
+/// different component.
 ///
 /// [`reconcile`]: super::entities::reconcile
 pub fn absorb(
@@ -76,7 +77,7 @@ pub fn absorb(
     watches.changed(world, &mut touched);
     *world.resource_mut::<Watches>() = watches;
     let entities = world.resource::<SceneEntities>();
-    // Nothing else tells of these, which all kinds of entities have.
+    // Nothing else reports changes of these, which all kinds of entities have.
     let bare = world.removed::<Transform>().chain(world.removed::<Visibility>());
     touched.extend(bare.filter(|entity| entities.part_of(*entity).is_some()));
     let mut places = Vec::new();
@@ -90,7 +91,7 @@ pub fn absorb(
     touched.sort_unstable();
     touched.dedup();
     if !entities.stands_for(&world.resource::<CurrentScene>().0) {
-        // Another scene came in between: the entities follow it first.
+        // Another scene was set meanwhile: the entities follow it first.
         touched.extend(places.into_iter().map(|(entity, _)| entity));
         *world.resource_mut::<Touched>() = Touched { entities: touched, rested };
         return;
@@ -107,7 +108,7 @@ pub fn absorb(
         return;
     }
     places.retain(|(entity, _)| touched.binary_search(entity).is_err());
-    // Not by `resource_scope`, after which Bevy takes a resource for changed.
+    // Not with `resource_scope`, after which Bevy marks the resource as changed.
     let (types, registry) = (world.resource::<PartTypes>().clone(), world.resource::<Registry>().clone());
     let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
     let mut current = world.resource_mut::<CurrentScene>();
@@ -129,7 +130,7 @@ pub fn absorb(
     touched.iter().for_each(|entity| change.try_part(*entity));
     change.judge();
     change.adopt();
-    // Those that go make room for others, but a last one may go only if another came.
+    // Removed parts make room for others, but the last one may be removed only if another was added.
     change.remove();
     change.add();
     change.remove();
@@ -155,7 +156,7 @@ pub fn absorb(
     show_objects(world, &touched);
 }
 
-/// The value of a part before a change that is tried.
+/// The value of a part before a tentative change.
 enum Before {
     Place(Vec3, Vec3, f32),
     Object(Box<Object>),
@@ -171,18 +172,18 @@ struct Change<'a> {
     types: &'a PartTypes,
     registry: &'a Registry,
     reported: &'a mut Reported,
-    /// Changes that are in the scene, but may yet be refused.
+    /// Changes in the scene that may still be refused.
     tried: Vec<(Entity, Extent, Before)>,
-    /// Parts whose entities are gone.
+    /// Parts with despawned entities.
     lost: Vec<(Entity, Extent)>,
-    /// Entities that are to become parts.
+    /// Entities that should become parts.
     new: Vec<Entity>,
-    /// Entities of parts that could not go.
+    /// Entities of parts that cannot be removed.
     back: Vec<Entity>,
 }
 
 impl Change<'_> {
-    /// Parts that are no longer animated are what the scene has.
+    /// Resets parts that are no longer animated to the values of the scene.
     fn settle(&mut self, rested: &[Entity]) {
         for entity in rested {
             if let Ok(now) = self.world.get_entity(*entity)
@@ -194,7 +195,7 @@ impl Change<'_> {
         }
     }
 
-    /// An object that moved, and changed in no other way.
+    /// Tries a change of an object's transform alone.
     fn try_place(&mut self, entity: Entity, i: usize) {
         self.entities.visits += 1;
         let Some((transform, object)) =
@@ -213,7 +214,7 @@ impl Change<'_> {
         }
     }
 
-    /// A part of which anything may have changed.
+    /// Tries any change of a part.
     fn try_part(&mut self, entity: Entity) {
         let part = self.entities.part_of(entity);
         let Ok(now) = self.world.get_entity(entity) else {
@@ -284,7 +285,7 @@ impl Change<'_> {
         }
     }
 
-    /// Undoes what breaks a rule. That may be several changes that are in each other's way.
+    /// Undoes changes that break a rule, including several changes that conflict with each other.
     fn judge(&mut self) {
         loop {
             let mut check = check::Parts::of(self.scene, self.registry);
@@ -325,7 +326,7 @@ impl Change<'_> {
         }
     }
 
-    /// Writes what the scene has into the components of a part.
+    /// Writes the values of the scene into the components of a part.
     fn write_back(&mut self, entity: Entity, part: Extent) {
         let Ok(mut entity) = self.world.get_entity_mut(entity) else { return };
         match part {
@@ -335,13 +336,13 @@ impl Change<'_> {
         }
     }
 
-    /// A change of a part is refused, and goes back.
+    /// Refuses a change of a part, and undoes it.
     fn refuse(&mut self, entity: Entity, part: Extent, text: &str) {
         self.write_back(entity, part);
         self.report(entity, text);
     }
 
-    /// Components of a part that mean no part are refused, and go back.
+    /// Refuses components that do not form a valid part, and undoes the change.
     fn refuse_reading(&mut self, entity: Entity, part: Extent, why: &str) {
         let part_name = match part {
             Extent::Light(i) => format!("lights[{i}]"),
@@ -351,7 +352,7 @@ impl Change<'_> {
         self.refuse(entity, part, &format!("A change of the components of {part_name} was refused: {why}"));
     }
 
-    /// Reports something once, whatever the numbers in it.
+    /// Reports a message once, whatever numbers it contains.
     fn report(&mut self, entity: Entity, text: &str) {
         let words: String = text.chars().filter(|c| c.is_alphabetic()).collect();
         let known = self.reported.changes.entry(entity).or_default();
@@ -361,7 +362,7 @@ impl Change<'_> {
         }
     }
 
-    /// What is left of the changes is the scene's.
+    /// Adopts the remaining changes into the scene.
     fn adopt(&mut self) {
         let mut retyped = Vec::new();
         for (entity, part, before) in std::mem::take(&mut self.tried) {
@@ -392,16 +393,16 @@ impl Change<'_> {
             }
             self.entities.absorbed.parts.push(part);
         }
-        // A new type brings values of its own along.
+        // A new type brings its own values.
         for (entity, part) in retyped {
             self.write_back(entity, part);
             self.entities.absorbed.relisted = true;
         }
     }
 
-    /// Entities become parts.
+    /// Turns entities into parts.
     fn add(&mut self) {
-        // In the order of spawning; an `Entity` with a greater index is the lesser one.
+        // In the order of spawning; an `Entity` with a larger index compares as less.
         self.new.sort_unstable_by_key(|entity| entity.index_u32());
         for entity in std::mem::take(&mut self.new) {
             self.reported.waiting.remove(&entity);
@@ -417,7 +418,7 @@ impl Change<'_> {
         }
     }
 
-    /// Makes an entity the last part of its list, if it is meant to be one.
+    /// Makes an entity the last part of its list, if it is meant to be a part.
     fn admit(&mut self, entity: Entity) -> Result<Option<Extent>, String> {
         let Ok(now) = self.world.get_entity(entity) else { return Ok(None) };
         let (types, registry, room) = (self.types, self.registry, self.scene.scene_size);
@@ -447,7 +448,7 @@ impl Change<'_> {
         Ok(Some(Extent::Object(i)))
     }
 
-    /// An entity is now the last part of its list.
+    /// Records that an entity is now the last part of its list.
     fn come(&mut self, entity: Entity, part: Extent) {
         self.reported.changes.remove(&entity);
         if let Some(mirrored) = &mut self.entities.mirrored {
@@ -459,14 +460,14 @@ impl Change<'_> {
         }
         self.entities.absorbed.relisted = true;
         self.entities.ids = None;
-        // Names and the like are those of the part from now on.
+        // From now on, names and the like follow the part.
         self.write_back(entity, part);
     }
 
-    /// Parts go with their entities, but for the last ones, which are still lost after it.
+    /// Removes parts with their entities, except the last ones, which remain in `lost`.
     fn remove(&mut self) {
         let mut lost = std::mem::take(&mut self.lost);
-        // From the end, so that places stay what they are; of all that go, the first one stays if one must.
+        // From the end, so that indices stay valid; if one of the removed parts must stay, it is the first.
         lost.sort_unstable_by_key(|(_, part)| match part {
             Extent::Light(i) | Extent::Object(i) => std::cmp::Reverse(*i),
             Extent::Rest | Extent::All => std::cmp::Reverse(0),
@@ -494,7 +495,7 @@ impl Change<'_> {
             self.reported.changes.remove(&entity);
             self.reported.last.retain(|last| discriminant(last) != discriminant(&part));
             let absorbed = &mut self.entities.absorbed;
-            // One that changed before it went is gone.
+            // A part that changed before its removal is gone.
             absorbed.parts.retain(|changed| *changed != part);
             absorbed.removed.push(part);
             absorbed.relisted = true;
@@ -505,7 +506,7 @@ impl Change<'_> {
         }
     }
 
-    /// Parts that cannot go stay.
+    /// Keeps parts that cannot be removed.
     fn keep(&mut self) {
         for (entity, part) in std::mem::take(&mut self.lost) {
             self.reported.changes.remove(&entity);
@@ -513,7 +514,7 @@ impl Change<'_> {
         }
     }
 
-    /// A part that cannot go gets another entity.
+    /// Gives another entity to a part that cannot be removed.
     fn come_back(&mut self, lost: Entity, part: Extent) {
         let (world, types) = (&mut *self.world, self.types);
         let (entity, what) = match part {
@@ -551,7 +552,7 @@ impl Change<'_> {
     }
 }
 
-/// A problem of a part that is not in the scene, without its place there.
+/// The message of a problem with a part that is not in the scene, without its position there.
 fn clause(problem: &Problem) -> String {
     match problem.path.segments() {
         [_, _, field @ ..] if !field.is_empty() => {

@@ -1,4 +1,4 @@
-//! The camera of the picture: it stands where the observer stands until someone moves it.
+//! The camera of the picture: it stays at the observer until someone moves it.
 
 use super::{
     entities::CurrentScene,
@@ -29,22 +29,24 @@ use bevy::{
 /// The camera that draws the picture.
 #[derive(Component, Debug, Clone, Copy)]
 pub struct PictureCamera {
-    /// True if it stands at the scene's observer; free once a user has moved it.
+    /// True if the camera is at the scene's observer; false once a user has moved it.
     pub follows_observer: bool,
-    /// True if a narrow picture shows more above and below, so that less is cut off at the sides, as
-    /// [`Scene::view_angle`](crate::scene::Scene::view_angle) has it: for windows, whose panels take width.
+    /// True if a narrow picture shows more above and below, so that less is cut off at the sides, as in
+    /// [`Scene::view_angle`](crate::scene::Scene::view_angle): for windows, whose panels take up width.
     pub fits_width: bool,
 }
 
-/// A picture for people, which began with [`Hdr`]. That comes and goes as its display settings need half floats.
+/// Marks a picture for display, which was spawned with [`Hdr`]. That component is added or removed as the
+/// display settings require half floats.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct ForDisplay {
-    /// True if it is drawn [straight](super::straight::Straight) into its texture.
+    /// True if the picture is drawn [straight](super::straight::Straight) into its texture.
     pub(super) straight: bool,
 }
 
-/// The parts of a camera for the picture. For a picture that people see, add [`Hdr`]: it is tone mapped and encoded,
-/// from half floats where that takes passes of its own. Without, the target gets the linear values.
+/// The components of a camera for the picture. For a picture to be displayed, add [`Hdr`]: it is tone mapped
+/// and encoded, from half floats where this takes separate passes. Without it, the target receives the linear
+/// values.
 #[must_use]
 pub fn picture_camera(samples: u8) -> impl Bundle {
     (
@@ -92,8 +94,8 @@ pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
     }
 }
 
-/// Keeps cameras that follow the observer at its place, and every picture camera's field of view and
-/// tone mapping at the scene's or its own.
+/// Keeps cameras that follow the observer at the observer's position, and updates the field of view and tone
+/// mapping of every picture camera.
 pub fn follow_scene(
     scene: Res<CurrentScene>,
     shown: Res<Shown>,

@@ -1,7 +1,8 @@
 //! The samples of light with extent, spread over frames: while nothing changes, a frame draws a few of them.
 //!
-//! All views draw the same samples in a frame, as those without overrides share the buffer of lights. A view counts those
-//! that it has drawn since its last change. After as many as are wanted it has drawn each once, wherever it began.
+//! All views draw the same samples in a frame, since those without overrides share the light buffer. A view
+//! counts the samples that it has drawn since its last change. Once it has drawn the target number, each was
+//! drawn once, wherever it began.
 
 use std::time::{Duration, Instant};
 
@@ -9,49 +10,50 @@ use bevy::ecs::resource::Resource;
 
 use crate::reference::LightSamples;
 
-/// The most samples in a frame.
+/// Maximum number of samples in a frame.
 const MOST: u32 = 8;
-/// A frame that takes longer draws fewer samples the next time,
+/// Duration above which the next frame draws fewer samples,
 const SLOW: Duration = Duration::from_millis(50);
-/// and one that takes less draws more.
+/// and below which it draws more.
 const FAST: Duration = Duration::from_millis(20);
 
-/// The samples of light with extent that a frame draws.
+/// The samples of light with extent drawn in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// The number of the first.
+    /// Index of the first sample.
     pub first: u32,
-    /// How many: a power of two that divides `first`, as such stretches of the sequence are evenly spread.
+    /// Number of samples: a power of two that divides `first`, since such parts of the sequence are evenly
+    /// distributed.
     pub count: u32,
 }
 
-/// A view's samples of light with extent.
+/// The progress of a view's samples of light with extent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Converged {
-    /// Those that the picture is the mean of.
+    /// Number of samples of which the picture is the mean.
     pub done: u32,
-    /// Those that it will be the mean of.
+    /// Number of samples of which it will be the mean.
     pub total: u32,
 }
 
 impl Converged {
-    /// True if none is missing.
+    /// True if no sample is missing.
     #[must_use]
     pub fn is_done(self) -> bool {
         self.done >= self.total
     }
 }
 
-/// How pictures of light with extent converge.
+/// The convergence of pictures with light with extent.
 #[derive(Clone, Debug, Resource)]
 pub struct Convergence {
-    /// The samples that a picture is the mean of, at least 1.
+    /// The target number of samples, at least 1.
     pub target: u32,
     /// The first sample of the next frame.
     next: u32,
-    /// The most samples of the next frame.
+    /// Maximum number of samples in the next frame.
     most: u32,
-    /// When the last frame of a picture that converges began.
+    /// Start of the last frame of a converging picture.
     began: Option<Instant>,
 }
 
@@ -62,12 +64,12 @@ impl Default for Convergence {
 }
 
 impl Convergence {
-    /// The samples of a frame. `begins` if a picture begins in it, which waits for no more than one sample; `missing` are
-    /// the samples that the others lack, at least, if there are others.
+    /// The samples of a frame. `begins` is true if a picture begins in it, which waits for no more than one
+    /// sample; `missing` is the minimum number of samples missing in other pictures, if any.
     pub(super) fn part(&mut self, begins: bool, missing: Option<u32>) -> Part {
         let target = self.target.max(1);
         if missing.is_none() || self.next >= target {
-            // Nothing goes on, so that all pictures begin alike.
+            // No picture continues, so that all begin alike.
             self.next = 0;
         }
         let now = Instant::now();
@@ -84,7 +86,7 @@ impl Convergence {
         part
     }
 
-    /// No picture converges.
+    /// Records that no picture converges.
     pub(super) fn rest(&mut self) {
         self.began = None;
     }

@@ -1,4 +1,4 @@
-//! The choices that an object on the picture is drawn with.
+//! The choices with which an object is drawn.
 
 use bevy::ecs::component::Component;
 
@@ -11,9 +11,9 @@ pub struct Drawn {
     pub(super) shading: String,
     pub(super) encoding: Encoding,
     pub(super) everywhere: bool,
-    /// The light types that its shader knows.
+    /// The light types in its shader.
     pub(super) lights: LightSet,
-    /// Version of the model; a file that is read again makes another.
+    /// Version of the model, which changes when its file is read again.
     pub(super) version: u64,
 }
 

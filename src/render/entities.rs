@@ -1,5 +1,5 @@
-//! The scene as entities: every light, every object and the observer is an entity with the [components](super::parts) of
-//! its part.
+//! The scene as entities: every light, every object and the observer is an entity with the
+//! [components](super::parts) of its part.
 //!
 //! [`CurrentScene`] and the entities mirror each other. Replacing or editing the scene changes only
 //! the entities that differ (so a reload leaves the rest alone); changing a component of an entity
@@ -16,7 +16,7 @@ use crate::{
     scene::Scene,
 };
 
-/// The scene as it is stored: without what is [animated](super::parts::Animated).
+/// The scene as stored: without [animated](super::parts::Animated) changes.
 #[derive(Clone, Debug, Default, PartialEq, Resource)]
 pub struct CurrentScene(pub Scene);
 
@@ -36,108 +36,109 @@ pub struct SceneEntities {
     pub objects: Vec<Entity>,
     /// The observer.
     pub observer: Option<Entity>,
-    /// The scene that the entities stood for when the two were last made equal. What differs from it
-    /// in the scene was edited there, what differs in the entities was edited there.
+    /// The scene that the entities represented when both were last synchronised. Differences of the scene
+    /// from it are edits of the scene, differences of the entities are edits of the entities.
     pub(super) mirrored: Option<Scene>,
-    /// The tick of the last change of the scene of which all is known: it is in `mirrored`, or in `due`.
+    /// The tick of the last known change of the scene: it is in `mirrored`, or in `due`.
     pub(super) seen: Option<Tick>,
-    /// Parts of the scene that the entities are to follow.
+    /// Parts of the scene that the entities have yet to follow.
     pub(super) due: Vec<Extent>,
-    /// The ids of the parts that the entities stand for, if a document is shown.
+    /// The ids of the parts represented by the entities, if a document is shown.
     pub(super) ids: Option<Ids>,
-    /// The ids of the parts of the scene, where entities have others, or none yet.
+    /// The ids of the parts of the scene, where those of the entities differ or are missing.
     pub(super) new_ids: Option<Ids>,
-    /// Changes of entities in this frame, of which the document has yet to learn.
+    /// Changes of entities in this frame that the document has not received yet.
     pub(super) absorbed: Absorbed,
-    /// The document's value that the scene is equal to, but for what was absorbed, and the tick of the last change of
-    /// the scene for which that is so.
+    /// The document's revision that equals the scene, except for absorbed changes, and the tick of the last
+    /// change of the scene for which this is true.
     pub(super) shown: Option<Revision>,
     pub(super) agreed: Option<Tick>,
     /// The index of each object.
     places: EntityHashMap<usize>,
-    /// Counts how often the list of objects was another one.
+    /// Number of changes of the list of objects.
     lists: u64,
     pub(super) visits: u64,
 }
 
-/// Changes of entities that went into the scene.
+/// Changes of entities that were transferred to the scene.
 #[derive(Debug, Default)]
 pub(super) struct Absorbed {
     /// Parts with other values.
     pub(super) parts: Vec<Extent>,
-    /// Lights and objects that went, by their places before.
+    /// Lights and objects that were removed, by their former positions.
     pub(super) removed: Vec<Extent>,
-    /// True if parts went, came or have other types. Those that came are at the end of the lists.
+    /// True if parts were removed or added, or changed their types. Added ones are at the end of the lists.
     pub(super) relisted: bool,
-    /// Changes that were refused, each said once.
+    /// Refused changes, each reported once.
     pub(super) refused: Vec<String>,
 }
 
 impl SceneEntities {
-    /// The number of objects visited since the start; a frame in which nothing changed visits none.
+    /// The number of objects visited since the start; none in a frame without changes.
     #[must_use]
     pub fn visits(&self) -> u64 {
         self.visits
     }
 
-    /// Changes of entities that were refused in this frame, as messages. Each is reported once, until a change of the
-    /// same part was accepted.
+    /// Messages about changes of entities that were refused in this frame. Each is reported once, until a
+    /// change of the same part is accepted.
     #[must_use]
     pub fn refused(&self) -> &[String] {
         &self.absorbed.refused
     }
 
-    /// The index of the object for which an entity stands.
+    /// The index of the object represented by an entity.
     pub(super) fn place_of(&self, object: Entity) -> Option<usize> {
         self.places.get(&object).copied().filter(|i| self.objects.get(*i) == Some(&object))
     }
 
-    /// The part for which an entity stands; the observer is [`Extent::Rest`].
+    /// The part represented by an entity; the observer is [`Extent::Rest`].
     pub(super) fn part_of(&self, entity: Entity) -> Option<Extent> {
         let light = || self.lights.iter().position(|light| *light == entity).map(Extent::Light);
         let observer = || (self.observer == Some(entity)).then_some(Extent::Rest);
         self.place_of(entity).map(Extent::Object).or_else(observer).or_else(light)
     }
 
-    /// True if every part of a scene has its entity.
+    /// True if every part of a scene has an entity.
     pub(super) fn stands_for(&self, scene: &Scene) -> bool {
         let counts = |scene: &Scene| (scene.lights.len(), scene.objects.len());
         self.mirrored.as_ref().is_some_and(|mirrored| counts(mirrored) == counts(scene))
             && counts(scene) == (self.lights.len(), self.objects.len())
     }
 
-    /// Changes whenever other entities stand for objects.
+    /// A number that changes whenever other entities represent the objects.
     pub(super) fn list(&self) -> u64 {
         self.lists
     }
 
-    /// Objects from this place on have other entities than before.
+    /// Records that the objects from this index on have other entities.
     pub(super) fn place(&mut self, first: usize) {
         self.lists += 1;
         self.places.extend(self.objects.iter().enumerate().skip(first).map(|(i, e)| (*e, i)));
     }
 
-    /// An entity stands for no object any more.
+    /// Records that an entity no longer represents an object.
     pub(super) fn forget(&mut self, object: Entity) {
         self.places.remove(&object);
     }
 }
 
-/// The way from an old list of parts to a new one: equal parts at the beginning and at the end keep their entities.
+/// The mapping from an old list of parts to a new one: equal parts at the beginning and at the end keep their
+/// entities.
 #[derive(Debug, PartialEq, Eq)]
 struct Alignment {
-    /// The old places of the others.
+    /// Old positions of the others.
     gone: Range<usize>,
-    /// The new places of the others.
+    /// New positions of the others.
     come: Range<usize>,
-    /// For each of these the old place whose entity it gets, if any.
+    /// For each of these, the old position of the entity that it gets, if any.
     from: Vec<Option<usize>>,
-    /// The old places whose entities go.
+    /// Old positions of the entities to remove.
     surplus: Vec<usize>,
 }
 
-/// Matches the entities of `old` parts with `new` parts: by their ids where these are known, else those between equal
-/// parts get the entities that are left.
+/// Matches the entities of `old` parts with `new` parts: by id where known; otherwise, parts between equal
+/// ones get the remaining entities.
 fn align<T: PartialEq>(
     entities: usize,
     old: &[T],
@@ -145,7 +146,7 @@ fn align<T: PartialEq>(
     ids: Option<[&[PartId]; 2]>,
     visits: &mut u64,
 ) -> Alignment {
-    // Others changed the list: nothing is known.
+    // Somebody else changed the list: nothing is known.
     let known = entities == old.len();
     let [gone, come] = difference([entities, new.len()], |i, j| {
         *visits += 1;
@@ -163,7 +164,8 @@ fn align<T: PartialEq>(
     Alignment { gone, come, from, surplus: left.into_iter().flatten().collect() }
 }
 
-/// Gives the parts of a new list their entities, and makes `old` equal to `new`. Returns the entities that go.
+/// Assigns entities to the parts of a new list, and makes `old` equal to `new`. Returns the entities to
+/// remove.
 fn follow<T: Part>(
     world: &mut World,
     types: &PartTypes,
@@ -177,7 +179,7 @@ fn follow<T: Part>(
         let known = from.map(|i| (entities[i], old.get(i)));
         changed.push(match known {
             Some((entity, before)) => {
-                // If it is gone, `absorb` decides what follows.
+                // If it is gone, `absorb` decides what happens.
                 if let Ok(mut entity) = world.get_entity_mut(entity) {
                     part.write(&mut entity, before, types);
                 }
@@ -193,10 +195,10 @@ fn follow<T: Part>(
     surplus
 }
 
-/// Makes the entities equal to the scene. Runs when [`CurrentScene`] changed; touches only what
-/// differs, and compares nothing where that is known.
+/// Makes the entities equal to the scene. Runs if [`CurrentScene`] changed; writes only differences, and
+/// compares nothing where these are known.
 pub fn reconcile(world: &mut World) {
-    // Not by `resource_scope`, after which Bevy takes a resource for changed.
+    // Not with `resource_scope`, after which Bevy marks the resource as changed.
     let types = world.get_resource::<PartTypes>().cloned().unwrap_or_default();
     let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
     let mut current = world.resource_mut::<CurrentScene>();
@@ -234,7 +236,7 @@ impl SceneEntities {
             self.visits += visits + way.come.len() as u64;
             let surplus = follow(world, types, &mut self.lights, &mut old.lights, &scene.lights, &light_way);
             let no_objects = follow(world, types, &mut self.objects, &mut old.objects, &scene.objects, &way);
-            // Those that go are known no more when their components tell of it.
+            // Removed entities are forgotten before their components report it.
             no_objects.iter().for_each(|entity| self.forget(*entity));
             let elsewhere = |(k, from): (usize, &Option<usize>)| *from != Some(way.gone.start + k);
             if foreign || !way.surplus.is_empty() || way.from.iter().enumerate().any(elsewhere) {
@@ -288,7 +290,7 @@ impl SceneEntities {
         }
     }
 
-    /// Gives entities the ids of the parts that they stand for.
+    /// Gives entities the ids of the parts that they represent.
     fn identify(&mut self, world: &mut World, ids: Ids) {
         for (entities, ids) in [(&self.lights, &ids.lights), (&self.objects, &ids.objects)] {
             for (entity, id) in entities.iter().zip(ids) {
@@ -307,7 +309,8 @@ impl SceneEntities {
 mod tests {
     use super::*;
 
-    /// The parts as numbers: which differ, which entities go, and the place in `old` that each new one had.
+    /// The parts as numbers: which differ, which entities are removed, and the former position of each new
+    /// part in `old`.
     fn aligned(old: &[u32], new: &[u32]) -> (Range<usize>, Vec<usize>, Vec<Option<usize>>) {
         let way = align(old.len(), old, new, None, &mut 0);
         let before = (0..way.gone.start).map(Some);
@@ -341,7 +344,7 @@ mod tests {
             let kept = (0..way.gone.start).map(Some).chain(way.from).chain((way.gone.end..3).map(Some));
             (kept.collect::<Vec<_>>(), way.surplus)
         };
-        // Equal values alone would make the last one go.
+        // Equal values alone would remove the last one.
         assert_eq!(from([0, 1, 2], &[1, 2]), (vec![Some(1), Some(2)], vec![0]));
         assert_eq!(from([0, 1, 2], &[0, 2]), (vec![Some(0), Some(2)], vec![1]));
         assert_eq!(from([0, 1, 2], &[2, 0]), (vec![Some(2), Some(0)], vec![1]));

@@ -1,35 +1,36 @@
-//! The scene that is shown follows a document, and the document what systems change in entities; both at the price of
-//! what changed.
+//! Synchronises the displayed scene with a document, and the document with changes of entities by systems;
+//! both at a cost proportional to the changes.
 
 use bevy::ecs::prelude::*;
 
 use super::entities::{CurrentScene, Ids, SceneEntities};
 use crate::document::{Document, Extent};
 
-/// Changes that others made to the scene that is shown.
+/// Changes of the displayed scene by others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Changes {
     /// These parts have other values.
     Values(Vec<Extent>),
-    /// Parts came, at the ends of the lists, or have other types, and these went, by their places before.
+    /// Parts were added at the ends of the lists, or changed their types, and these were removed, by their
+    /// former positions.
     Lists(Vec<Extent>),
 }
 
 impl SceneEntities {
-    /// True if the scene that is shown is that of the document.
+    /// True if the displayed scene is that of the document.
     #[must_use]
     pub fn shows(&self, document: &Document) -> bool {
         self.shown == Some(document.revision())
     }
 
-    /// The document goes into the scene that is shown.
+    /// Displays the document.
     pub fn show(&mut self, document: &Document, mut scene: ResMut<CurrentScene>) {
         if self.shows(document) {
             return;
         }
         let before = Some(scene.last_changed());
         let parts = self.shown.and_then(|shown| document.changes_since(shown));
-        // Where others changed the scene, the document counts.
+        // If others changed the scene, the document takes precedence.
         match parts.filter(|_| self.agreed == before) {
             Some(parts)
                 if parts.iter().all(|part| *part == Extent::Rest) && document.shows_the_same(&scene.0) =>
@@ -59,7 +60,7 @@ impl SceneEntities {
         self.agree(document, &scene);
     }
 
-    /// What others changed in the scene that is shown in this frame.
+    /// The changes of the displayed scene by others in this frame.
     pub fn changed_by_others(
         &mut self,
         document: &Document,
@@ -86,7 +87,8 @@ impl SceneEntities {
         None
     }
 
-    /// The scene that is shown is that of the document: entities get their ids when they follow it next.
+    /// Records that the displayed scene is that of the document: entities get their ids when they next follow
+    /// it.
     fn identify_later(&mut self, document: &Document, scene: &mut ResMut<CurrentScene>) {
         let before = Some(scene.last_changed());
         scene.set_changed();
@@ -96,13 +98,13 @@ impl SceneEntities {
         self.new_ids = Some(ids(document));
     }
 
-    /// The scene that is shown and the document were made equal.
+    /// Records that the displayed scene equals the document.
     fn agree(&mut self, document: &Document, scene: &ResMut<CurrentScene>) {
         self.shown = Some(document.revision());
         self.agreed = Some(scene.last_changed());
     }
 
-    /// The document adopted these changes, or refused them and goes into the scene that is shown.
+    /// Concludes the changes: the document adopted them, or refused them and is displayed again.
     pub fn settle(
         &mut self,
         changes: &Changes,

@@ -1,9 +1,9 @@
-//! Corners whose triangles all face away from the observer. Nothing is drawn there, so the light that shading models
-//! calculate at corners is left out.
+//! Corners whose triangles all face away from the observer. Nothing is drawn there, so shading models that
+//! calculate light at corners can skip them.
 //!
-//! Shaders make normals unit vectors, so their length is free to say how far the triangles at a corner are turned away from
-//! the normal there: by no more than asin(1 / length). With the observer's direction **v** they all face away if
-//! **n**·**v** < −1 / length. Lengths are powers of two, by which no number is rounded; 1 says nothing.
+//! Shaders normalise normals, so their lengths are free to encode how far the triangles at a corner deviate
+//! from the normal there: by at most asin(1 / length). With the observer's direction **v** they all face away
+//! if **n**·**v** < −1 / length. Lengths are powers of two, which cause no rounding; 1 encodes nothing.
 
 use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use glam::Vec3;
@@ -11,10 +11,12 @@ use glam::Vec3;
 use super::material::{FACE_NORMAL, Vertices};
 use crate::shape::PolygonMesh;
 
-/// For the rounding of a driver, which puts corners on a grid in the picture and may turn small triangles at the rim.
+/// Margin for the rounding of a driver, which snaps corners to a grid in the picture and may flip small
+/// triangles at the rim.
 const MARGIN: f32 = 0.1;
 
-/// Writes the lengths into the normals of a mesh that was made of some polygons: those with which corners are lit.
+/// Writes the lengths into the normals of a mesh made of these polygons: the normals with which corners are
+/// lit.
 pub(super) fn tell(mesh: &mut Mesh, polygons: &PolygonMesh, vertices: Vertices) {
     match vertices {
         Vertices::Shared => {
@@ -46,12 +48,13 @@ fn normal_of(polygons: &PolygonMesh, corners: [u32; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// The cosine of the larger of two angles: of those so far, and that of a triangle. One without an area is not drawn.
+/// The cosine of the larger of two angles: the maximum so far, and that of a triangle. A triangle without
+/// area is not drawn.
 fn least(so_far: f32, triangle: Vec3, normal: Vec3) -> f32 {
     if triangle == Vec3::ZERO { so_far } else { so_far.min(triangle.dot(normal)) }
 }
 
-/// The length that says that no triangle is turned away further than the angle of a cosine.
+/// The length which states that no triangle deviates by more than the angle with this cosine.
 fn length(cosine: f32) -> f32 {
     let sine = if cosine > 0.0 { (1.0 - cosine * cosine).max(0.0).sqrt() } else { 1.0 };
     [8.0, 4.0, 2.0].into_iter().find(|length| (sine + MARGIN) * length <= 1.0).unwrap_or(1.0)
@@ -73,8 +76,8 @@ mod tests {
         render::meshes::{face_mesh, shared_mesh},
     };
 
-    /// The corners that the shader leaves out, seen from a place, and those of them with a triangle that faces it by more
-    /// than the margin; with lengths that are so many times too large.
+    /// The numbers of corners that the shader skips, seen from a position, and of those among them with a
+    /// triangle that faces it by more than the margin; with lengths multiplied by `times`.
     fn left_out(polygons: &PolygonMesh, vertices: Vertices, eye: Vec3, times: f32) -> [usize; 2] {
         let (mut mesh, attribute) = match vertices {
             Vertices::Shared => (shared_mesh(polygons), Mesh::ATTRIBUTE_NORMAL),

@@ -1,7 +1,8 @@
-//! The buffers of lights, shared by all materials and visible to the vertex and fragment stages: a uniform buffer of
-//! fixed capacity, which shaders read for each light and pixel, and a storage buffer with the parameters of the lights,
-//! one after the other. Changing a light rewrites the buffers and touches no material. A view with overrides has buffers
-//! of its own. When the parameters outgrow their buffer, there are others, and objects get other materials.
+//! The light buffers, shared by all materials and visible to the vertex and fragment stages: a uniform buffer
+//! of fixed capacity, which shaders read for each light and pixel, and a storage buffer with the parameters
+//! of the lights, one after the other. Changing a light rewrites the buffers and touches no material. A view
+//! with overrides has separate buffers. When the parameters outgrow their buffer, it is replaced, and so are
+//! the materials of objects.
 
 use std::sync::Arc;
 
@@ -26,16 +27,17 @@ use crate::{
     scene::{Display, Light, record},
 };
 
-/// Bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends of its scale; the first
-/// sample of light with extent, their number, and whether the picture is a part of a mean.
+/// Number of bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends
+/// of its scale; the first sample of light with extent, the number of samples, and whether the picture is
+/// part of a mean.
 pub const HEADER_BYTES: usize = 48;
-/// Where the samples stand among them.
+/// Offset of the samples among them.
 pub(super) const SAMPLES_AT: usize = 32;
-/// Bytes of the samples: the first, their number, and whether the picture is a part of a mean.
+/// Number of bytes for the samples: the first, their number, and whether the picture is part of a mean.
 const SAMPLE_BYTES: usize = 12;
-/// Bytes of one light.
+/// Size of one light, in bytes.
 pub const LIGHT_BYTES: usize = 48;
-/// Words for the parameters of all lights that a buffer has room for at first: four for each.
+/// Initial capacity of the parameter buffer, in words: four for each light.
 const WORDS: usize = 4 * MAX_LIGHTS;
 
 /// Byte offsets of the fields of `Light` in `lights.wgsl`; a test compares them with the shader's.
@@ -64,21 +66,21 @@ pub const ILLUMINATION_LAYOUT: [(&str, usize); 13] = [
     ("lights", HEADER_BYTES),
 ];
 
-/// The terms of the equation that are shown.
+/// The displayed terms of the equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
 pub struct ShownTerms(pub TermSelection);
 
 /// The buffers of the lights of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LightBuffers {
-    /// `illumination` of the shaders.
+    /// `illumination` in the shaders.
     pub lights: Handle<ShaderBuffer>,
-    /// `light_words` of the shaders.
+    /// `light_words` in the shaders.
     pub words: Handle<ShaderBuffer>,
 }
 
 impl LightBuffers {
-    /// Buffers that have no lights yet.
+    /// Buffers without lights.
     fn new(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Self {
         let (lights, _) =
             illumination_bytes(&[], TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
@@ -88,28 +90,29 @@ impl LightBuffers {
         Self { lights: buffers.add(lights), words: buffers.add(words) }
     }
 
-    /// True if a buffer is one of them.
+    /// True if a buffer is one of these.
     pub(super) fn has(&self, buffer: AssetId<ShaderBuffer>) -> bool {
         [self.lights.id(), self.words.id()].contains(&buffer)
     }
 }
 
-/// The buffers of all lights of the scene, as views without overrides show them.
+/// The light buffers of the scene, for views without overrides.
 #[derive(Clone, Debug, Resource)]
 pub struct IlluminationBuffer {
-    /// The buffers; others when the parameters of the lights outgrow them.
+    /// The buffers; replaced when the parameters of the lights outgrow them.
     pub buffers: LightBuffers,
-    /// The words for parameters of lights that it has room for, and those of all views.
+    /// Capacity for the parameters of lights, in words, for all views.
     room: usize,
 }
 
 impl IlluminationBuffer {
-    /// Buffers that have no lights yet, for another view.
+    /// Empty buffers for another view.
     pub(super) fn another(&self, buffers: &mut Assets<ShaderBuffer>) -> LightBuffers {
         LightBuffers::new(self.room, buffers)
     }
 
-    /// Makes room for so many words. True if the buffers are others than before, as are those of all views then.
+    /// Ensures capacity for this many words. True if the buffers were replaced, as then are those of all
+    /// views.
     pub(super) fn hold(&mut self, words: usize, buffers: &mut Assets<ShaderBuffer>) -> bool {
         if words <= self.room {
             return false;
@@ -127,18 +130,18 @@ impl FromWorld for IlluminationBuffer {
     }
 }
 
-/// A light of the scene, as the shader has it.
+/// A light of the scene, in the shader's layout.
 #[derive(Clone, Debug, Default)]
 pub struct Lit {
     record: LightRecord,
-    /// Its own parameters. A parameter that is a file has the index of the first number of the file.
+    /// The parameters of the light. A file parameter is the index of the file's first number.
     words: Vec<u32>,
-    /// Its files, each with the place of its parameter in `words`.
+    /// Files, each with the position of its parameter in `words`.
     tables: Vec<(usize, Table)>,
 }
 
 impl Lit {
-    /// A light of the scene. A light of an unknown type gives no light.
+    /// A light of the scene. A light of an unknown type is dark.
     #[must_use]
     pub fn new(light: &Light, registry: &Registry, encoding: Encoding) -> Self {
         let record = record(light, registry, encoding);
@@ -150,13 +153,14 @@ impl Lit {
     }
 }
 
-/// The places of the words behind the lights: the parameters of all, and the numbers of each file once.
+/// The positions of the words after the lights: the parameters of all lights, and the numbers of each file
+/// once.
 struct Places<'a> {
     /// The first word of each light.
     lights: Vec<usize>,
     /// The first number of each file.
     files: Vec<(&'a Arc<[f32]>, usize)>,
-    /// The number of all words.
+    /// The total number of words.
     count: usize,
 }
 
@@ -194,21 +198,23 @@ impl<'a> Places<'a> {
     }
 }
 
-/// The number of words behind so many lights.
+/// The number of words after these lights.
 #[must_use]
 pub fn word_count(lights: &[Lit]) -> usize {
     Places::of(&lights[..lights.len().min(MAX_LIGHTS)]).count
 }
 
-/// The bytes of the samples at [`SAMPLES_AT`]: those of a frame that is a part of a mean, or all so many.
+/// The bytes of the samples at [`SAMPLES_AT`]: for a frame that is part of a mean, or for all samples at
+/// once.
 pub(super) fn sample_bytes(part: Result<Part, u32>) -> [u8; SAMPLE_BYTES] {
     let Part { first, count } = part.unwrap_or_else(|all| Part { first: 0, count: all });
     let words = [first, count, u32::from(part.is_ok())];
     std::array::from_fn(|i| words[i / 4].to_le_bytes()[i % 4])
 }
 
-/// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use. Lights beyond
-/// [`MAX_LIGHTS`] are left out; the checker refuses such scenes. A frame takes so many samples of lights with extent.
+/// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use.
+/// Lights beyond [`MAX_LIGHTS`] are omitted; the checker refuses such scenes. `samples` is the number of
+/// samples of light with extent in a frame.
 #[must_use]
 pub fn illumination_bytes(
     lights: &[Lit],

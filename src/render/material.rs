@@ -1,9 +1,9 @@
 //! The Material implementation, generic over the model: one Material type per model.
 //!
-//! A material holds the table of the parameters of all objects under its model, whose layout follows
-//! from the declaration, the shared buffer of lights, and the composed shader of its model and
-//! shading model, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
-//! all objects under one model and shading model share one material and are drawn together.
+//! A material contains the parameter table of all objects with its model, whose layout follows from the
+//! declaration, the shared light buffer, and the composed shader of its model and shading model, which is
+//! part of the pipeline key. Each object has the index of its table row as its mesh tag, so all objects with
+//! the same model and shading model share one material and are drawn together.
 
 use std::{collections::HashMap, marker::PhantomData};
 
@@ -36,7 +36,7 @@ use bevy::{
 use super::{illumination::LightBuffers, trial::MARK};
 use crate::{custom::CustomFile, reflection::ReflectionModel};
 
-/// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
+/// The tangent of the vertex. Three numbers instead of Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
     MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
 /// The normal of the polygon (CA DD8), on meshes for shading models that calculate per polygon.
@@ -54,26 +54,26 @@ pub const FACE_CENTRE: MeshVertexAttribute =
 pub(super) enum Vertices {
     /// Shared by polygons, for shading models that interpolate.
     Shared,
-    /// Apart, for shading models that calculate per polygon.
+    /// Separate for each polygon, for shading models that calculate per polygon.
     Apart,
 }
 
-/// The content of a material, the same for all model types.
+/// The contents of a material, equal for all model types.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialInputs {
-    /// The parameters of all objects under the model.
+    /// The parameters of all objects with the model.
     pub parameters: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: LightBuffers,
     /// The composed shader of model and shading model.
     pub shader: Handle<Shader>,
-    /// True if the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
+    /// True if the mesh has [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
-    /// True if the display shows numbers as they are, [`Encoding::Off`](crate::optics::colour::Encoding::Off).
+    /// True if the display shows numbers unchanged, [`Encoding::Off`](crate::optics::colour::Encoding::Off).
     pub gamma_naive: bool,
 }
 
-/// The material of objects under the model `M`; custom models share [`CustomFile`].
+/// The material of objects with the model `M`; custom models share [`CustomFile`].
 #[derive(Asset, Clone, Debug)]
 pub struct ModelMaterial<M: Clone + 'static> {
     parameters: Handle<ShaderBuffer>,
@@ -99,7 +99,7 @@ impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
     }
 }
 
-// By hand, because a uniform buffer that materials share cannot be derived.
+// Written by hand, because a uniform buffer shared between materials cannot be derived.
 impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
     type Data = PipelineKey;
     type Param = SRes<RenderAssets<GpuShaderBuffer>>;
@@ -133,7 +133,7 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
     }
 }
 
-/// Buffers at their bindings; none before the renderer has all of them.
+/// Buffers at their bindings; `None` until the renderer has all of them.
 pub(super) fn bound<const N: usize>(
     buffers: &RenderAssets<GpuShaderBuffer>,
     handles: [(u32, &Handle<ShaderBuffer>); N],
@@ -159,7 +159,7 @@ impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {
     }
 }
 
-// By hand, so that authors of models need not know Bevy's reflection.
+// Written by hand, so that authors of models need not know Bevy's reflection.
 impl<M: Clone + 'static> TypePath for ModelMaterial<M> {
     fn type_path() -> &'static str {
         std::any::type_name::<Self>()
@@ -197,7 +197,7 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
             attributes.push(FACE_CENTRE.at_shader_location(5));
             descriptor.vertex.shader_defs.push("FACES".into());
         }
-        // One pipeline so marked is the example with which edited shaders are tried.
+        // One pipeline with this mark serves as the example with which edited shaders are tried.
         descriptor.vertex.shader_defs.push(MARK.into());
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
         descriptor.vertex.shader = key.bind_group_data.shader.clone();
@@ -207,7 +207,8 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
                 fragment.shader_defs.push("FACES".into());
             }
             if key.bind_group_data.gamma_naive {
-                // Not a choice at run time: programs on the CPU calculate both sides of one for every pixel.
+                // Not a choice at run time: software renderers calculate both sides of a branch for every
+                // pixel.
                 fragment.shader_defs.push("GAMMA_NAIVE".into());
             }
             fragment.shader_defs.push(MARK.into());
@@ -218,15 +219,15 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
     }
 }
 
-/// Puts a material of some model type on an entity, or takes it off: the same two calls for every
-/// model, looked up by id.
+/// Adds a material of some model type to an entity, or removes it: the same two functions for every model,
+/// looked up by id.
 #[derive(Clone, Copy)]
 pub struct Attachment {
-    /// Puts the material on.
+    /// Adds the material.
     pub attach: fn(&mut EntityWorldMut, MaterialInputs),
-    /// Takes the material off.
+    /// Removes the material.
     pub detach: fn(&mut EntityWorldMut),
-    /// Drops the materials that a light buffer lit.
+    /// Drops the materials that use a light buffer.
     pub(super) forget: fn(&mut World, AssetId<ShaderBuffer>),
 }
 
@@ -234,12 +235,12 @@ pub struct Attachment {
 #[derive(Default, Resource)]
 pub struct Attachments {
     by_id: HashMap<&'static str, Attachment>,
-    /// That of all custom models, whose ids come and go.
+    /// The attachment of all custom models, whose ids may change.
     own: Option<Attachment>,
 }
 
 impl Attachments {
-    /// The attachment of a model that is registered, or was.
+    /// The attachment of a model that is or was registered.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<Attachment> {
         self.by_id.get(id).copied().or(self.own)
@@ -250,11 +251,11 @@ impl Attachments {
     }
 }
 
-/// Makes Material types known to the renderer.
+/// Registers Material types with the renderer.
 pub trait MaterialApp {
-    /// Makes the Material type of the model `M` known.
+    /// Registers the Material type of the model `M`.
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
-    /// Makes the Material type of all custom models known.
+    /// Registers the Material type of all custom models.
     fn add_custom_material(&mut self) -> &mut Self;
 }
 
@@ -272,7 +273,7 @@ impl MaterialApp for App {
     }
 }
 
-/// The attachment of a type of material that the renderer now knows.
+/// The attachment of a material type, which is registered with the renderer.
 fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
     if !app.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
         app.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
@@ -281,8 +282,8 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
     Attachment { attach: attach::<M>, detach: detach::<M>, forget: forget::<M> }
 }
 
-/// The materials of one model by shader and light buffer: one for each shading model in use, in the views without
-/// overrides and in each view with.
+/// The materials of one model by shader and light buffer: one for each shading model in use, shared by the
+/// views without overrides, and separate for each view with overrides.
 #[derive(Resource)]
 struct SharedMaterials<M: Clone + 'static>(
     HashMap<(AssetId<Shader>, AssetId<ShaderBuffer>), Handle<ModelMaterial<M>>>,
@@ -299,7 +300,7 @@ fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInput
                 shared.0.insert(key, handle.clone());
                 return handle;
             };
-            // A table that was made anew, for more objects, or another encoding.
+            // A table that was rebuilt for more objects, or another encoding.
             if let Some(material) = materials.get(handle)
                 && (material.parameters != inputs.parameters || material.gamma_naive != inputs.gamma_naive)
             {

@@ -1,9 +1,9 @@
-//! Pictures that converge: each frame has a few samples of light with extent, and the picture is the mean of the frames.
-//! A pass between that of the objects and the display's joins a frame to the mean.
+//! Converging pictures: each frame has a few samples of light with extent, and the picture is the mean of the
+//! frames. A pass between those of the objects and of the display adds a frame to the mean.
 //!
-//! While a view's picture converges it has two pairs of textures of 32-bit floats, one to read and one to write: 2 × 20 bytes
-//! for each pixel. A view that rests has none. Cameras without a [`View`] draw all samples in each frame, and should not share
-//! the frames of views that converge.
+//! While a view's picture converges, it has two pairs of textures of 32-bit floats, one to read and one to
+//! write: 2 × 20 bytes for each pixel. A finished view has none. Cameras without a [`View`] draw all samples
+//! in each frame, and should not share the frames of converging views.
 
 use std::collections::{HashMap, HashSet};
 
@@ -39,14 +39,14 @@ use super::{
 };
 use crate::shader::wgsl;
 
-/// The format of means.
+/// Texture format of means.
 const MEAN: TextureFormat = TextureFormat::Rgba32Float;
-/// The format of the sums of squares about the mean luminance.
+/// Texture format of the sums of squares about the mean luminance.
 const SQUARES: TextureFormat = TextureFormat::R32Float;
-/// The format of frames.
+/// Texture format of frames.
 const FRAME: TextureFormat = TextureFormat::Rgba16Float;
 
-/// Joins frames to means.
+/// Adds frames to means.
 pub(super) struct MeanPlugin;
 
 impl Plugin for MeanPlugin {
@@ -61,16 +61,16 @@ impl Plugin for MeanPlugin {
     }
 }
 
-/// What the frame of a view adds to its mean.
+/// The contribution of a view's frame to its mean.
 #[derive(Component, Clone, Copy, Debug)]
 struct Joins {
     /// The view in the main world.
     view: Entity,
-    /// The number of the frame.
+    /// Number of the frame.
     frame: u64,
-    /// Samples that the mean has, with those of the frame, and that it will have.
+    /// Number of samples in the mean, including those of the frame, and its target.
     converged: Converged,
-    /// Those of the frame.
+    /// Number of samples in the frame.
     count: u32,
     illumination: AssetId<ShaderBuffer>,
 }
@@ -85,9 +85,9 @@ impl Joins {
 #[derive(Component)]
 struct Mean {
     size: Extent3d,
-    /// The frames in it.
+    /// Number of frames in the mean.
     frames: u32,
-    /// Those to read, and those to write: the mean, and the squares about it.
+    /// Textures to read, and to write: the mean, and the squares about it.
     textures: [[TextureView; 2]; 2],
 }
 
@@ -110,13 +110,13 @@ impl Mean {
     }
 }
 
-/// The samples of this frame, for buffers of lights; none are all.
+/// The samples of this frame, for light buffers; `None` for all.
 #[derive(Default, Resource)]
 struct Samples {
-    /// All of a picture.
+    /// Number of samples of a picture.
     all: u32,
     wanted: HashMap<AssetId<ShaderBuffer>, Part>,
-    /// Buffers that have not all samples.
+    /// Buffers that do not have all samples.
     written: HashSet<AssetId<ShaderBuffer>>,
 }
 
@@ -153,7 +153,8 @@ fn extract(
     }
 }
 
-/// Writes the samples of this frame into the buffers of lights, and all into those whose pictures have converged.
+/// Writes the samples of this frame into the light buffers, and all samples into those whose pictures have
+/// converged.
 fn write(mut samples: ResMut<Samples>, buffers: Res<RenderAssets<GpuShaderBuffer>>, queue: Res<RenderQueue>) {
     let Samples { all, wanted, written } = &mut *samples;
     written.retain(|buffer| {
@@ -171,7 +172,7 @@ fn write(mut samples: ResMut<Samples>, buffers: Res<RenderAssets<GpuShaderBuffer
     }
 }
 
-/// Gives views textures for their means. What was written in the frame before is read in this one.
+/// Gives views textures for their means. The textures written in the previous frame are read in this one.
 fn prepare(
     mut views: Query<(Entity, &ViewTarget, &Joins, Option<&mut Mean>)>,
     device: Res<RenderDevice>,
@@ -189,7 +190,7 @@ fn prepare(
     }
 }
 
-/// The pass that joins a frame to a mean.
+/// The pass that adds a frame to a mean.
 struct Pass {
     layout: BindGroupLayout,
     pipeline: RenderPipeline,
@@ -245,7 +246,7 @@ impl Pass {
     }
 }
 
-/// Joins the frame of a view to its mean, and shows that in place of the frame.
+/// Adds the frame of a view to its mean, and replaces the frame by the mean.
 fn join(
     view: ViewQuery<(&ViewTarget, &Joins, &Mean)>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,

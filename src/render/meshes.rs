@@ -26,51 +26,51 @@ use crate::{
     text::plural,
 };
 
-/// The most that one mesh may take on the GPU, bytes. On the way there it is held up to three times.
+/// Maximum size of a mesh on the GPU, in bytes. On the way there up to three copies of it exist.
 pub const MESH_BUDGET: u64 = 1 << 30;
-/// The most that the meshes of a window may take together, bytes: as they are held up to three times on the way, the whole
-/// window takes about 1.5 GB then.
+/// Maximum total size of a window's meshes, in bytes: since up to three copies exist on the way, the whole
+/// window then takes about 1.5 GB.
 pub const WINDOW_BUDGET: u64 = 384 << 20;
-/// The most bytes of meshes that are on the GPU at once where nobody waits for the next frame. Beyond it shapes are drawn
-/// in batches: the same picture, later.
+/// Maximum size of meshes on the GPU at once when nobody waits for the next frame, in bytes. If exceeded,
+/// shapes are drawn in batches: the same picture, later.
 pub const BATCH: u64 = 64 << 20;
-/// The meshes without objects that stay for a change back: at most so many, and so many bytes.
+/// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
-/// The meshes that are made at once, at most. Together they may go beyond the budget, before they are counted.
+/// Maximum number of meshes built at once. Together they may exceed the budget before they are counted.
 const AT_ONCE: usize = 16;
 
-/// The meshes by object type, parameters and tessellation. Meshes are large, so each is made only in the form that its
-/// shading model needs, and once the GPU has it, it is nowhere else.
+/// The meshes by object type, parameters and tessellation. Meshes are large, so each is built only in the
+/// form that its shading model needs, and exists only on the GPU once it is there.
 #[derive(Resource)]
 pub struct ShapeMeshes {
     known: HashMap<(MeshKey, Vertices), Known>,
-    /// The bytes of all, the most that several may have, and the most that one may have alone.
+    /// The size of all in bytes, the maximum for several, and the maximum for a single one.
     bytes: u64,
     together: u64,
     alone: u64,
-    /// Those for which there was no room, and the objects that are not drawn for want of them.
+    /// Meshes that did not fit, and the objects that are not drawn without them.
     refused: HashSet<(MeshKey, Vertices)>,
-    /// The bytes for which the last one was too large.
+    /// The total size that the last rejected mesh would have reached, in bytes.
     reached: u64,
     left_out: Vec<Entity>,
-    /// True if there is more room than when they were refused.
+    /// True if more memory is free than when they were rejected.
     room: bool,
     /// True if meshes were added since unused ones were last dropped.
     grown: bool,
 }
 
-/// How much a shape is needed: what no picture shows comes last, then what is farther away.
+/// The priority of a shape: shapes outside all pictures come last, and nearer ones before others.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Need {
-    /// No picture shows it.
+    /// True if no picture shows it.
     pub(super) hidden: bool,
-    /// The distance from the camera, metres.
+    /// Distance from the camera, in metres.
     pub(super) distance: f32,
 }
 
 impl Need {
-    /// Those that are needed more come first.
+    /// Orders shapes by priority, highest first.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         self.hidden.cmp(&other.hidden).then(self.distance.total_cmp(&other.distance))
     }
@@ -98,25 +98,25 @@ impl Default for ShapeMeshes {
 }
 
 impl ShapeMeshes {
-    /// Holds so many bytes of several meshes, or of one alone, instead of [`WINDOW_BUDGET`] and
+    /// Limits the meshes to this many bytes together and for a single one, instead of [`WINDOW_BUDGET`] and
     /// [`MESH_BUDGET`].
     pub fn limit(&mut self, together: u64, alone: u64) {
         (self.together, self.alone) = (together, alone);
     }
 
-    /// The bytes of all meshes.
+    /// The size of all meshes, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// True if there is no mesh.
+    /// True if there are no meshes.
     pub(super) fn is_empty(&self) -> bool {
         self.known.is_empty()
     }
 
-    /// Takes all meshes from objects and from the GPU. Those that were left out before can be tried once there is
-    /// [room](Self::make_room).
+    /// Removes all meshes from objects and from the GPU. Objects that were omitted can be tried again once
+    /// there is [room](Self::make_room).
     pub(super) fn clear(world: &mut World) {
         let mut drawn = world.query_filtered::<Entity, (With<Mesh3d>, With<Drawn>)>();
         for drawable in drawn.iter(world).collect::<Vec<_>>() {
@@ -127,7 +127,7 @@ impl ShapeMeshes {
         meshes.bytes = 0;
     }
 
-    /// Tries the objects again that were left out.
+    /// Allows omitted objects to be tried again.
     pub(super) fn make_room(&mut self) {
         self.room = true;
     }
@@ -141,8 +141,8 @@ impl ShapeMeshes {
         meshes.left_out.clear();
     }
 
-    /// Makes the meshes of objects that are not yet known, as long as there is room: first those with the greatest need,
-    /// which `need` tells of each object by its index.
+    /// Builds missing meshes of objects, as long as there is room: those with the highest priority first,
+    /// which `need` returns for the index of an object.
     pub(super) fn make<'a>(
         &mut self,
         objects: impl Iterator<Item = (&'a Object, Vertices)>,
@@ -208,17 +208,17 @@ impl ShapeMeshes {
         }
     }
 
-    /// The mesh of an object, if it was made.
+    /// The mesh of an object, if it was built.
     pub(super) fn get(&self, key: MeshKey, vertices: Vertices) -> Option<Handle<Mesh>> {
         self.known.get(&(key, vertices)).map(|known| known.mesh.clone())
     }
 
-    /// Leaves an object out, for which there is no mesh.
+    /// Omits an object without a mesh.
     pub(super) fn leave_out(&mut self, object: Entity) {
         self.left_out.push(object);
     }
 
-    /// The objects that were left out, to be tried again if the scene is another one or others made room.
+    /// The omitted objects, to be tried again if the scene has changed or memory was freed.
     pub(super) fn try_again(&mut self, scene_changed: bool) -> Vec<Entity> {
         if !scene_changed && !self.room {
             return Vec::new();
@@ -228,7 +228,7 @@ impl ShapeMeshes {
         std::mem::take(&mut self.left_out)
     }
 
-    /// The reason why objects are missing in the picture, if any are.
+    /// The reason why objects are missing in the picture, if any.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let count = self.refused.len();
@@ -244,8 +244,8 @@ impl ShapeMeshes {
     }
 }
 
-/// Takes an object out of the picture. The material goes with the mesh: for the renderer an object with a new mesh and
-/// the material of before is not a new one, and it would not be drawn again.
+/// Removes an object from the picture. The material is removed with the mesh: the renderer would not treat an
+/// object with a new mesh and the previous material as new, and would not draw it again.
 pub(super) fn take_off(world: &mut World, drawable: Entity) {
     let model = world.get::<Drawn>(drawable).map(Drawn::model);
     let attachment = model.and_then(|model| world.get_resource::<Attachments>()?.get(model));
@@ -256,7 +256,7 @@ pub(super) fn take_off(world: &mut World, drawable: Entity) {
     }
 }
 
-/// The bytes of a mesh on the GPU.
+/// The size of a mesh on the GPU, in bytes.
 fn size(mesh: &Mesh) -> u64 {
     (mesh.get_vertex_buffer_size() + mesh.get_index_buffer_bytes().map_or(0, <[u8]>::len)) as u64
 }
@@ -272,7 +272,8 @@ pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
         .with_inserted_indices(Indices::U32(indices))
 }
 
-/// The mesh for shading models that calculate per polygon: no vertex is shared, and each knows its polygon.
+/// The mesh for shading models that calculate per polygon: no vertex is shared, and each has the data of its
+/// polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
     let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
@@ -310,8 +311,8 @@ fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.to_array()).collect()
 }
 
-/// Drops meshes that no object uses: a slider over a parameter makes hundreds. Some are kept for a change back, unless
-/// there is no room for others.
+/// Drops unused meshes: dragging the slider of a parameter makes hundreds. Some are kept in case they are
+/// needed again, unless others need the memory.
 pub(super) fn forget_unused_meshes(world: &mut World) {
     if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
         return;
@@ -362,7 +363,7 @@ mod tests {
         );
         let one = meshes.bytes;
         meshes.limit(4 * one, 4 * one);
-        // One more of the seventh shape, the nearest that is seen.
+        // One more of the seventh shape, the nearest visible one.
         shapes.push(shapes[6].clone());
         let need = |i: usize| Need { hidden: i < 5, distance: if i == 9 { 1.0 } else { 20.0 - i as f32 } };
         meshes.make(shapes.iter().map(|shape| (shape, Vertices::Shared)), need, &registry, &mut assets);
@@ -397,7 +398,7 @@ mod tests {
         let shapes = shapes(3 * AT_ONCE, 8);
         let all = || shapes.iter().map(|shape| (shape, Vertices::Shared));
         meshes.make(all().take(1), equal, &registry, &mut assets);
-        // As much is taken already as leaves room for three more.
+        // Enough is taken to leave room for three more.
         let one = meshes.bytes;
         meshes.bytes = WINDOW_BUDGET - 3 * one;
         meshes.make(all(), equal, &registry, &mut assets);

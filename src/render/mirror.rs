@@ -44,7 +44,8 @@ fn light_transform(light: &Light) -> Transform {
         .with_rotation(light.direction.map_or(Quat::IDENTITY, observer::rotation))
 }
 
-/// The name of an entity for tools: that of its part, else its type. A number would change with every part before it.
+/// The name of an entity for tools: the name of its part, or else its type. A number would change with every
+/// part before it.
 fn label<'a>(name: &'a Option<String>, type_name: &'a str) -> &'a str {
     name.as_deref().unwrap_or(type_name)
 }
@@ -75,7 +76,7 @@ fn visibility(object: &Object) -> Visibility {
 
 // ── from the scene ──
 
-/// Sets a component, unless it is the same.
+/// Sets a component, unless it is equal.
 fn set<C: Component<Mutability = Mutable> + PartialEq>(entity: &mut EntityWorldMut, new: C) {
     match entity.get_mut::<C>() {
         Some(mut known) => _ = known.set_if_neq(new),
@@ -83,7 +84,7 @@ fn set<C: Component<Mutability = Mutable> + PartialEq>(entity: &mut EntityWorldM
     }
 }
 
-/// Moves an entity, in those respects in which its part has another place than before. Others may be animated.
+/// Moves an entity where the transform of its part has changed. Other aspects may be animated.
 fn place(entity: &mut EntityWorldMut, old: Option<Transform>, new: Transform) {
     let mut now = entity.get::<Transform>().copied().unwrap_or(new);
     if old.is_none_or(|old| old.translation != new.translation) {
@@ -100,10 +101,10 @@ fn place(entity: &mut EntityWorldMut, old: Option<Transform>, new: Transform) {
 
 /// A part of the scene that has an entity.
 pub(super) trait Part: Clone + PartialEq {
-    /// Writes into an entity what differs from `old`, or all of it.
+    /// Writes the differences from `old` into an entity, or everything.
     fn write(&self, entity: &mut EntityWorldMut, old: Option<&Self>, types: &PartTypes);
 
-    /// An entity for the part.
+    /// Spawns an entity for the part.
     fn spawn(&self, world: &mut World, types: &PartTypes) -> Entity;
 }
 
@@ -200,7 +201,7 @@ fn needed<'w, C: Component>(entity: &EntityRef<'w>) -> Result<&'w C, String> {
     })
 }
 
-/// The name of a part, which had a name or none, and that label.
+/// The name of a part that had a given name or none, and a given label.
 fn name_of(entity: &EntityRef, known: Option<(&Option<String>, &str)>) -> Option<String> {
     let given = entity.get::<Name>().map(Name::as_str);
     match (given, known) {
@@ -210,12 +211,12 @@ fn name_of(entity: &EntityRef, known: Option<(&Option<String>, &str)>) -> Option
     }
 }
 
-/// Puts the place in a transform into an object.
+/// Copies the position, rotation and size in a transform to an object.
 ///
 /// # Errors
-/// The scale has no single size.
+/// Returns an error if the scale is not uniform.
 pub(super) fn read_place(transform: &Transform, known: bool, object: &mut Object) -> Result<(), String> {
-    /// The relative difference of sizes that counts as rounding.
+    /// Relative difference of sizes attributed to rounding.
     const ROUNDING: f32 = 1e-4;
     let old = object_transform(object);
     let Transform { translation, rotation, scale } = *transform;
@@ -233,17 +234,17 @@ pub(super) fn read_place(transform: &Transform, known: bool, object: &mut Object
         object.position = translation;
     }
     if !known || rotation != old.rotation {
-        // Without it, the angles of no rotation at all would have signs.
+        // Otherwise the angles of a zero rotation would have signs.
         let turned = rotation != Quat::IDENTITY;
         object.rotation = if turned { euler_degrees(rotation.normalize()) } else { Vec3::ZERO };
     }
     Ok(())
 }
 
-/// The object that an entity stands for; what components say as before stays as it was in the `known` one.
+/// The object that an entity represents; values equal to those of the `known` object stay as they were.
 ///
 /// # Errors
-/// The reason why it stands for none.
+/// Returns the reason why it does not represent an object.
 pub(super) fn read_object(
     entity: EntityRef,
     known: Option<&Object>,
@@ -262,7 +263,7 @@ pub(super) fn read_object(
     }
     let parameters = of_type.read(&entity, &mut object.shape);
     let place = read_place(needed(&entity)?, known.is_some(), &mut object);
-    // What is animated may be stretched, and its colours may swing beyond their range.
+    // Animated objects may be stretched, and their colours may leave their range.
     if !entity.contains::<Animated>() || known.is_none() {
         parameters?;
         place?;
@@ -283,10 +284,10 @@ pub(super) fn read_object(
     Ok(object)
 }
 
-/// The light that an entity stands for, likewise.
+/// The light that an entity represents; values equal to those of the `known` light stay as they were.
 ///
 /// # Errors
-/// The reason why it stands for none.
+/// Returns the reason why it does not represent a light.
 pub(super) fn read_light(
     entity: EntityRef,
     known: Option<&Light>,
@@ -306,7 +307,7 @@ pub(super) fn read_light(
         light.set_type(entry, registry, room);
     }
     let parameters = of_type.read(&entity, &mut light.parameters);
-    // Colours of what is animated may swing beyond their range.
+    // Colours of animated lights may leave their range.
     if !entity.contains::<Animated>() || known.is_none() {
         parameters?;
     }
@@ -321,7 +322,7 @@ pub(super) fn read_light(
     let now = *needed::<SceneLight>(&entity)?;
     let before = known.map(SceneLight::from);
     light.enabled = now.enabled;
-    // A field that is absent gets the value that it has when the file is read again.
+    // A missing field gets the value that it has when the file is read again.
     if before.is_none_or(|before| before.colour != now.colour) {
         (light.colour, light.colour_temperature) = match now.colour {
             LightColour::Rgb(colour) => (colour, None),
@@ -338,10 +339,10 @@ pub(super) fn read_light(
     Ok(light)
 }
 
-/// The observer that an entity stands for, likewise.
+/// The observer that an entity represents; values equal to those of the `known` observer stay as they were.
 ///
 /// # Errors
-/// The reason why it stands for none.
+/// Returns the reason why it does not represent an observer.
 pub(super) fn read_observer(entity: EntityRef, known: &Observer) -> Result<Observer, String> {
     let mut observer = *known;
     let transform = needed::<Transform>(&entity)?;

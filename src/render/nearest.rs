@@ -1,5 +1,5 @@
-//! Which shapes get their meshes first where not all find room: those in the windows' pictures, the nearest before the
-//! others.
+//! The order in which shapes get their meshes if they do not all fit into memory: those in the windows'
+//! pictures first, the nearest before the others.
 
 use bevy::{
     camera::{
@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// What a camera of a window looks at.
+/// The view of a window's camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
     at: Vec3,
@@ -28,14 +28,14 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// The need for a shape within a sphere.
+    /// The priority of a shape within a sphere.
     fn need(&self, centre: Vec3, radius: f32) -> Need {
         let sphere = Sphere { center: centre.into(), radius };
         Need { hidden: !self.sees.intersects_sphere(&sphere, false), distance: centre.distance(self.at) }
     }
 }
 
-/// The cameras of windows. Those of single pictures, which draw everything sooner or later, are none.
+/// The cameras of windows. Cameras of single pictures, which draw everything eventually, do not count.
 pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
     let observer = world.resource::<Shown>().observer;
     let keeps = world.resource::<CurrentScene>().0.view_angle().keeps;
@@ -43,7 +43,7 @@ pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
     let mut cameras = world.query::<(&PictureCamera, &Transform, &Projection)>();
     let eye = |(camera, place, lens): (&PictureCamera, &Transform, &Projection)| {
         let Projection::Perspective(lens) = lens else { return None };
-        // Cameras get their places and angles later in the frame.
+        // Cameras get their transforms and angles later in the frame.
         let place = if camera.follows_observer {
             Transform::from_translation(observer.position).with_rotation(rotation(observer.direction))
         } else {
@@ -56,7 +56,7 @@ pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
     cameras.iter(world).filter_map(eye).collect()
 }
 
-/// The need for the shape of an object.
+/// The priority of an object's shape.
 pub(super) fn need(
     eyes: &[Eye],
     world: &World,
@@ -116,7 +116,7 @@ mod tests {
             order
         };
         assert_eq!(order(&mut world), [3, 4, 2, 0, 1]);
-        // A camera that the user moved, looking back.
+        // A camera moved by the user, looking back.
         let back = Transform::from_translation(eye).with_rotation(Quat::from_rotation_y(2.0 * FRAC_PI_2));
         let free = PictureCamera { follows_observer: false, fits_width: true };
         world.entity_mut(camera).insert((free, back));

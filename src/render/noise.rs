@@ -1,9 +1,9 @@
-//! The noise of pictures that converge, measured on the GPU: the standard error of the luminance of pixels, as the root of
-//! its mean square over those in which something is seen, divided by their mean luminance. Frames are spread more evenly
-//! together than alone, so it is rather too large.
+//! The noise of converging pictures, measured on the GPU: the root mean square of the standard error of the
+//! luminance over all pixels that are not empty, divided by their mean luminance. Frames are more evenly
+//! distributed together than alone, so it is an overestimate.
 //!
-//! The pass that joins a frame to the mean keeps the sum of the squares about the mean, after B. Welford (1962). Now and then
-//! these are added up over the picture, and read back when the GPU has them, which nobody waits for.
+//! The pass that adds a frame to the mean updates the sum of the squares about the mean, after B. Welford
+//! (1962). From time to time these are summed over the picture, and read back asynchronously.
 
 use std::{
     collections::HashMap,
@@ -28,21 +28,21 @@ use bevy::{
 use super::{converge::Converged, view::Drawing};
 use crate::reference::relative_error;
 
-/// The workgroups that add up, each for some rows.
+/// Number of workgroups that sum, each over some of the rows.
 const GROUPS: u32 = 64;
-/// What they write.
+/// Size of their output, in bytes.
 const BYTES: u64 = GROUPS as u64 * 16;
-/// The frames from which on noise can be estimated.
+/// Minimum number of frames for estimating noise.
 const ENOUGH: u32 = 4;
-/// Samples between two measurements.
+/// Number of samples between two measurements.
 const BETWEEN: u32 = 16;
 
-/// Measures the noise of views that converge.
+/// Measures the noise of converging views.
 pub(super) struct NoisePlugin;
 
 impl Plugin for NoisePlugin {
     fn build(&self, app: &mut App) {
-        // Where nothing is drawn, nothing is measured, and nobody waits for it.
+        // Without drawing there are no measurements, and nobody waits for them.
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
@@ -61,12 +61,12 @@ impl Plugin for NoisePlugin {
 #[derive(Clone, Debug, Default, Resource)]
 pub struct Noise(Arc<Mutex<HashMap<Entity, Known>>>);
 
-/// What is known of the picture of a view.
+/// The known noise of a view's picture.
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    /// The number of the last frame in it.
+    /// Number of the picture's last frame.
     frame: u64,
-    /// `None` if it cannot be told.
+    /// `None` if it cannot be estimated.
     noise: Option<f32>,
 }
 
@@ -79,18 +79,18 @@ impl Noise {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(view, known);
     }
 
-    /// Forgets views that are no more.
+    /// Forgets views that no longer exist.
     pub(super) fn keep(&self, exists: impl Fn(Entity) -> bool) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|view, _| exists(*view));
     }
 
-    /// The noise of the picture of a view as a part of its mean luminance, as far as it is known.
+    /// The noise of a view's picture as a fraction of its mean luminance, if known.
     #[must_use]
     pub fn of(&self, view: Entity, drawing: &Drawing) -> Option<f32> {
         self.known(view).filter(|known| known.frame >= drawing.began())?.noise
     }
 
-    /// True if a picture has all its samples, and what is known of its noise is older.
+    /// True if a picture has all its samples, and its known noise is older.
     #[must_use]
     pub fn is_awaited(&self, view: Entity, drawing: &Drawing) -> bool {
         let older = |known: Known| (drawing.began()..drawing.drawn()).contains(&known.frame);
@@ -98,17 +98,17 @@ impl Noise {
     }
 }
 
-/// A picture that has got a frame more.
+/// A picture to which a frame was added.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grown {
     pub(super) view: Entity,
-    /// The number of the frame.
+    /// Number of the frame.
     pub(super) frame: u64,
-    /// The frames in the mean.
+    /// Number of frames in the mean.
     pub(super) frames: u32,
-    /// Its samples, those of the frame included, and those it will have.
+    /// Number of samples, including those of the frame, and the target.
     pub(super) converged: Converged,
-    /// Those of the frame.
+    /// Number of samples in the frame.
     pub(super) count: u32,
 }
 
@@ -120,7 +120,7 @@ impl Grown {
     }
 }
 
-/// What the GPU adds up in this frame.
+/// The sums that the GPU calculates in this frame.
 #[derive(Default, Resource)]
 pub(super) struct Measuring {
     pass: Option<Pass>,
@@ -162,7 +162,7 @@ impl Pass {
 }
 
 impl Measuring {
-    /// Adds up the squares of a picture and its mean, if it is time.
+    /// Sums the squares and the mean of a picture, if a measurement is due.
     pub(super) fn measure(
         &mut self,
         grown: Grown,
@@ -197,7 +197,7 @@ impl Measuring {
     }
 }
 
-/// Asks for the sums once the GPU has its commands.
+/// Requests the sums once the commands are submitted to the GPU.
 fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
     for (buffer, grown) in measuring.sums.drain(..) {
         let (noise, mapped) = (noise.clone(), buffer.clone());
@@ -209,7 +209,7 @@ fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
     }
 }
 
-/// The noise from the sums of the workgroups; `None` where nothing is seen.
+/// The noise from the sums of the workgroups; `None` for an empty picture.
 fn noise_of(bytes: &[u8], frames: u32, samples: u32) -> Option<f32> {
     let mut sums = [0.0f64; 3];
     for [squares, luminance, pixels, _] in bytes.as_chunks::<4>().0.as_chunks::<4>().0 {
@@ -226,7 +226,8 @@ mod tests {
 
     #[test]
     fn noise_is_the_standard_error_over_the_mean() {
-        // Two groups with a pixel each of the luminance 2, four frames of two samples, squares 12 and 0 in each frame.
+        // Two groups with one pixel each, of luminance 2; four frames of two samples, squares 12 and 0 in
+        // each frame.
         let group = |squares: f32| [2.0 * squares, 2.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
         let bytes = [group(12.0), group(0.0)].concat();
         let noise = noise_of(&bytes, 4, 8).expect("something is seen");

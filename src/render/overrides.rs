@@ -10,28 +10,28 @@ use crate::{
     scene::{Display, Object, Scene},
 };
 
-/// The differences between a view and the scene. Stands beside the camera of the view.
+/// The differences between a view and the scene. A component of the view's camera.
 #[derive(Clone, Component, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// The reflection model of every object.
     pub reflection_model: Option<String>,
     /// The shading model of every object.
     pub shading_model: Option<String>,
-    /// Parameters of every object. Those that are absent stay as they are.
+    /// Parameters of every object; other parameters are unchanged.
     pub parameters: Values,
-    /// The terms of the equation that are shown.
+    /// The displayed terms of the equation.
     pub terms: Option<TermSelection>,
     /// Exposure, tone mapping and encoding.
     pub display: Option<Display>,
-    /// The tessellation of every object, as far as the object's type allows it.
+    /// The tessellation of every object, within the limits of its type.
     pub tessellation: Option<u32>,
-    /// The debug channel that is shown instead of the picture.
+    /// The debug channel shown instead of the picture.
     pub channel: Option<Setting>,
 }
 
 impl Overrides {
-    /// The differences between a view of a scene and the scene itself; none for view 0 and for views that a scene does
-    /// not have.
+    /// The differences between a view of a scene and the scene itself; `None` for view 0 and for views that
+    /// do not exist.
     #[must_use]
     pub fn of_view(scene: &Scene, view: usize) -> Option<Self> {
         let variant = scene.overrides(view)?;
@@ -46,7 +46,7 @@ impl Overrides {
         })
     }
 
-    /// The scene as the view shows it. Its terms are no part of it.
+    /// The scene as the view shows it, except for the terms.
     #[must_use]
     pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = Scene { display: self.display_of(scene), ..scene.clone() };
@@ -54,7 +54,7 @@ impl Overrides {
         shown
     }
 
-    /// Makes an object what the view shows.
+    /// Applies the overrides to an object.
     pub(super) fn dress(&self, object: &mut Object, registry: &Registry) {
         if self.reflection_model.is_some() {
             object.reflection_model.clone_from(&self.reflection_model);
@@ -76,7 +76,7 @@ impl Overrides {
         self.shading_model.as_deref().unwrap_or_else(|| scene.shading_model_of(object))
     }
 
-    /// The display settings that the picture goes through. A debug channel is drawn as its legend says.
+    /// The display settings applied to the picture. A debug channel is drawn as in its legend.
     #[must_use]
     pub fn seen_through(&self, scene: &Scene) -> Display {
         match &self.channel {

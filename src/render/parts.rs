@@ -1,5 +1,5 @@
-//! The components of the parts of a scene: those that lights, objects and the observer share. The struct of a light
-//! type or an object type, such as `Spot` or `Torus`, is a component too, and stands beside them.
+//! The components shared by the lights, objects and observers of all types. The struct of a light type or an
+//! object type, such as `Spot` or `Torus`, is an additional component.
 
 use bevy::{
     camera::visibility::Visibility,
@@ -19,12 +19,12 @@ use crate::{
     scene::{DEFAULT_FIELD_OF_VIEW, Light},
 };
 
-/// Entities whose components went.
+/// Entities with removed components.
 #[derive(Debug, Default, Resource)]
 pub(super) struct Touched {
-    /// Those that lost a component of a part, or were despawned.
+    /// Entities that lost a component of a part, or were despawned.
     pub(super) entities: Vec<Entity>,
-    /// Those that are no longer [`Animated`].
+    /// Entities that are no longer [`Animated`].
     pub(super) rested: Vec<Entity>,
 }
 
@@ -40,25 +40,25 @@ fn rest(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-// The document knows nothing of Bevy.
+// The document is independent of Bevy.
 impl_reflect_opaque!((in lights_camera_models::document) PartId(Component, Clone, Debug, Hash, PartialEq));
 impl Component for PartId {
     const STORAGE_TYPE: StorageType = StorageType::Table;
     type Mutability = Immutable;
 }
 
-/// A light of the scene. The component of its type brings it along. Its place is the translation of the `Transform`, and
-/// it shines along −z of its rotation.
+/// A light of the scene. Required by the component of its type. Its position is the translation of the
+/// `Transform`, and it shines along −z of its rotation.
 #[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(Transform, Visibility)]
 #[component(on_remove = touch)]
 pub struct SceneLight {
-    /// False while switched off.
+    /// False if switched off.
     pub enabled: bool,
-    /// Its colour.
+    /// Colour.
     pub colour: LightColour,
-    /// Its strength.
+    /// Strength.
     pub power: LightPower,
 }
 
@@ -68,7 +68,7 @@ pub struct SceneLight {
 pub enum LightColour {
     /// sRGB-encoded.
     Rgb([u8; 3]),
-    /// That of a black body of so many kelvin.
+    /// The colour of a black body with this temperature, in kelvin.
     Temperature(f32),
 }
 
@@ -100,8 +100,8 @@ impl Default for SceneLight {
     }
 }
 
-/// An object of the scene. The component of its type brings it along. Its size is the scale of the `Transform`, which is
-/// the same in all directions; `Visibility::Hidden` hides it.
+/// An object of the scene. Required by the component of its type. Its size is the scale of the `Transform`,
+/// which must be uniform; `Visibility::Hidden` hides it.
 #[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(Transform, Visibility, Surface, Tessellation)]
@@ -117,7 +117,7 @@ pub struct Surface {
     pub reflection_model: Option<String>,
     /// Id of the shading model that overrides the scene's, if any.
     pub shading_model: Option<String>,
-    /// Parameters by name, of this model and of any other.
+    /// Parameters by name, of this model and of others.
     pub material: Values,
 }
 
@@ -133,7 +133,7 @@ pub struct Tessellation(pub Option<u32>);
 #[require(Transform)]
 #[component(on_remove = touch)]
 pub struct SceneObserver {
-    /// Vertical field of view, degrees.
+    /// Vertical field of view, in degrees.
     pub field_of_view: f32,
 }
 
@@ -143,9 +143,9 @@ impl Default for SceneObserver {
     }
 }
 
-/// Marks a part whose changes are shown and not stored: what systems do to its components shows in the picture, and
-/// reaches neither the scene nor the document. Without the marker it is again what the document has. A change of the
-/// document writes what it changed into the components, and nothing else.
+/// Marks a part whose changes are shown but not stored: changes of its components by systems appear in the
+/// picture, but reach neither the scene nor the document. When the marker is removed, the part returns to the
+/// values of the document. An edit of the document writes only its changes into the components.
 #[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[component(on_remove = rest)]

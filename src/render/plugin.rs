@@ -35,8 +35,8 @@ use crate::{
     registry::{Registry, register_builtin},
 };
 
-/// A scene as entities, lit and shaded: everything but windows, panels and cameras. Needs Bevy's
-/// renderer and PBR plugins.
+/// A scene as entities, lit and shaded: everything except windows, panels and cameras. Needs Bevy's renderer
+/// and PBR plugins.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScenePlugin;
 
@@ -96,12 +96,12 @@ impl Plugin for ScenePlugin {
                 MeanPlugin,
                 NoisePlugin,
             ));
-        // Two systems that touch the same data must say who comes first.
+        // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);
     }
 }
 
-/// Writes lights and display settings into the buffers of the views when any of them changed.
+/// Writes lights and display settings into the buffers of the views when any of these changed.
 fn upload_lights(
     scene: Res<CurrentScene>,
     shown: Res<Shown>,

@@ -1,4 +1,4 @@
-//! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model,
+//! Registration in an app: adds types to the registry, a material for each reflection model to the renderer,
 //! and a component for each type.
 
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use crate::{
     shape::ObjectType,
 };
 
-/// The registry of an app, which gets one if it has none.
+/// The registry of an app, created if missing.
 fn registry(app: &mut App) -> Mut<'_, Registry> {
     app.init_resource::<Registry>();
     app.world_mut().resource_mut::<Registry>()

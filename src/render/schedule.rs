@@ -1,4 +1,4 @@
-//! The order of everything that the lab does in a frame.
+//! The order of the lab's systems in a frame.
 
 use bevy::{
     app::App,
@@ -8,15 +8,16 @@ use bevy::{
     },
 };
 
-/// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`.
+/// The schedule of the lab's systems in a frame; runs after Bevy's `Update`.
 ///
-/// Two systems in it that touch the same data and leave open which comes first are reported at the start by a warning
-/// that names both. [`strict`] makes it an error; among the systems of the lab there are none, which a test checks.
+/// If two of its systems access the same data in an undefined order, a warning at the start names both.
+/// [`strict`] turns this into an error; the systems of the lab have no such pairs, which a test checks.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LabFrame;
 
-/// The order of everything that the lab does in a frame, as sets of [`LabFrame`], each after the one before. Systems
-/// from elsewhere are put in one of them, or ordered `before` and `after` them; systems in `Update` come before all.
+/// The order of the lab's systems in a frame, as sets of [`LabFrame`], each after the one before. Systems
+/// from elsewhere are added to one of them, or ordered `before` and `after` them; systems in `Update` run
+/// before all.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LabSystems {
     /// Files are read, actions are carried out, and the document becomes the scene that is shown.
@@ -33,14 +34,14 @@ pub enum LabSystems {
     Capture,
 }
 
-/// Makes an open order of two systems in [`LabFrame`] an error when it runs first.
+/// Turns an undefined order of two systems in [`LabFrame`] into an error on its first run.
 pub fn strict(app: &mut App) {
     detect(app, LogLevel::Error);
 }
 
-/// Runs the systems of every schedule one after the other on the calling thread. A frame has hundreds of systems of a
-/// microsecond each, and handing one to another thread takes longer than that; those with much work spread it
-/// themselves.
+/// Runs the systems of every schedule one after the other on the calling thread. A frame has hundreds of
+/// systems of a microsecond each, and passing one to another thread takes longer than that; those with much
+/// work distribute it themselves.
 pub fn run_on_one_thread(app: &mut App) {
     let worlds = app.sub_apps_mut();
     for app in worlds.iter_mut() {
@@ -52,7 +53,7 @@ pub fn run_on_one_thread(app: &mut App) {
     }
 }
 
-/// Sets how systems whose order is left open are reported.
+/// Sets how systems with an undefined order are reported.
 pub(super) fn detect(app: &mut App, level: LogLevel) {
     app.edit_schedule(LabFrame, |schedule| {
         schedule.set_build_settings(ScheduleBuildSettings {

@@ -1,5 +1,6 @@
-//! Lights with extent in the picture: one triangle over the whole of each view, drawn with a material of its own, which gives
-//! each pixel the light and the depth of the nearest light there. It exists where a scene has lights that are to be seen.
+//! Draws lights with extent in the picture: one triangle over the whole of each view with a special material,
+//! which gives each pixel the light and the depth of the nearest light there. It exists if a scene has
+//! visible lights with extent.
 
 use bevy::{
     app::{App, Plugin},
@@ -63,16 +64,16 @@ struct SeenMaterial {
     key: SeenKey,
 }
 
-/// The key of its pipelines.
+/// The key of the material's pipelines.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct SeenKey {
     shader: Handle<Shader>,
     gamma_naive: bool,
-    /// True if the device can shade each sample of a pixel by itself.
+    /// True if the device can shade each sample of a pixel separately.
     by_sample: bool,
 }
 
-// By hand, because a uniform buffer that materials share cannot be derived.
+// Written by hand, because a uniform buffer shared between materials cannot be derived.
 impl AsBindGroup for SeenMaterial {
     type Data = SeenKey;
     type Param = SRes<RenderAssets<GpuShaderBuffer>>;
@@ -146,12 +147,12 @@ impl Material for SeenMaterial {
 /// The triangle of a view.
 #[derive(Component, Debug)]
 struct SeenLights {
-    /// The view with overrides in which it is seen; none for all others.
+    /// The view with overrides that shows it; `None` for all others.
     view: Option<Entity>,
     material: SeenMaterial,
 }
 
-/// The shader of the light types on the picture.
+/// The shader of the light types in the picture.
 #[derive(Default, Resource)]
 struct SeenShader {
     lights: LightSet,
@@ -160,8 +161,8 @@ struct SeenShader {
 }
 
 impl SeenShader {
-    /// Makes it anew for other light types and other texts. A text that cannot be drawn with changes nothing; of other light
-    /// types, those that ship take its place.
+    /// Rebuilds the shader for other light types and other texts. An invalid text changes nothing; for other
+    /// light types, the shipped texts replace it.
     fn follow(
         &mut self,
         lights: LightSet,
@@ -185,7 +186,7 @@ impl SeenShader {
             Shader::from_wgsl(composed.text.clone(), format!("{COMPOSED}seen/{:x}.wgsl", lights.bits()));
         shader.validate_shader = ValidateShader::Enabled;
         match &self.handle {
-            // The asset is there as long as its handle.
+            // The asset exists as long as its handle.
             Some(handle) => _ = assets.insert(handle.id(), shader),
             None => self.handle = Some(assets.add(shader)),
         }
@@ -193,7 +194,7 @@ impl SeenShader {
     }
 }
 
-/// Gives every view the triangle of its lights, where there are any to be seen, and takes it away where there are none.
+/// Gives every view the triangle of its lights if any are visible, and removes it if none are.
 fn show(world: &mut World, known: &mut QueryState<(Entity, &'static SeenLights)>) {
     let registry = world.resource::<Registry>();
     let is_visible = |light: &Light| {
@@ -216,7 +217,7 @@ fn show(world: &mut World, known: &mut QueryState<(Entity, &'static SeenLights)>
     }
 }
 
-/// What the views without overrides need, and each with.
+/// The triangles needed by the views without overrides, and by each view with overrides.
 fn wanted(world: &mut World) -> Vec<(Option<Entity>, usize, SeenMaterial)> {
     let registry = world.resource::<Registry>();
     let lights = registry
@@ -271,7 +272,7 @@ fn put(world: &mut World, view: Option<Entity>, layer: usize, material: SeenMate
     ));
 }
 
-/// Gives a triangle another material, if it is another one.
+/// Sets the material of a triangle, if it differs.
 fn dress(world: &mut World, entity: Entity, material: SeenMaterial) {
     let Some(mut seen) = world.get_mut::<SeenLights>(entity).filter(|seen| seen.material != material) else {
         return;

@@ -1,4 +1,5 @@
-//! Views in the window: their textures are copied to their places, and the panels are drawn over them in one pass.
+//! Views in the window: their textures are copied to their positions, and the panels are drawn over them in
+//! one pass.
 
 use bevy::math::URect;
 use bevy::{
@@ -20,7 +21,7 @@ use bevy::{
 };
 use glam::UVec2;
 
-/// Shows pictures where [`Shows`] says.
+/// Shows pictures as given by [`Shows`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShowPlugin;
 
@@ -45,9 +46,9 @@ pub struct Shows(pub Vec<ShownPicture>);
 pub struct ShownPicture {
     /// The picture.
     pub image: Handle<Image>,
-    /// The place in the window of its upper left corner, pixels.
+    /// Position of its upper left corner in the window, in pixels.
     pub at: UVec2,
-    /// The part of the picture that is shown, pixels of the picture; all of it if there is none.
+    /// The part of the picture to show, in its pixels; `None` for all of it.
     pub part: Option<URect>,
 }
 

@@ -1,4 +1,4 @@
-//! The parts as they are shown: those of the scene, or as systems animate them.
+//! The parts as displayed: with the values of the scene, or as animated by systems.
 
 use bevy::ecs::prelude::*;
 
@@ -13,33 +13,34 @@ use crate::{
     scene::{Light, Object, Observer},
 };
 
-/// The look of an object as it is shown: everything but its place, which is its transform.
+/// The displayed values of an object, except for its transform.
 #[derive(Clone, Component, Debug, PartialEq)]
 pub struct ShownObject(pub(super) Object);
 
-/// The lights and the observer as they are shown.
+/// The displayed lights and observer.
 #[derive(Clone, Debug, Default, PartialEq, Resource)]
 pub struct Shown {
     pub(super) lights: Vec<Light>,
     pub(super) observer: Observer,
-    /// The types of all lights, switched off or not: what shaders are composed of. Asked for in each frame.
+    /// The types of all lights, including those switched off: the light types in shaders. Read in each frame.
     pub(super) types: LightSet,
 }
 
 impl Shown {
-    /// The lights that are on.
+    /// The active lights.
     pub(super) fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
     }
 }
 
-/// The look of an object.
+/// The displayed values of an object.
 fn look(object: &Object) -> ShownObject {
     let Object { position, size, rotation, .. } = Object::default();
     ShownObject(Object { position, size, rotation, name: None, ..object.clone() })
 }
 
-/// Shows objects whose components changed. One that is animated and has, for now, no type or two, stays as it was.
+/// Displays objects whose components changed. An animated object that temporarily has no type or two types
+/// stays unchanged.
 pub(super) fn show_objects(world: &mut World, changed: &[Entity]) {
     for entity in changed {
         let entities = world.resource::<SceneEntities>();
@@ -64,7 +65,7 @@ pub(super) fn show_objects(world: &mut World, changed: &[Entity]) {
     }
 }
 
-/// Shows lights and the observer. Exclusive, since their types may be any.
+/// Displays lights and the observer. Exclusive, since their types may be any.
 pub(super) fn show_lights(
     world: &mut World,
     animated: &mut QueryState<(), (With<Animated>, Or<(With<SceneLight>, With<SceneObserver>)>)>,

@@ -1,5 +1,6 @@
-//! Views that show the scene differently have a [`Stage`]: a render layer with a copy of every object, which has
-//! the material of the view, and lights of its own. Views without [`Overrides`] share the objects themselves.
+//! A view that shows the scene differently has a [`Stage`]: a render layer with a copy of every object, which
+//! has the material of the view, and separate lights. Views without [`Overrides`] share the objects
+//! themselves.
 
 use bevy::{
     asset::Assets,
@@ -18,25 +19,26 @@ use super::{
 };
 use crate::scene::MAX_OBJECTS;
 
-/// The render layer of objects as the scene has them.
+/// Render layer of objects as in the scene.
 pub const SCENE_LAYER: usize = 0;
-/// The render layer of gizmos, which every view shows.
+/// Render layer of gizmos, which every view shows.
 pub const GIZMO_LAYER: usize = 1;
 
-/// The layer, the lights and the copies of the objects in a view with overrides. Comes and goes with its [`Overrides`].
+/// The layer, the lights and the copies of the objects in a view with overrides. Added and removed with its
+/// [`Overrides`].
 #[derive(Component, Debug)]
 #[component(on_remove = strike)]
 pub struct Stage {
     layer: usize,
     pub(super) illumination: LightBuffers,
-    /// By object.
+    /// Copies by object.
     copies: EntityHashMap<Entity>,
-    /// The [list](SceneEntities::list) of objects that have them.
+    /// The [list](SceneEntities::list) of the copied objects.
     list: Option<u64>,
 }
 
 impl Stage {
-    /// Its render layer.
+    /// The render layer of the stage.
     pub(super) fn layer(&self) -> usize {
         self.layer
     }
@@ -46,10 +48,10 @@ impl Stage {
     }
 }
 
-/// Stands for an object, whose child it is, in one view.
+/// A copy of an object, and its child, for one view.
 #[derive(Clone, Component, Copy, Debug, PartialEq, Eq)]
 pub struct ViewCopy {
-    /// The view in which it is seen.
+    /// The view that shows it.
     pub view: Entity,
 }
 
@@ -83,7 +85,7 @@ pub(super) fn set_stages(
     }
 }
 
-/// Removes what only this view needed.
+/// Removes everything that only this view needed.
 fn strike(mut world: DeferredWorld, context: HookContext) {
     let view = context.entity;
     let Some(stage) = world.get::<Stage>(view) else { return };
@@ -91,7 +93,7 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
     let copies: Vec<_> = stage.copies.values().copied().collect();
     world.commands().queue(move |world: &mut World| {
         for copy in copies {
-            // Those of objects that are gone went with them.
+            // Copies of despawned objects were despawned with them.
             let _ = world.try_despawn(copy);
         }
         world.resource_mut::<ParameterTables>().forget(view);
@@ -101,7 +103,7 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
     });
 }
 
-/// Makes the copies of the objects in a view for objects that have none.
+/// Creates missing copies of the objects in a view.
 pub(super) fn copies(world: &mut World, view: Entity) {
     let list = Some(world.resource::<SceneEntities>().list());
     let Some(mut stage) = world.get_mut::<Stage>(view).filter(|stage| stage.list != list) else { return };

@@ -1,6 +1,6 @@
-//! Pictures drawn straight into their textures: without a tone curve, and with one sample per pixel, the display asks
-//! for nothing that the material cannot do itself, and a picture is one pass. Otherwise Bevy draws it into half floats,
-//! maps it in a second pass and copies it to the texture in a third.
+//! Pictures drawn directly into their textures: without a tone curve, and with one sample per pixel, the
+//! material can do everything that the display needs, and a picture takes one pass. Otherwise Bevy draws it
+//! into half floats, maps it in a second pass and copies it to the texture in a third.
 
 use bevy::{
     app::{App, Plugin},
@@ -38,16 +38,16 @@ use super::{
 };
 use crate::registry::Registry;
 
-/// The schedule of cameras that draw straight into their textures, in place of Bevy's [`Core3d`].
+/// The schedule of cameras that draw directly into their textures, instead of Bevy's [`Core3d`].
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Straight;
 
-/// The schedule of cameras that only add objects to the picture, and leave it as light: the display's passes come with
-/// another, later.
+/// The schedule of cameras that only add objects to the picture, and leave it as light: the display's passes
+/// run later, for another camera.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Layer;
 
-/// Draws pictures [`ForDisplay`] in as few passes as they need.
+/// Draws pictures [`ForDisplay`] in as few passes as necessary.
 pub(super) struct StraightPlugin;
 
 impl Plugin for StraightPlugin {
@@ -69,7 +69,7 @@ impl Plugin for StraightPlugin {
 
     fn finish(&self, app: &mut App) {
         let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
-        // Where the GPU prepares the instances, it does so first, as in `Core3d`.
+        // If the GPU prepares the instances, it does so first, as in `Core3d`.
         if render.world().get_resource::<GpuPreprocessingSupport>().is_some_and(|gpu| gpu.is_available()) {
             let prepare = || {
                 (
@@ -86,7 +86,7 @@ impl Plugin for StraightPlugin {
     }
 }
 
-/// Chooses the way in which each picture is drawn.
+/// Chooses how each picture is drawn.
 fn choose(
     cameras: Query<
         (Entity, Option<&ForDisplay>, &Tonemapping, &Msaa, Has<Hdr>, Has<View>),
@@ -114,7 +114,7 @@ fn choose(
     }
 }
 
-/// The parts of a view that a pass draws with.
+/// The components of a view used by a pass.
 type Parts =
     (&'static ExtractedCamera, &'static ExtractedView, &'static ViewTarget, &'static ViewDepthTexture);
 
@@ -164,7 +164,7 @@ impl Phases<'_> {
         let mut pass = context.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(colour)],
-            // Kept, as another batch may be drawn over it.
+            // Stored, since another batch may be drawn over it.
             depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
             timestamp_writes: None,
             occlusion_query_set: None,

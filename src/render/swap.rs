@@ -1,5 +1,5 @@
-//! Exchanging models, shading models, parameters and shapes at run time: the frame after the choice shows the
-//! new one, and no frame is without the object.
+//! Exchanges models, shading models, parameters and shapes at run time: the frame after the choice shows the
+//! new one, and no frame lacks the object.
 
 use std::iter;
 
@@ -34,13 +34,13 @@ use crate::{
     shading,
 };
 
-/// An object whose new shader is still being tried: until then it stays as it is.
+/// An object whose new shader is still being tried: until then it stays unchanged.
 #[derive(Clone, Component, Copy, Debug, Default)]
 pub struct AwaitsShader;
 
-/// An object that is drawn anew.
+/// An object to be drawn with other settings.
 struct Pending {
-    /// The view with overrides in which it is seen; none for all others.
+    /// The view with overrides that shows it; `None` for all others.
     view: Option<Entity>,
     object: Entity,
     /// The object itself, or its copy in the view.
@@ -50,7 +50,7 @@ struct Pending {
     now: Drawn,
 }
 
-/// The settings that all objects share.
+/// Settings shared by all objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Common {
     model: String,
@@ -63,18 +63,18 @@ pub struct Common {
 /// Drawables that have never been drawn, or that wait for their shader.
 type Unfinished = (Or<(With<ShownObject>, With<ViewCopy>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
 
-/// The objects that a frame visits.
+/// The objects visited in a frame.
 enum Suspects {
-    /// All: a table or a view is another one.
+    /// All: a table or a view was replaced.
     All,
-    /// All, to be drawn only if they are to be drawn otherwise.
+    /// All, but only those whose drawing differs are updated.
     Different,
-    /// Those that changed, by the entities of the objects.
+    /// Those that changed, by entity.
     Some(Vec<Entity>),
 }
 
-/// Gives every object whose shape, model, shading model or parameters changed its mesh and its material. Exclusive, so
-/// that mesh and material change in one step.
+/// Updates the mesh and the material of every object whose shape, model, shading model or parameters changed.
+/// Exclusive, so that mesh and material change in one step.
 pub fn swap(
     world: &mut World,
     mut last: Local<Option<Common>>,
@@ -161,7 +161,7 @@ pub fn swap(
             draw(world, &registry, pending, &bytes);
         }
     }
-    // An object that waits for its shader will use a mesh that nothing is drawn with yet.
+    // An object that waits for its shader will use a mesh that is not drawn yet.
     let mut waiting = world.query_filtered::<(), With<AwaitsShader>>();
     if waiting.iter(world).next().is_none() {
         forget_unused_meshes(world);
@@ -171,7 +171,7 @@ pub fn swap(
     });
 }
 
-/// A file that objects name has other numbers: they are drawn anew, although they are the same in the scene.
+/// Updates objects that use a file whose numbers have changed, although they are equal in the scene.
 fn touch_those_from_files(world: &mut World) {
     let mut objects = world.query::<&mut ShownObject>();
     for mut object in objects.iter_mut(world) {
@@ -181,7 +181,7 @@ fn touch_those_from_files(world: &mut World) {
     }
 }
 
-/// Makes room for the parameters of all lights. True if the buffers are others than before.
+/// Ensures capacity for the parameters of all lights. True if the buffers were replaced.
 fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     let registry = world.resource::<Registry>();
     let shining = world.resource::<Shown>().shining().take(MAX_LIGHTS);
@@ -216,7 +216,7 @@ fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Common {
     }
 }
 
-/// Finds the objects that are drawn anew, in all views without overrides or in one with.
+/// Finds the objects to update, in all views without overrides or in one view with overrides.
 fn find(
     world: &mut World,
     view: Option<Entity>,
@@ -231,7 +231,7 @@ fn find(
     let overrides = view.and_then(|view| world.get::<Overrides>(view));
     let encoding = overrides.and_then(|o| o.display).map_or(common.encoding, |display| display.encoding);
     let only_different = matches!(suspects, Suspects::Different);
-    // More objects than a table has rows are no legal scene; what is beyond is not drawn.
+    // A scene with more objects than a table has rows is illegal; the rest is not drawn.
     let objects = match suspects {
         Suspects::All | Suspects::Different => entities.objects.iter().take(MAX_OBJECTS).copied().collect(),
         Suspects::Some(objects) => {
@@ -274,7 +274,7 @@ fn find(
     world.resource_mut::<SceneEntities>().bypass_change_detection().visits += visits;
 }
 
-/// The vertices that a shading model needs.
+/// The vertices needed by a shading model.
 fn vertices(shading: &str, registry: &Registry) -> Vertices {
     match registry.shading_model(shading) {
         Some(model) if model.declaration.stage == shading::Stage::Polygon => Vertices::Apart,
@@ -282,11 +282,11 @@ fn vertices(shading: &str, registry: &Registry) -> Vertices {
     }
 }
 
-/// Gives an object its mesh and its material.
+/// Sets the mesh and the material of an object.
 fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) {
     let Pending { view, object, drawable, shown, now } = pending;
-    // The checker refuses scenes with unknown ids; should one come from elsewhere, the object
-    // keeps what it has.
+    // The checker refuses scenes with unknown ids; should one come from elsewhere, the object stays
+    // unchanged.
     let (Some(model), Some(shading), Some(shape)) = (
         registry.model(&now.model),
         registry.shading_model(&now.shading),
@@ -337,7 +337,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     entity.insert((now, MeshTag(row.0))).remove::<AwaitsShader>();
 }
 
-/// The row of an object, a new one if it has none.
+/// The row of an object, assigned if it has none.
 fn row_of(world: &mut World, object: Entity) -> Option<Row> {
     if let Some(row) = world.get::<Row>(object) {
         return Some(*row);

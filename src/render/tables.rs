@@ -1,4 +1,4 @@
-//! The parameters of objects, in tables that shaders read.
+//! Tables of object parameters, read by shaders.
 
 use std::{collections::HashMap, ops::Range};
 
@@ -24,8 +24,8 @@ use crate::{
     shading::ShadingEntry,
 };
 
-/// The parameters of an object as bytes of its row: those of its model, those of its shading model, and the lobes of its model,
-/// which are zero unless there is light with `extent`.
+/// The parameters of an object as bytes of its row: those of its model, those of its shading model, and the
+/// lobes of its model, which are zero unless there is light with `extent`.
 pub(super) fn row(
     model: &ModelEntry,
     shading: &ShadingEntry,
@@ -45,7 +45,8 @@ pub(super) fn row(
     row
 }
 
-/// The row of an object, the same in every table, as long as the object exists. Then another object may have it.
+/// The row of an object, the same in every table, for the lifetime of the object. Later another object may
+/// use it.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(immutable, on_remove = free)]
 pub struct Row(pub(super) u32);
@@ -58,40 +59,40 @@ fn free(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The model of a table, and [what it declares](ModelEntry::declared), from which the layout follows.
+/// The model of a table, and its [declaration](ModelEntry::declared), which determines the layout.
 type TableKey = (&'static str, u64);
 
-/// The parameters of all objects, one table for each model in use, and for each view with overrides. Rows that
-/// changed are written into the buffer, which no material notices. There is room for the next power of two above
-/// the number of objects; when a scene outgrows that, all tables are made anew, and every object takes its material
-/// again.
+/// The parameters of all objects, one table for each model in use, and for each view with overrides. Changed
+/// rows are written into the buffer without affecting materials. The capacity is the next power of two above
+/// the number of objects; when a scene outgrows it, all tables are rebuilt, and every object gets its
+/// material again.
 #[derive(Default, Resource)]
 pub struct ParameterTables {
     /// By model, and by view for views with overrides.
     tables: HashMap<(Option<Entity>, TableKey), Table>,
     rows: usize,
-    /// Rows from here on have never been used.
+    /// Index of the first row that has never been used.
     next: usize,
-    /// Rows of objects that are gone.
+    /// Rows of removed objects.
     free: Vec<Row>,
-    /// To be handed to the renderer in this frame.
+    /// Data to pass to the renderer in this frame.
     uploads: Vec<Upload>,
-    /// Bytes handed over since the start.
+    /// Number of bytes uploaded since the start.
     uploaded: u64,
 }
 
 struct Table {
     buffer: Handle<ShaderBuffer>,
     row_bytes: usize,
-    /// Made in this frame: the renderer takes it whole.
+    /// True if created in this frame: the renderer receives it as a whole.
     new: bool,
-    /// Rows that the renderer has yet to get.
+    /// Rows to be uploaded.
     changed: Vec<u32>,
 }
 
 impl Table {
-    /// The stretches of bytes that hold the rows that changed. Short gaps are bridged: a few rows are copied sooner
-    /// than another copy is begun.
+    /// The byte ranges of the changed rows. Short gaps are bridged: copying a few rows is faster than
+    /// starting another copy.
     fn stretches(&mut self) -> Vec<Range<usize>> {
         const GAP: u32 = 16;
         self.changed.sort_unstable();
@@ -103,14 +104,14 @@ impl Table {
     }
 }
 
-/// Bytes for the middle of a buffer.
+/// Bytes for a part of a buffer.
 struct Upload {
     buffer: AssetId<ShaderBuffer>,
     at: usize,
     bytes: Vec<u8>,
 }
 
-/// Hands tables to the renderer: whole when they are new, row by row after that.
+/// Uploads tables to the renderer: as a whole when they are new, row by row after that.
 pub(super) struct TablesPlugin;
 
 impl Plugin for TablesPlugin {
@@ -125,7 +126,7 @@ impl Plugin for TablesPlugin {
     }
 }
 
-/// In the renderer's world.
+/// The uploads in the render world.
 #[derive(Default, Resource)]
 struct Uploads(Vec<Upload>);
 
@@ -137,7 +138,7 @@ fn extract(mut main: ResMut<MainWorld>, mut uploads: ResMut<Uploads>) {
 
 fn write(mut uploads: ResMut<Uploads>, buffers: Res<RenderAssets<GpuShaderBuffer>>, queue: Res<RenderQueue>) {
     for Upload { buffer, at, bytes } in uploads.0.drain(..) {
-        // One that is not there yet comes whole, as it is then.
+        // A buffer that is not there yet is uploaded as a whole, in its state then.
         if let Some(gpu) = buffers.get(buffer) {
             queue.write_buffer(&gpu.buffer, at as u64, &bytes);
         }
@@ -145,9 +146,9 @@ fn write(mut uploads: ResMut<Uploads>, buffers: Res<RenderAssets<GpuShaderBuffer
 }
 
 impl ParameterTables {
-    /// Makes room for so many objects. True if all rows have to be written anew.
+    /// Ensures capacity for this many objects. True if all rows must be written again.
     pub(super) fn hold(&mut self, objects: usize) -> bool {
-        /// Of the smallest table.
+        /// Number of rows in the smallest table.
         const ROWS: usize = 64;
         if objects <= self.rows {
             return false;
@@ -157,7 +158,7 @@ impl ParameterTables {
         true
     }
 
-    /// A row that no object has, if there is room.
+    /// An unused row, if there is one.
     pub(super) fn take(&mut self) -> Option<Row> {
         self.free.pop().or_else(|| {
             let row = Row(self.next as u32);
@@ -168,7 +169,8 @@ impl ParameterTables {
         })
     }
 
-    /// Writes the parameters of an object, as all views or one with overrides show it; the buffer of the table.
+    /// Writes the parameters of an object, as shown by all views or by one with overrides; returns the buffer
+    /// of the table.
     pub(super) fn set(
         &mut self,
         view: Option<Entity>,
@@ -185,7 +187,7 @@ impl ParameterTables {
             Table { buffer, row_bytes: parameters.len(), new: true, changed: Vec::new() }
         });
         let start = row.0 as usize * parameters.len();
-        // Without an event, after which the renderer would take the whole buffer.
+        // Without an event, which would make the renderer upload the whole buffer.
         let bytes = buffers.get_mut_untracked(&table.buffer).and_then(|buffer| buffer.data.as_mut());
         if let Some(place) = bytes.and_then(|bytes| bytes.get_mut(start..start + parameters.len()))
             && place != parameters
@@ -196,7 +198,7 @@ impl ParameterTables {
         table.buffer.clone()
     }
 
-    /// Hands the rows that changed to the renderer.
+    /// Passes the changed rows to the renderer.
     pub(super) fn upload(&mut self, buffers: &Assets<ShaderBuffer>) {
         for table in self.tables.values_mut() {
             if !table.new
@@ -213,7 +215,7 @@ impl ParameterTables {
         }
     }
 
-    /// Bytes of rows that were written into tables since the start; tables that came whole are not counted.
+    /// The number of bytes in uploaded rows since the start; tables uploaded as a whole are not counted.
     #[must_use]
     pub fn uploaded(&self) -> u64 {
         self.uploaded
@@ -224,8 +226,8 @@ impl ParameterTables {
         self.tables.retain(|(of, _), _| *of != Some(view));
     }
 
-    /// The view with overrides to which a buffer belongs, `Some(None)` if it belongs to all others; `None` if
-    /// it is no table.
+    /// The view with overrides to which a buffer belongs, `Some(None)` for all other views; `None` if it is
+    /// not a table.
     pub(super) fn view_of(&self, buffer: AssetId<ShaderBuffer>) -> Option<Option<Entity>> {
         self.tables.iter().find(|(_, table)| table.buffer.id() == buffer).map(|((view, _), _)| *view)
     }

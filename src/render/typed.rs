@@ -1,4 +1,4 @@
-//! The components of light types and object types, by the registry.
+//! The components of light types and object types, from the registry.
 
 use bevy::{
     ecs::{
@@ -26,10 +26,10 @@ pub(super) struct PartType {
 }
 
 impl PartType {
-    /// Puts the parameters of the component into those of a part.
+    /// Copies the parameters of the component into those of a part.
     ///
     /// # Errors
-    /// The component has a colour that is none, or a choice that is none.
+    /// Returns an error if the component contains an invalid colour or choice.
     pub(super) fn read(&self, entity: &EntityRef, into: &mut Values) -> Result<(), String> {
         self.of.read(entity, into)
     }
@@ -40,7 +40,7 @@ impl PartType {
 pub(super) struct TypeList(Vec<PartType>);
 
 impl TypeList {
-    /// Adds a type, or exchanges that of its id. False if its component is known.
+    /// Adds a type, or replaces the one with its id. False if its component is known.
     fn put(&mut self, entry: PartType) -> bool {
         let new = self.0.iter().all(|known| known.component != entry.component);
         match self.0.iter_mut().find(|known| known.id == entry.id) {
@@ -50,7 +50,7 @@ impl TypeList {
         new
     }
 
-    /// Gives an entity the component of a type with these parameters, and takes those of others.
+    /// Gives an entity the component of a type with these parameters, and removes those of other types.
     pub(super) fn write(&self, entity: &mut EntityWorldMut, id: &str, values: &Values) {
         if self.0.iter().all(|part_type| part_type.id != id) {
             warn!("`{id}` is no type of a light or an object that is registered: nothing is shown of it");
@@ -64,15 +64,15 @@ impl TypeList {
         }
     }
 
-    /// Takes the components of all types from an entity.
+    /// Removes the components of all types from an entity.
     pub(super) fn strip(&self, entity: &mut EntityWorldMut) {
         self.0.iter().for_each(|part_type| (part_type.of.remove)(entity));
     }
 
-    /// The type of an entity. One that is added to the `known` type takes its place.
+    /// The type of an entity. A type added to the `known` one replaces it.
     ///
     /// # Errors
-    /// The components have no type, or several.
+    /// Returns an error if the entity has components of no type, or of several.
     pub(super) fn find(
         &self,
         entity: &EntityRef,
@@ -105,19 +105,19 @@ pub(super) struct PartTypes {
     pub(super) objects: TypeList,
 }
 
-/// Finds changes of the components of all types.
+/// Detects changes of the components of all types.
 #[derive(Default, Resource)]
 pub(super) struct Watches(Vec<Watch>);
 
 impl Watches {
-    /// The entities on which one changed since the last run of the exclusive system that asks.
+    /// The entities with changes since the last run of the exclusive system that calls this.
     pub(super) fn changed(&mut self, world: &mut World, found: &mut Vec<Entity>) {
         self.0.iter_mut().for_each(|watch| watch(world, found));
     }
 }
 
-/// Makes the components of all types in the registry known to a world: they bring the component along that all lights or
-/// all objects have.
+/// Registers the components of all types in the registry with a world: they require the component shared by
+/// all lights or all objects.
 pub(crate) fn know_types(world: &mut World) {
     world.init_resource::<Touched>();
     world.init_resource::<PartTypes>();

@@ -1,7 +1,7 @@
-//! Views: pictures in textures of their own, drawn again only when something that they show changed.
+//! Views: pictures in separate textures, drawn again only when something that they show has changed.
 //!
-//! A view is a camera with a [`View`]. Its texture has the size at which it is seen, and keeps the last picture
-//! while nothing is drawn, so that windows can show it as often as they like.
+//! A view is a camera with a [`View`]. Its texture has the displayed size, and keeps the last picture while
+//! nothing is drawn, so that windows can show it as often as they like.
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
@@ -39,10 +39,11 @@ use super::{
 };
 use crate::registry::Registry;
 
-/// The pictures that are drawn after a change: the second has what the renderer could not prepare for the first.
+/// Number of pictures drawn after a change: the second includes what the renderer could not prepare for the
+/// first.
 const PICTURES: u32 = 2;
 
-/// Gives views their textures, and draws them only when something changed.
+/// Creates the textures of views, and draws views only when something changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ViewPlugin;
 
@@ -63,25 +64,25 @@ impl Plugin for ViewPlugin {
     }
 }
 
-/// The systems that give views their textures and decide which of them are drawn.
+/// The systems that create the textures of views and decide which views are drawn.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ViewSystems;
 
-/// A picture that is drawn into a texture of its own when something that it shows changed.
+/// A picture that is drawn into a separate texture when something that it shows has changed.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[require(Drawing)]
 pub struct View {
-    /// The size of the picture in pixels. Where it is zero, nothing is drawn.
+    /// The size of the picture in pixels. If it is zero, nothing is drawn.
     pub size: UVec2,
     /// Format of the texture.
     pub format: TextureFormat,
-    /// The part of the picture that shows what the lens says, in pixels; around it the picture goes on. `None` if it
+    /// The part of the picture covered by the lens, in pixels; the picture continues around it. `None` if it
     /// is all of it.
     pub inset: Option<URect>,
 }
 
 impl View {
-    /// A view of what people see: 8 bits, sRGB-encoded.
+    /// A view for display: 8 bits, sRGB-encoded.
     #[must_use]
     pub const fn for_display(size: UVec2) -> Self {
         Self { size, format: TextureFormat::Rgba8UnormSrgb, inset: None }
@@ -92,17 +93,17 @@ impl View {
 #[derive(Component, Clone, Debug)]
 pub struct Drawing {
     last: Option<Look>,
-    /// Pictures that are still to be drawn.
+    /// Number of pictures still to be drawn.
     due: u32,
-    /// Pictures that have been drawn.
+    /// Number of pictures drawn.
     drawn: u64,
-    /// The first of them after the last change.
+    /// Number of the first of them after the last change.
     began: u64,
-    /// One is drawn in this frame.
+    /// True if one is drawn in this frame.
     draws: bool,
-    /// The samples of light with extent, none if there is no such light.
+    /// The samples of light with extent; none without such light.
     converged: Converged,
-    /// Those of them that this frame draws.
+    /// The samples drawn in this frame.
     part: Option<Part>,
 }
 
@@ -121,7 +122,7 @@ impl Default for Drawing {
 }
 
 impl Drawing {
-    /// Draws the picture again: something that only the caller knows of has changed.
+    /// Draws the picture again, after a change known only to the caller.
     pub fn redraw(&mut self) {
         self.due = PICTURES;
     }
@@ -132,24 +133,24 @@ impl Drawing {
         self.draws
     }
 
-    /// True once the picture shows everything as it is.
+    /// True once the picture is up to date.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.due == 0 && self.converged.is_done()
     }
 
-    /// The samples of light with extent that the picture is the mean of; 0 of 0 if there is no such light.
+    /// The samples of light with extent of which the picture is the mean; 0 of 0 without such light.
     #[must_use]
     pub fn converged(&self) -> Converged {
         self.converged
     }
 
-    /// Those of them that this frame draws, if the picture converges.
+    /// The samples drawn in this frame, if the picture converges.
     pub(super) fn part(&self) -> Option<Part> {
         self.part
     }
 
-    /// True if the picture shows everything as it is, and is not drawn in this frame.
+    /// True if the picture is up to date, and is not drawn in this frame.
     #[must_use]
     pub fn rests(&self) -> bool {
         self.is_done() && !self.draws()
@@ -161,13 +162,13 @@ impl Drawing {
         self.drawn
     }
 
-    /// The number of the first of them that shows what is shown now.
+    /// The number of the first picture that shows the present state.
     pub(super) fn began(&self) -> u64 {
         self.began
     }
 }
 
-/// Everything that a camera shows, beside the scene.
+/// Everything that a camera shows, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct Look {
     view: View,
@@ -179,7 +180,7 @@ struct Look {
     overrides: Option<Overrides>,
 }
 
-/// The texture that a view draws into.
+/// The texture into which a view draws.
 #[must_use]
 pub fn texture_of(target: &RenderTarget) -> Option<&Handle<Image>> {
     match target {
@@ -188,7 +189,7 @@ pub fn texture_of(target: &RenderTarget) -> Option<&Handle<Image>> {
     }
 }
 
-/// The background of its own that a camera has.
+/// The background of a camera, if it has its own.
 #[must_use]
 pub fn background_of(camera: &Camera) -> Option<Color> {
     match camera.clear_color {
@@ -218,12 +219,12 @@ fn fit(
         image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
         image.asset_usage = RenderAssetUsages::default();
         *target = RenderTarget::Image(images.add(image).into());
-        // Cameras look at their target when their lens changes.
+        // Cameras check their target when their lens changes.
         lens.set_changed();
     }
 }
 
-/// Around an inset more is seen than the lens says.
+/// Widens the frustum: around an inset more is visible than the lens covers.
 fn frame(mut views: Query<(&Camera, &GlobalTransform, &Projection, &mut Frustum), With<View>>) {
     for (camera, transform, lens, mut frustum) in &mut views {
         let clip_from_world = camera.clip_from_view() * transform.affine().inverse();
@@ -236,7 +237,7 @@ fn frame(mut views: Query<(&Camera, &GlobalTransform, &Projection, &mut Frustum)
     }
 }
 
-/// Everything that reports its changes.
+/// All sources of changes.
 #[derive(SystemParam)]
 struct Changes<'w, 's> {
     scene: Res<'w, CurrentScene>,
@@ -254,9 +255,10 @@ struct Changes<'w, 's> {
 }
 
 impl Changes<'_, '_> {
-    /// True if every view has to be drawn; else those with overrides that have to be, and `None` for those without.
+    /// True if every view must be drawn; otherwise the views with overrides that must be, and `None` for
+    /// those without.
     fn find(&mut self) -> (bool, HashSet<Option<Entity>>) {
-        // All are read, so that none is left over for the next frame.
+        // All are read, so that no change is left for the next frame.
         let told = [self.shaders.read().count(), self.meshes.read().count()];
         let mut all =
             told.iter().any(|count| *count > 0) || self.scene.is_changed() || self.registry.is_changed();
@@ -278,7 +280,7 @@ impl Changes<'_, '_> {
     }
 }
 
-/// Chooses the views that this frame draws, and the samples of light with extent in those that converge.
+/// Chooses the views drawn in this frame, and the samples of light with extent in the converging ones.
 fn rest(
     mut changes: Changes,
     shown: Res<Shown>,
@@ -298,7 +300,7 @@ fn rest(
     let (all, some) = changes.find();
     let extent = changes.registry.has_extent(shown.types);
     let target = if extent { convergence.target.max(1) } else { 0 };
-    // True if a picture begins, and the fewest samples that another lacks.
+    // True if a picture begins, and the minimum number of samples missing in another.
     let (mut begins, mut missing) = (false, None::<u32>);
     for (entity, view, mut drawing, mut camera, transform, lens, tone, overrides, hdr) in &mut views {
         let look = Look {
@@ -528,7 +530,7 @@ mod tests {
         assert_eq!(texture(&mut app), first);
         one::<View>(app.world_mut()).size = UVec2::new(10, 20);
         assert_eq!(texture(&mut app).and_then(|t| t.1), Some(UVec2::new(10, 20)));
-        // A picture that is nowhere to be seen is not drawn.
+        // A picture that is not visible is not drawn.
         one::<View>(app.world_mut()).size = UVec2::new(0, 20);
         assert_eq!(drawn(&mut app), [false]);
     }

@@ -1,5 +1,5 @@
-//! A scene without `scene_size` with parts outside the default room: the missing size is the problem, not each of the
-//! positions.
+//! A scene without `scene_size` and with parts outside the default room: the missing size is reported, not
+//! each of the positions.
 
 use glam::Vec3;
 
@@ -9,18 +9,18 @@ use super::{
     load::Missing,
 };
 
-/// An extent of the room: its key, and its value in a position and a size.
+/// An extent of the room: its key, and functions that get its value from a position and a size.
 type Axis = (&'static str, fn(Vec3) -> f32, fn(&mut SceneSize) -> &mut f32);
 
-/// In the order of the file.
+/// The extents, in the order of the file.
 const AXES: [Axis; 3] = [
     ("height", |p| p.y, |size| &mut size.height),
     ("width", |p| p.x, |size| &mut size.width),
     ("depth", |p| p.z, |size| &mut size.depth),
 ];
 
-/// Replaces problems of positions caused by the missing size by that one problem. Positions that no size would fix
-/// stay, with a remark that the size is a default.
+/// Replaces the problems of positions caused by the missing size by a single problem. Positions that no size
+/// would fix are kept, with a remark that the size is a default.
 pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]) -> Vec<Problem> {
     let room = Path::root().key("scene_size");
     let lacks = |axis: &'static str| missing.iter().find(|m| m.path == room || m.path == room.key(axis));
@@ -80,7 +80,7 @@ pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]
     rest
 }
 
-/// The position with the problem, if it is one of a position.
+/// The position with the problem, if the problem is about a position.
 fn position(scene: &Scene, path: &Path) -> Option<Vec3> {
     match path.segments() {
         [Segment::Key(list), Segment::Index(i), Segment::Key(key)] if key == "position" => match &**list {

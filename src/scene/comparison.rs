@@ -30,13 +30,13 @@ macro_rules! choice {
                 match self { $(Self::$variant => $label,)+ }
             }
 
-            /// One sentence.
+            /// One sentence of explanation.
             #[must_use]
             pub const fn summary(self) -> &'static str {
                 match self { $(Self::$variant => $help,)+ }
             }
 
-            /// The choice with an id.
+            /// The choice with this id.
             #[must_use]
             pub fn from_id(id: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|choice| choice.id() == id)
@@ -97,7 +97,7 @@ choice! {
 }
 
 impl Layout {
-    /// True if it shows view A and one other.
+    /// True if the layout shows view A and one other.
     #[must_use]
     pub const fn shows_two(self) -> bool {
         matches!(self, Self::Wipe | Self::Difference | Self::Blink)
@@ -109,20 +109,20 @@ impl Layout {
 pub struct Comparison {
     /// The arrangement.
     pub layout: Layout,
-    /// The view that is compared with view A where two are: 1 for B.
+    /// The view compared with view A in layouts of two views: 1 for B.
     pub with: usize,
-    /// The place of the edge of a wipe: 0 at the left or top, 1 at the right or bottom.
+    /// The position of the edge of a wipe: 0 at the left or top, 1 at the right or bottom.
     pub split: f32,
     /// The direction of the edge.
     pub edge: Edge,
     /// The sign of differences.
     pub sign: Sign,
-    /// The number of a pixel that is compared.
+    /// The value of a pixel that is compared.
     pub channel: Channel,
     /// The values that are compared.
     pub values: Compared,
-    /// The factor by which a difference is multiplied before it becomes a colour, 1 to 100; `None` for the one that
-    /// fits the largest difference.
+    /// The factor by which a difference is multiplied before it is mapped to a colour, 1 to 100; `None` for
+    /// the one that fits the largest difference.
     pub amplification: Option<f32>,
 }
 
@@ -142,7 +142,8 @@ impl Default for Comparison {
 }
 
 impl Comparison {
-    /// The views that the layout shows, where a scene has this many variants: in the order of their places.
+    /// The views that the layout shows for a scene with this number of variants, in the order of their
+    /// positions.
     #[must_use]
     pub fn views(&self, variants: usize) -> Vec<usize> {
         let count = variants.min(MAX_VARIANTS);

@@ -1,4 +1,4 @@
-//! From bytes to text: UTF-8, or a guess at the encoding.
+//! Decoding of text: UTF-8, or a guess at the encoding.
 
 use super::error::LoadError;
 use crate::text::place::Lines;

@@ -21,13 +21,14 @@ use crate::{
 /// One problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Its position in the file, if the scene came from one.
+    /// The position in the file, if the scene came from one.
     pub place: Option<Place>,
-    /// Its path in the scene.
+    /// The path of the value in the scene.
     pub path: Path,
     /// The value as written, if a value breaks a rule.
     pub found: Option<String>,
-    /// The broken rule, as the end of "k_d is 0.2, but …"; without a value the whole predicate: "is missing; …".
+    /// The broken rule, as the end of "k_d is 0.2, but …"; without a value, the whole predicate: "is missing;
+    /// …".
     pub rule: String,
 }
 
@@ -44,8 +45,8 @@ impl Problem {
         Self { place: None, path, found: None, rule: predicate.into() }
     }
 
-    /// The predicate without place and path: "is 0.2, but the diffuse coefficient must be between 0.5
-    /// and 1".
+    /// The predicate without position and path: "is 0.2, but the diffuse coefficient must be between 0.5 and
+    /// 1".
     #[must_use]
     pub fn message(&self) -> String {
         match &self.found {
@@ -70,7 +71,7 @@ impl fmt::Display for Problem {
 
 impl Serialize for Problem {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// The problem for programs.
+        /// The problem in machine-readable form.
         #[derive(Serialize)]
         struct Record<'a> {
             line: Option<usize>,
@@ -94,12 +95,12 @@ impl Serialize for Problem {
 /// file.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("{name}: file not found{}", .hint.as_deref().unwrap_or(""))]
     NotFound {
         /// The file.
         name: String,
-        /// Similar files that exist, or where a link leads.
+        /// Similar files that exist, or the target of a link.
         hint: Option<String>,
     },
     /// The path leads to a folder.
@@ -107,7 +108,7 @@ pub enum LoadError {
     Folder {
         /// The folder.
         name: String,
-        /// The scenes in it.
+        /// The scenes in the folder.
         hint: Option<String>,
     },
     /// The path leads to something other than a file or folder.
@@ -115,7 +116,7 @@ pub enum LoadError {
     NoFile {
         /// The name given.
         name: String,
-        /// The kind of thing it is.
+        /// The kind of thing that it is.
         kind: Kind,
     },
     /// The user has no permission to read it.
@@ -124,7 +125,7 @@ pub enum LoadError {
         /// The file.
         name: String,
     },
-    /// Larger than any legal scene, or picture with one.
+    /// The file is larger than any legal scene, or picture with a scene.
     #[error("{name} is larger than {} MiB, the most allowed for a {}; it was not read", .most >> 20, kind_of(*.most))]
     TooLarge {
         /// The file.
@@ -140,23 +141,23 @@ pub enum LoadError {
         /// The reason given by the system.
         source: io::Error,
     },
-    /// Nothing but white space.
+    /// The file contains nothing but white space.
     #[error("{name} is empty; --use-defaults loads the default scene")]
     Empty {
         /// The file.
         name: String,
     },
-    /// Not text in UTF-8.
+    /// The file is not UTF-8 text.
     #[error("{name}:{place}: not UTF-8 text: {what}")]
     NotUtf8 {
         /// The file.
         name: String,
         /// The position of the first wrong byte.
         place: Place,
-        /// Its probable cause.
+        /// The probable cause.
         what: String,
     },
-    /// Its extension belongs to no format.
+    /// The file name's extension belongs to no known format.
     #[error("{name}: {unknown}")]
     UnknownExtension {
         /// The file.
@@ -164,7 +165,7 @@ pub enum LoadError {
         /// The extension, and those that are known.
         unknown: UnknownExtension,
     },
-    /// Not in its format.
+    /// The content does not follow the syntax of the format.
     #[error("{name}:{place}: not {format}: {what}")]
     Syntax {
         /// The name of the format.
@@ -173,23 +174,23 @@ pub enum LoadError {
         name: String,
         /// The position where reading stopped.
         place: Place,
-        /// The expectation there.
+        /// What was expected there.
         what: String,
     },
-    /// A picture without a scene that can be read.
+    /// A picture without a readable scene.
     #[error("{name}: {what}")]
     Picture {
         /// The file.
         name: String,
-        /// The mistake.
+        /// The mistake in the picture.
         what: String,
     },
-    /// Readable, but not a valid scene. With every problem, in the order of the file.
+    /// The content is readable, but not a valid scene. Contains every problem, in the order of the file.
     #[error("{}", lines(.name, .problems))]
     Invalid {
         /// The file.
         name: String,
-        /// At least one.
+        /// The problems, at least one.
         problems: Vec<Problem>,
     },
     /// Parts with defaults are missing, and the defaults were declined.
@@ -197,13 +198,13 @@ pub enum LoadError {
     Missing {
         /// The file.
         name: String,
-        /// At least one.
+        /// The missing parts, at least one.
         missing: Vec<Missing>,
     },
 }
 
 impl LoadError {
-    /// An error of the operating system on opening or reading a file.
+    /// An error of the operating system when opening or reading a file.
     #[must_use]
     pub fn from_io(path: &FilePath, name: &str, source: io::Error, registry: &Registry) -> Self {
         let name = name.to_owned();
@@ -229,7 +230,7 @@ impl LoadError {
         }
     }
 
-    /// The problems as data: those of an invalid scene, or the error itself as the only one.
+    /// The problems as data: those of an invalid scene, or otherwise the error itself as a single problem.
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
         let (place, what) = match self {
@@ -251,7 +252,7 @@ impl LoadError {
     }
 }
 
-/// What has this limit.
+/// The kind of file with this limit.
 fn kind_of(most: u64) -> &'static str {
     if most == MAX_PICTURE_BYTES { "picture with a scene in it" } else { "scene" }
 }
@@ -265,7 +266,7 @@ fn lines(name: &str, problems: &[Problem]) -> String {
     problems.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The missing parts and the flags that answer.
+/// The missing parts, and the flags that accept or reject their defaults.
 fn declined(missing: &[Missing]) -> String {
     let parts: Vec<_> = missing.iter().map(ToString::to_string).collect();
     let verb = if missing.len() == 1 { "is" } else { "are" };
@@ -275,7 +276,7 @@ fn declined(missing: &[Missing]) -> String {
     )
 }
 
-/// "; it is a link to room.json, which is not there" if it is one.
+/// "; it is a link to room.json, which is not there" if the path is such a link.
 fn broken_link(path: &FilePath) -> Option<String> {
     if !std::fs::symlink_metadata(path).ok()?.is_symlink() {
         return None;
@@ -292,7 +293,7 @@ fn similar_file(path: &FilePath) -> Option<String> {
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        // A hint at what was given helps nobody.
+        // A suggestion equal to the given name helps nobody.
         .filter(|name| path.file_name().is_none_or(|given| given != name.as_str()))
         .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness > 0.85)

@@ -1,4 +1,4 @@
-//! The shipped scenes, built into the program, so that it needs no folder beside it.
+//! The shipped scenes, built into the program, so that it needs no folder next to it.
 
 use std::sync::LazyLock;
 
@@ -12,13 +12,13 @@ use crate::{parameter::Values, registry::Registry};
 /// A shipped scene.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// Its file name in the folder `scenes`.
+    /// The file name in the folder `scenes`.
     pub file: &'static str,
     /// The text of the file.
     pub text: &'static str,
     /// The name of the scene.
     pub name: String,
-    /// One line: its content.
+    /// A one-line description of the content.
     pub description: String,
 }
 
@@ -28,7 +28,7 @@ macro_rules! texts {
     };
 }
 
-/// From the simplest to those that measure something.
+/// The scenes, from the simplest to those that measure something.
 const TEXTS: [(&str, &str); 26] = texts![
     "default.json",
     "shapes_and_lights.json",
@@ -58,7 +58,7 @@ const TEXTS: [(&str, &str); 26] = texts![
     "compare_tone_mappings.json",
 ];
 
-/// Scenes of one object each: their materials are the [`looks`].
+/// Scenes of one object each, whose materials are the [`looks`].
 const LOOKS: [(&str, &str); 10] = texts![
     "openpbr_car_paint.json",
     "openpbr_satin.json",
@@ -72,20 +72,20 @@ const LOOKS: [(&str, &str); 10] = texts![
     "openpbr_ceramic.json",
 ];
 
-/// A material that artists reach for, a preset of its reflection model.
+/// A ready-made material: a preset of its reflection model.
 #[derive(Clone, Debug)]
 pub struct Look {
     /// The id of the reflection model.
     pub model: String,
-    /// Its name: "Car paint".
+    /// The name: "Car paint".
     pub name: String,
-    /// One line: its parts.
+    /// A one-line description of its parts.
     pub description: String,
-    /// The values of its parameters.
+    /// The values of the parameters.
     pub material: Values,
 }
 
-/// All of them, in the order of lists.
+/// All looks, in the order of lists.
 #[must_use]
 pub fn looks() -> &'static [Look] {
     static ALL: LazyLock<Vec<Look>> = LazyLock::new(|| {
@@ -106,7 +106,7 @@ pub fn looks() -> &'static [Look] {
     &ALL
 }
 
-/// All of them, in the order of lists.
+/// All examples, in the order of lists.
 pub static EXAMPLES: LazyLock<Vec<Example>> = LazyLock::new(|| {
     let registry = Registry::builtin();
     TEXTS
@@ -137,10 +137,9 @@ fn head(file: &str, text: &str, registry: &Registry) -> (String, String) {
 }
 
 impl Example {
-    /// The scene itself.
+    /// Reads the scene.
     ///
-    /// # Errors
-    /// [`LoadError`] if the registry lacks a model or type in the scene.
+    /// # Errors Returns a [`LoadError`] if the registry lacks a model or type in the scene.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, LoadError> {
         load::from_text(self.text, self.file, registry, Defaults::Use).map(|loaded| loaded.scene)
     }

@@ -1,11 +1,11 @@
-//! The values of materials that a change of model cannot keep: models may give a parameter other ranges.
+//! Values of materials that must change with the model, since models may give a parameter different ranges.
 
 use super::{Scene, check::Declared, error::Path, variant::LETTERS};
 use crate::registry::Registry;
 
 impl Scene {
-    /// Replaces every number of a material that the model of its object does not take by the nearest that it takes. One
-    /// sentence for each.
+    /// Replaces every number of a material that its object's model does not allow by the nearest one that it
+    /// allows. Returns one sentence for each.
     pub fn bring_into_range(&mut self, registry: &Registry) -> Vec<String> {
         let mut said = Vec::new();
         for i in 0..self.objects.len() {
@@ -30,7 +30,7 @@ impl Scene {
         said
     }
 
-    /// The same sentences for a valid scene, about views that override a model.
+    /// The sentences for a valid scene, about views that override a model.
     #[must_use]
     pub fn beyond_the_range_of_views(&self, registry: &Registry) -> Vec<String> {
         let view = |view: usize| {

@@ -1,4 +1,4 @@
-//! JSON as a person would lay it out.
+//! Readable layout of JSON.
 
 use std::io;
 
@@ -20,10 +20,10 @@ impl Formatter for ShortNumbers {
     }
 }
 
-/// The longest line, if it can be broken.
+/// The maximum length of a line that can be broken.
 const LINE_WIDTH: usize = 110;
 
-/// Lays JSON out: anything that fits on a line stays on one; lists of objects have at least one line per entry.
+/// Formats JSON: anything that fits on a line is on one; lists of objects have at least one line per entry.
 pub(super) fn pretty(compact: &str) -> Option<String> {
     let value = json::parse(compact, &STRICT).ok()??;
     let mut out = String::with_capacity(2 * compact.len());

@@ -1,5 +1,5 @@
-//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and edits, and for
-//! widgets, which show them while a value is typed.
+//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and
+//! edits, and for widgets, which check values while they are typed.
 
 use crate::{
     light,
@@ -12,25 +12,25 @@ use crate::{
     shape,
 };
 
-/// The legal values of a number, and how a slider walks through them.
+/// The legal values of a number, and the range of its slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
-    /// Smallest legal value.
+    /// The smallest legal value.
     pub min: f64,
-    /// Largest legal value; infinite when there is none.
+    /// The largest legal value; infinite if unlimited.
     pub max: f64,
-    /// Lower end of the slider.
+    /// The lower end of the slider.
     pub slider_min: f64,
-    /// Upper end of the slider.
+    /// The upper end of the slider.
     pub slider_max: f64,
     /// True if only whole numbers are legal.
     pub whole: bool,
-    /// The reason for the limits, where the numbers alone do not say it.
+    /// The reason for the limits, if the numbers alone do not explain it.
     pub because: Option<String>,
 }
 
 impl Limits {
-    /// Every number between two, both included.
+    /// All numbers between two limits, inclusive.
     #[must_use]
     pub fn between(min: f64, max: f64) -> Self {
         Self { min, max, slider_min: min, slider_max: max, whole: false, because: None }
@@ -42,14 +42,14 @@ impl Limits {
         Self { min: f64::from(ABOVE_ZERO), slider_min: 0.0, ..Self::between(0.0, max) }
     }
 
-    /// The same limits with a slider that walks through a part of them.
+    /// The limits with a slider over part of the range.
     #[must_use]
     pub fn slider(mut self, min: f64, max: f64) -> Self {
         (self.slider_min, self.slider_max) = (min, max);
         self
     }
 
-    /// The same limits for whole numbers.
+    /// The limits for integers.
     #[must_use]
     pub fn whole(mut self) -> Self {
         self.whole = true;
@@ -59,12 +59,12 @@ impl Limits {
     /// True if a value is legal.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
-        // In f32, which the scene holds: 0.1 is legal where the limit is the f32 next to it.
+        // In f32, as in the scene: 0.1 is legal if the limit is the f32 next to it.
         let within = value as f32 >= self.min as f32 && value as f32 <= self.max as f32;
         value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
 
-    /// True if zero is excluded though everything above it is legal.
+    /// True if all positive numbers up to the maximum are legal, but zero is not.
     #[must_use]
     pub fn is_above_zero(&self) -> bool {
         self.min == f64::from(ABOVE_ZERO)
@@ -94,7 +94,7 @@ impl Limits {
     }
 }
 
-/// A number as people write it: at most four decimals, no trailing zeros, a real minus sign.
+/// A number in plain notation: at most four decimals, no trailing zeros, a true minus sign.
 #[must_use]
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
@@ -124,7 +124,7 @@ pub fn position(size: SceneSize, axis: usize) -> Limits {
     Limits { because: Some(because), ..Limits::above_zero(extent) }
 }
 
-/// A component of a direction. Which triples are one is up to [`check::direction`].
+/// A component of a direction. [`check::direction`] decides which triples are valid.
 #[must_use]
 pub fn direction() -> Limits {
     Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-1.0, 1.0)
@@ -167,7 +167,7 @@ pub fn intensity(light: &light::Declaration) -> Limits {
     brightness().slider(0.0, f64::from(light.slider_max))
 }
 
-/// The luminous flux of a light, lumen. The slider reaches as far as that of the intensity does for a
+/// The luminous flux of a light, lumen. The end of the slider corresponds to that of the intensity, for a
 /// light that shines in every direction.
 #[must_use]
 pub fn luminous_flux(light: &light::Declaration) -> Limits {
@@ -175,7 +175,7 @@ pub fn luminous_flux(light: &light::Declaration) -> Limits {
     brightness().slider(0.0, significant(end, 1))
 }
 
-/// A number rounded to so many significant digits.
+/// A number rounded to this number of significant digits.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> f64 {
     // In decimal, so that the result is the number nearest to what people read.

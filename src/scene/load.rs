@@ -1,5 +1,5 @@
-//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can
-//! be wrong and a question about missing parts.
+//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can be
+//! wrong and a list of missing parts.
 
 use std::{
     collections::BTreeSet,
@@ -26,7 +26,7 @@ pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
 /// most two seconds per mebibyte, as for all readers: `tests/suite/hostile/text.rs`. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
-/// The largest file of a picture that is opened: one of the largest size, not compressed.
+/// The maximum size of a picture file: that of the largest picture, uncompressed.
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
@@ -34,23 +34,23 @@ pub const STDIN: &str = "standard input";
 /// The treatment of a missing scene size, reflection model or shading model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Defaults {
-    /// The caller asks: [`Loaded::missing`] lists them, and the scene has the defaults already.
+    /// The caller decides: [`Loaded::missing`] lists them, and the scene already has the defaults.
     #[default]
     Ask,
-    /// They are used without asking. [`Loaded::missing`] still lists them.
+    /// Defaults are used without asking. [`Loaded::missing`] still lists the parts.
     Use,
-    /// They are an error, which names the flags that accept them.
+    /// Missing parts are an error, which names the flags that accept the defaults.
     Refuse,
 }
 
 /// A missing part with a default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// Its path: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
+    /// The path in the scene: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
     pub path: Path,
-    /// The default as shown to people: `lambert`, `10 × 10 × 10 m`.
+    /// The default in readable form: `lambert`, `10 × 10 × 10 m`.
     pub default: String,
-    /// Its place in the file: the beginning of the object that lacks it.
+    /// The position of the enclosing object, which lacks the field.
     pub place: Option<Place>,
 }
 
@@ -61,7 +61,7 @@ impl fmt::Display for Missing {
 }
 
 impl Missing {
-    /// The same as a problem.
+    /// The missing part as a problem.
     #[must_use]
     pub fn problem(&self) -> Problem {
         let predicate = format!("is missing; --use-defaults accepts the default, {}", self.default);
@@ -69,7 +69,7 @@ impl Missing {
     }
 }
 
-/// The state of a file, to notice changes by others: its length and a hash of its content.
+/// The state of a file, to detect changes by others: its length and a hash of its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Stamp {
     length: u64,
@@ -77,7 +77,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// The stamp of a content.
+    /// The stamp of this content.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut hasher = DefaultHasher::new();
@@ -86,7 +86,7 @@ impl Stamp {
     }
 }
 
-/// A scene that was read: valid, apart from the question about [`missing`](Self::missing) parts.
+/// A scene that was read: valid, apart from [missing](Self::missing) parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The scene, with defaults where parts are missing.
@@ -100,13 +100,13 @@ pub struct Loaded {
 /// Reads a scene from a regular file.
 ///
 /// # Errors
-/// [`LoadError`]; its text names the file as `path` does.
+/// Returns a [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
     let folder = path.parent().unwrap_or(FilePath::new(""));
     in_folder(&bytes(path, registry)?, (&path.shown().to_string(), folder), registry, defaults)
 }
 
-/// What reading a file gives. A picture may be larger than other files: the scene is a small part of it.
+/// The result of reading a file. A picture may be larger than other files: the scene is a small part of it.
 fn larger_if_picture(
     path: &FilePath,
     read: impl Fn(u64) -> Result<Vec<u8>, FileError>,
@@ -120,7 +120,7 @@ fn larger_if_picture(
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
-/// [`LoadError`]; its text names it as `path` does.
+/// Returns a [`LoadError`]; its text names the input as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
     larger_if_picture(path, |most| files::read_input(path, most))
         .map_err(|e| LoadError::from_file(path, e, registry))
@@ -129,7 +129,7 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// Reads the content of a scene file, valid or not.
 ///
 /// # Errors
-/// [`LoadError`] if it is not a regular file, too large, or cannot be read.
+/// Returns a [`LoadError`] if it is not a regular file, is too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
     larger_if_picture(path, |most| files::read(path, most))
         .map_err(|e| LoadError::from_file(path, e, registry))
@@ -138,7 +138,7 @@ pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError>
 /// Reads a scene from a stream, for example [standard input](STDIN).
 ///
 /// # Errors
-/// [`LoadError`] with `name` as the name of the file.
+/// Returns a [`LoadError`] with `name` as the name of the file.
 pub fn reader(
     from: impl Read,
     name: &str,
@@ -148,8 +148,8 @@ pub fn reader(
     from_bytes(&all_of(from, name)?, name, registry, defaults)
 }
 
-/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; none if the content is
-/// not in its format.
+/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; empty if the
+/// content does not follow the syntax of its format.
 #[must_use]
 pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<String> {
     let source = Source::new(bytes, (name, FilePath::new("")));
@@ -158,10 +158,10 @@ pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<S
     parsed.scene.models().into_iter().map(str::to_owned).collect()
 }
 
-/// Reads the content of a stream, which can be read once.
+/// Reads the content of a stream, which can be read only once.
 ///
 /// # Errors
-/// [`LoadError`] if it is too large for a scene, or cannot be read.
+/// Returns a [`LoadError`] if it is too large for a scene, or cannot be read.
 pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     let failed = |source| LoadError::Io { name: name.to_owned(), source };
     let mut bytes = Vec::new();
@@ -177,7 +177,7 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
 /// scene names, and its extension decides on the [format](super::formats).
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn from_bytes(
     bytes: &[u8],
     name: &str,
@@ -188,10 +188,10 @@ pub fn from_bytes(
     in_folder(bytes, (name, folder), registry, defaults)
 }
 
-/// The same, with the folder of the files that the scene names.
+/// Like [`from_bytes`], with the folder of the files named in the scene.
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn in_folder(
     bytes: &[u8],
     (name, folder): (&str, &FilePath),
@@ -208,10 +208,10 @@ pub fn in_folder(
     Ok(Loaded { scene, missing, stamp: Stamp::of(bytes) })
 }
 
-/// Reads a scene from text: [`from_bytes`].
+/// Reads a scene from text, like [`from_bytes`].
 ///
 /// # Errors
-/// [`LoadError`].
+/// Returns a [`LoadError`] if the scene cannot be read.
 pub fn from_text(
     text: &str,
     name: &str,

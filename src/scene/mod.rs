@@ -44,27 +44,27 @@ pub use comparison::Comparison;
 pub use serialise::{SceneIn, SceneOf};
 pub use variant::Variant;
 
-/// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
+/// The largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
 pub const MAX_DIMENSION: f32 = 100.0;
-/// Default extent in every direction, metres (CA `DEF_HEIGHT`, `DEF_WIDTH`, `DEF_DEPTH`).
+/// The default extent in every direction, metres (CA `DEF_HEIGHT`, `DEF_WIDTH`, `DEF_DEPTH`).
 pub const DEFAULT_DIMENSION: f32 = 10.0;
 /// The reflection model offered if a scene names none (CA `DEF_LIGHT`).
 pub const DEFAULT_REFLECTION_MODEL: &str = "lambert";
 /// The shading model offered if a scene names none (CA `DEF_SHADE`).
 pub const DEFAULT_SHADING_MODEL: &str = "gouraud";
-/// The most objects that a scene may have.
+/// Maximum number of objects in a scene.
 pub const MAX_OBJECTS: usize = 10_000;
-/// Object size if a scene gives none, metres.
+/// The object size if a scene gives none, metres.
 pub const DEFAULT_SIZE: f32 = 2.0;
-/// Vertical field of view if a scene gives none, degrees.
+/// The vertical field of view if a scene gives none, degrees.
 pub const DEFAULT_FIELD_OF_VIEW: f32 = 45.0;
 
-/// A scene, valid or not: checking is the task of [`check`].
+/// A scene, valid or not: [`check`] checks it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The name, for lists and window titles.
     pub name: Option<String>,
-    /// One line: the content of the scene.
+    /// A one-line description of the scene.
     pub description: Option<String>,
     /// The room.
     pub scene_size: SceneSize,
@@ -74,7 +74,7 @@ pub struct Scene {
     pub shading_model: String,
     /// The lights, 1 to 256.
     pub lights: Vec<Light>,
-    /// The one observer.
+    /// The observer.
     pub observer: Observer,
     /// The objects, 1 to 10 000.
     pub objects: Vec<Object>,
@@ -82,7 +82,7 @@ pub struct Scene {
     pub display: Display,
     /// The scene with some things changed, to be compared with it: up to [`MAX_VARIANTS`](variant::MAX_VARIANTS).
     pub variants: Vec<Variant>,
-    /// The way in which they are compared.
+    /// The way in which the views are compared.
     pub comparison: Comparison,
 }
 
@@ -90,11 +90,11 @@ pub struct Scene {
 /// `height` bounds y, `depth` bounds z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneSize {
-    /// Bounds y.
+    /// The limit of y.
     pub height: f32,
-    /// Bounds x.
+    /// The limit of x.
     pub width: f32,
-    /// Bounds z.
+    /// The limit of z.
     pub depth: f32,
 }
 
@@ -111,7 +111,8 @@ impl SceneSize {
         p.cmpgt(Vec3::ZERO).all() && p.cmple(self.corner()).all()
     }
 
-    /// The point of the room nearest to another one, at least a centimetre from the walls at 0, which do not belong to it.
+    /// The point of the room nearest to this one, at least a centimetre from the walls at 0, which are not
+    /// part of the room.
     #[must_use]
     pub fn nearest(self, p: Vec3) -> Vec3 {
         let corner = self.corner();
@@ -130,7 +131,7 @@ impl Default for SceneSize {
 pub struct Light {
     /// Id of the light type.
     pub light_type: String,
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
     /// False while switched off.
     pub enabled: bool,
@@ -138,11 +139,11 @@ pub struct Light {
     pub position: Option<Vec3>,
     /// Direction, not normalised; `None` for types without one.
     pub direction: Option<Vec3>,
-    /// Colour, if there is no [`colour_temperature`](Self::colour_temperature).
+    /// The colour, unless [`colour_temperature`](Self::colour_temperature) is given.
     pub colour: [u8; 3],
     /// Colour temperature in kelvin, instead of the colour.
     pub colour_temperature: Option<f32>,
-    /// Intensity in the unit of the type, if there is no [`luminous_flux`](Self::luminous_flux).
+    /// The intensity in the unit of the type, unless [`luminous_flux`](Self::luminous_flux) is given.
     pub intensity: f32,
     /// Luminous flux in lumen, instead of the intensity; `None` for types without a flux.
     pub luminous_flux: Option<f32>,
@@ -168,11 +169,11 @@ pub struct Object {
     pub object_type: String,
     /// Parameters declared by the type; absent ones have their defaults.
     pub shape: Values,
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
     /// False while hidden.
     pub visible: bool,
-    /// Position of its centre.
+    /// Position of the centre.
     pub position: Vec3,
     /// Largest extent in metres.
     pub size: f32,
@@ -184,7 +185,7 @@ pub struct Object {
     pub reflection_model: Option<String>,
     /// Id of the shading model that overrides the scene's, if any.
     pub shading_model: Option<String>,
-    /// Parameters by name, of this model and of any other.
+    /// Parameters by name, of the object's model and of any other.
     pub material: Values,
 }
 
@@ -218,7 +219,7 @@ impl Default for Light {
 }
 
 impl Light {
-    /// The intensity in the unit of its type, however it is given.
+    /// The intensity in the unit of the light's type, whether given as intensity or as flux.
     #[must_use]
     pub fn intensity_as(&self, entry: &LightEntry) -> f32 {
         match self.luminous_flux.zip(entry.solid_angle(&self.parameters)) {
@@ -228,7 +229,7 @@ impl Light {
         }
     }
 
-    /// The colour for calculation, however it is given.
+    /// The colour for calculation, whether given as a colour or as a temperature.
     ///
     /// A colour takes away from white light, as a filter does. A temperature keeps the luminance of white.
     #[must_use]
@@ -242,14 +243,14 @@ impl Light {
         })
     }
 
-    /// The colour in sRGB, however it is given.
+    /// The colour in sRGB, whether given as a colour or as a temperature.
     #[must_use]
     pub fn rgb8(&self) -> [u8; 3] {
         self.colour_temperature.map_or(self.colour, temperature::black_body_rgb8)
     }
 
-    /// Changes its type: position, direction and parameters are added or removed as the new type requires. Intensity or
-    /// luminous flux is kept, unless the new type has another unit.
+    /// Changes the type: position, direction and parameters are added or removed as the new type requires.
+    /// Intensity or luminous flux is kept, unless the new type has another unit.
     pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
         let new = to.declaration;
         let flux = self.luminous_flux.filter(|_| to.has_flux());
@@ -268,8 +269,8 @@ impl Light {
 }
 
 impl Object {
-    /// Changes its type. Of the parameters, those of both types are kept; not so the tessellation: each type counts
-    /// something else.
+    /// Changes the type. Parameters of both types are kept, but not the tessellation, which has a different
+    /// meaning for each type.
     pub fn set_type(&mut self, to: &ShapeEntry) {
         self.shape = self.shape.legal(to.parameters);
         self.tessellation = None;
@@ -278,7 +279,7 @@ impl Object {
 }
 
 impl Default for Observer {
-    /// In the middle of the front of the default room, looking at its centre.
+    /// An observer in the middle of the front of the default room, looking at its centre.
     fn default() -> Self {
         Self {
             position: Vec3::new(5.0, 5.0, 9.5),
@@ -336,18 +337,18 @@ impl Scene {
         own.chain(of_variants).chain([self.reflection_model.as_str()]).collect()
     }
 
-    /// The lights that are on.
+    /// The active lights.
     pub fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
     }
 
-    /// The light types of the lights, switched off or not: what a shader for the scene is composed of.
+    /// The light types of all lights, including those switched off: the light types in the scene's shader.
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
     }
 
-    /// The files that lights and objects name, as often as they do.
+    /// The files named by lights and objects, with repetitions.
     pub fn files(&self) -> impl Iterator<Item = &NamedFile> {
         let of_lights = self.lights.iter().map(|light| &light.parameters);
         let values = of_lights.chain(self.objects.iter().map(|object| &object.shape));
@@ -375,7 +376,7 @@ impl Scene {
     }
 }
 
-/// A light of the scene for calculation, but for its own parameters. A light of an unknown type gives no light.
+/// A light of the scene for calculation, without its type's parameters. A light of an unknown type is dark.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
     let Some(entry) = registry.light(&light.light_type) else {
@@ -390,7 +391,8 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
-/// A light of the scene for calculation: its type, its type with its own parameters, and the rest. None if its type is unknown.
+/// A light of the scene for calculation: its type, the type with its parameters, and the rest. `None` if its
+/// type is unknown.
 #[must_use]
 pub fn emitter<'a>(
     light: &Light,
@@ -401,7 +403,7 @@ pub fn emitter<'a>(
     Some((entry, (entry.instantiate)(&light.parameters, encoding), record(light, registry, encoding)))
 }
 
-/// True if some of the lights that shine has extent, so that they are sampled.
+/// True if any active light has extent, so that lights are sampled.
 #[must_use]
 pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &Registry) -> bool {
     shining
@@ -409,7 +411,7 @@ pub fn has_extent<'a>(shining: impl IntoIterator<Item = &'a Light>, registry: &R
         .any(|light| registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent))
 }
 
-/// True if some of the lights that shine is uniform, so that albedos are needed.
+/// True if any active light is uniform, so that albedos are needed.
 #[must_use]
 pub fn shines_from_everywhere<'a>(
     shining: impl IntoIterator<Item = &'a Light>,

@@ -1,10 +1,10 @@
-//! The observer: placing the camera.
+//! The camera of the observer.
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
 use super::{Observer, Scene, comparison::Layout};
 
-/// Distance of the near plane from the eye, metres. Anything nearer is clipped.
+/// The distance of the near plane from the eye, metres. Anything nearer is clipped.
 pub const NEAR: f32 = 0.01;
 
 /// The orientation of a camera that looks along `direction` with y up: columns right, up, backward (cameras look along
@@ -16,14 +16,14 @@ pub fn orientation(direction: Vec3) -> Mat3 {
     Mat3::from_cols(right, backward.cross(right), backward)
 }
 
-/// [`orientation`] as a rotation.
+/// The [`orientation`] as a rotation.
 #[must_use]
 pub fn rotation(direction: Vec3) -> Quat {
     Quat::from_mat3(&orientation(direction))
 }
 
-/// From room coordinates to clip space, for a picture of the given width/height: perspective with
-/// reversed depth and no far plane (1 at [`NEAR`], 0 at infinity).
+/// The transformation from room coordinates to clip space, for a picture with this ratio of width to height:
+/// perspective with reversed depth and no far plane (1 at [`NEAR`], 0 at infinity).
 #[must_use]
 pub fn clip_from_room(observer: &Observer, aspect: f32) -> Mat4 {
     let axes = orientation(observer.direction);
@@ -31,7 +31,7 @@ pub fn clip_from_room(observer: &Observer, aspect: f32) -> Mat4 {
     Mat4::perspective_infinite_reverse_rh(observer.field_of_view.to_radians(), aspect, NEAR) * view
 }
 
-/// The width/height of a picture of this size.
+/// The ratio of width to height of a picture of this size.
 #[must_use]
 pub fn aspect(size: [u32; 2]) -> f64 {
     f64::from(size[0].max(1)) / f64::from(size[1].max(1))
@@ -44,8 +44,8 @@ pub fn half_tangents(size: [u32; 2], vertical: f32) -> [f64; 2] {
     [up * aspect(size), up]
 }
 
-/// The line of sight through the centre of a pixel of that picture: the tangents of the angles to the right and upwards
-/// from where the observer looks.
+/// The line of sight through the centre of a pixel of such a picture: the tangents of the angles to the right
+/// of and above the direction of view.
 #[must_use]
 pub fn line_of_sight(pixel: [u32; 2], size: [u32; 2], vertical: f32) -> [f32; 2] {
     let [across, up] = half_tangents(size, vertical);
@@ -53,20 +53,21 @@ pub fn line_of_sight(pixel: [u32; 2], size: [u32; 2], vertical: f32) -> [f32; 2]
     [(part(0) * across) as f32, (-part(1) * up) as f32]
 }
 
-/// Width/height for which scenes are composed.
+/// The ratio of width to height for which scenes are composed.
 pub const WIDE: f32 = 16.0 / 9.0;
 
-/// The field of view of the pictures in a window, which have any shape.
+/// The field of view of pictures in a window, which can have any shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewAngle {
     /// The field of view of the observer, degrees.
     pub degrees: f32,
-    /// Width/height below which a picture keeps what it shows at the sides, and shows more above and below.
+    /// The ratio of width to height below which a picture keeps the horizontal extent of its content, and
+    /// shows more above and below.
     pub keeps: f32,
 }
 
 impl ViewAngle {
-    /// The vertical field of view in radians of a picture of the given width/height.
+    /// The vertical field of view in radians of a picture with this ratio of width to height.
     #[must_use]
     pub fn vertical(self, aspect: f32) -> f32 {
         let radians = self.degrees.to_radians();
@@ -78,8 +79,9 @@ impl ViewAngle {
 }
 
 impl Scene {
-    /// The field of view of its pictures in a window. One alone shows what a wide picture shows at the sides; of views beside
-    /// each other the smaller side has the observer's angle, so that objects keep their size.
+    /// The field of view of the scene's pictures in a window. A single picture shows at the sides what a wide
+    /// picture shows; in views side by side the smaller side has the observer's angle, so that objects keep
+    /// their size.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
         let beside = self.comparison.layout == Layout::SideBySide && !self.variants.is_empty();
@@ -88,8 +90,8 @@ impl Scene {
 }
 
 impl Observer {
-    /// The same with an angle of view for a picture of this size, drawn by a renderer that takes the field of view as the
-    /// vertical one.
+    /// This observer with the angle of view of a picture of this size, for a renderer that takes the field of
+    /// view as the vertical one.
     #[must_use]
     pub fn fitting(self, [width, height]: [u32; 2], angle: ViewAngle) -> Self {
         Self { field_of_view: angle.vertical(width as f32 / height as f32).to_degrees(), ..self }

@@ -16,7 +16,8 @@ pub fn euler_degrees(rotation: Quat) -> Vec3 {
     Vec3::new(x, y, z).map(f32::to_degrees)
 }
 
-/// The Euler angles in degrees of a rotation that is turned on about an axis of the room, to a hundredth of a degree.
+/// The Euler angles in degrees of a rotation followed by one about an axis of the room, rounded to a
+/// hundredth of a degree.
 #[must_use]
 pub fn turned(from: Quat, axis: Vec3, radians: f32) -> Vec3 {
     let degrees = euler_degrees(Quat::from_axis_angle(axis, radians) * from);

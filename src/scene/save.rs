@@ -1,4 +1,4 @@
-//! Writing scene files: readable, in one order, and all or nothing.
+//! Writing scene files: readable, in a fixed order, completely or not at all.
 
 use std::{
     fs, io,
@@ -33,7 +33,8 @@ pub enum Expected {
     Anything,
 }
 
-/// The reason why a scene could not be written. Nothing is changed then: the old file is still there, complete.
+/// The reason why a scene could not be written. In that case nothing has changed: the old file is still
+/// complete.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// The scene breaks rules, so it could not be read again.
@@ -41,10 +42,10 @@ pub enum SaveError {
     Invalid {
         /// The file.
         path: PathBuf,
-        /// At least one.
+        /// The problems, at least one.
         problems: Vec<Problem>,
     },
-    /// Its extension belongs to no format.
+    /// The file name's extension belongs to no known format.
     #[error("{} was not written: {unknown}", .path.shown())]
     UnknownExtension {
         /// The file.
@@ -52,7 +53,7 @@ pub enum SaveError {
         /// The extension, and those that are known.
         unknown: UnknownExtension,
     },
-    /// Its format can only be read.
+    /// The format can only be read.
     #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     CannotWrite {
         /// The file.
@@ -60,7 +61,7 @@ pub enum SaveError {
         /// The name of the format.
         format: &'static str,
     },
-    /// Its format cannot hold all of the scene.
+    /// The format cannot hold the whole scene.
     #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
     Lossy {
         /// The file.
@@ -103,7 +104,7 @@ pub enum SaveError {
     NoFile {
         /// The path given.
         path: PathBuf,
-        /// The kind of thing it is.
+        /// The kind of thing that it is.
         kind: Kind,
     },
     /// The folder of the file does not exist.
@@ -124,7 +125,7 @@ pub enum SaveError {
     },
 }
 
-/// The name of a file with the extension of JSON, which holds every scene.
+/// The name of a file with the extension of JSON, the format that holds every scene.
 #[must_use]
 pub fn as_json(path: &Path) -> PathBuf {
     path.with_extension("json")
@@ -134,8 +135,8 @@ fn lines(problems: &[Problem]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers as short as they
-/// can be read back exactly. `schema` is the value of `$schema`, if any.
+/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers as short
+/// as possible without loss. `schema` is the value of `$schema`, if any.
 ///
 /// Only valid scenes can be read back; [`write()`] checks, this function does not.
 #[must_use]
@@ -148,11 +149,11 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }
 
-/// Writes a scene, all or nothing, as [`files::write`](fn@files::write) does, in the [format](super::formats) of the
-/// file's extension. Returns the stamp to expect next time.
+/// Writes a scene, completely or not at all, as [`files::write`](fn@files::write) does, in the
+/// [format](super::formats) of the file's extension. Returns the stamp to expect next time.
 ///
 /// # Errors
-/// [`SaveError`]; the old file is then untouched.
+/// Returns a [`SaveError`]; the old file is then untouched.
 pub fn write(
     path: &Path,
     scene: &Scene,
@@ -169,7 +170,7 @@ pub fn write(
     let writer =
         format.writer().ok_or_else(|| SaveError::CannotWrite { path: shown(), format: format.name() })?;
     let failed = |error| SaveError::from_file(path, error);
-    // What /dev/stdout leads to has no folder for a draft.
+    // The target of /dev/stdout has no folder for a draft.
     if let Ok(kind @ (files::Kind::Pipe | files::Kind::Device)) = files::kind(path) {
         return Err(failed(files::FileError::Kind(kind)));
     }
@@ -197,7 +198,8 @@ pub fn write(
     Ok(Stamp::of(&bytes))
 }
 
-/// `Ok` if the content of a file gives the scene that was written; otherwise the first part that is lost.
+/// `Ok` if the written scene can be read back from the content of the file; otherwise the first part that is
+/// lost.
 fn comes_back(
     bytes: &[u8],
     scene: &Scene,
@@ -218,7 +220,7 @@ fn comes_back(
     Err(format!("its format would lose {what}"))
 }
 
-/// The way to the first value that differs.
+/// The path of the first value that differs.
 fn difference(a: &serde_json::Value, b: &serde_json::Value, at: &ScenePath) -> Option<ScenePath> {
     use serde_json::Value::{Array, Object};
     match (a, b) {

@@ -18,7 +18,7 @@ use crate::{
 use schemars::{SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value as Json, json};
 
-/// The file name of the schema beside the shipped scenes, as in their `$schema`.
+/// File name of the schema next to the shipped scenes, as in their `$schema`.
 pub const FILE_NAME: &str = "scene.schema.json";
 /// The end of the names of schemas.
 pub(super) const EXTENSION: &str = ".schema.json";
@@ -112,7 +112,7 @@ fn tidy(schema: &mut Json) {
     }
 }
 
-/// One of several ids; editors show the names and summaries beside them.
+/// One of several ids; editors show the names and summaries next to them.
 fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str, &'a str)>) {
     let (mut ids, mut descriptions) = (Vec::new(), Vec::new());
     for (id, name, summary) in choices {
@@ -146,7 +146,7 @@ fn lights(list: &mut Json, registry: &Registry) {
     // Types may declare the same name with other ranges.
     let shared = |p: &Parameter| parameters().any(|other| other.name == p.name && other != p);
     for p in parameters() {
-        // Each type says more of those that are shared.
+        // Each type adds details to shared fields.
         fields[p.name] = if shared(p) { json!({ "description": p.help }) } else { parameter(p) };
     }
     let types = registry.lights().iter().map(|l| {
@@ -201,7 +201,7 @@ fn objects(list: &mut Json, registry: &Registry) {
         match known {
             Json::Null => *known = field,
             same if *same == field => {}
-            // Each type says more.
+            // Each type adds details.
             other => *other = json!({ "description": p.help }),
         }
     }
@@ -293,8 +293,8 @@ fn by_value(all: impl Iterator<Item = (&'static str, String)>) -> Vec<(String, V
     found
 }
 
-/// The ranges of a parameter in words where models differ about it, and all of them in its field then. `check` knows which
-/// model an object has, and holds it against that.
+/// The ranges of a parameter in words if they differ between models; all of them are then in its field.
+/// `check` knows the model of an object, and applies its range.
 fn ranges(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
     let all = by_value(users_of(p, registry).map(|(id, own)| (id, own.rule())));
     let firsts: Vec<_> = all.iter().filter_map(|(_, users)| users.first().copied()).collect();
@@ -309,7 +309,7 @@ fn ranges(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
     format!(" It is {said}.")
 }
 
-/// The defaults of a parameter in words where models differ about it, and none in its field then.
+/// The defaults of a parameter in words if they differ between models; its field then has none.
 fn defaults(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
     let all = by_value(users_of(p, registry).map(|(id, own)| (id, own.default_value().to_string())));
     let Some(said) = differing(all) else { return String::new() };

@@ -1,9 +1,10 @@
-//! Scenes and their parts for [serde], in the shape of scene files in JSON and by the same reader and writer: whoever
-//! keeps a scene in another format, or sends it, has the same keys and the same messages.
+//! Scenes and their parts for [serde], in the structure of scene files in JSON and with the same reader and
+//! writer: a program that stores a scene in another format, or sends it, has the same keys and the same
+//! messages.
 //!
-//! `Serialize` and `Deserialize` know what is built in. With more types, [`SceneIn`] and [`SceneOf`] take a registry.
-//! A whole scene is checked when it is read; of a [part](Light) alone, only keys and types are, since a scene decides
-//! whether a position is in its room.
+//! `Serialize` and `Deserialize` know the built-in types. For other types, [`SceneIn`] and [`SceneOf`] take a
+//! registry. A whole scene is checked when it is read; a single [part](Light) only for keys and types, since
+//! a scene decides whether a position is in its room.
 
 use std::{fmt::Display as Shown, path::Path as FilePath, sync::LazyLock};
 
@@ -25,7 +26,7 @@ use crate::{
     text::listed,
 };
 
-/// What is built in.
+/// The built-in types.
 static BUILT_IN: LazyLock<Registry> = LazyLock::new(Registry::builtin);
 
 /// A scene to be written with the types of a registry.
@@ -106,7 +107,7 @@ part!(
 );
 part!(Display, |display| DisplayFile::new(display), display);
 
-/// Reads a value of this parameter: what a number or a list means is up to its declaration.
+/// Reads a value of this parameter: its declaration determines the meaning of a number or a list.
 impl<'de> DeserializeSeed<'de> for &Parameter {
     type Value = Value;
 
@@ -131,12 +132,12 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
     }
 }
 
-/// What a deserializer holds as JSON, which the reader takes.
+/// The content of a deserializer as JSON, for the reader.
 fn text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     Ok(serde_json::Value::deserialize(deserializer)?.to_string())
 }
 
-/// Problems as the error of a deserializer. Places would be those of a text that nobody wrote.
+/// Problems as the error of a deserializer. Positions would refer to a text that nobody wrote.
 fn of<E: serde::de::Error>(problems: Vec<Problem>) -> E {
     let each: Vec<_> = problems.into_iter().map(|p| Problem { place: None, ..p }.to_string()).collect();
     E::custom(listed(&each, "and"))

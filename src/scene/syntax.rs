@@ -1,11 +1,12 @@
-//! Syntax errors of JSON: their place, the expectation there, and the most common slips by name.
+//! Syntax errors of JSON: their position, the expectation there, and the most common slips by name.
 
 use serde::{Deserialize as _, de::IgnoredAny};
 
-/// The deepest nesting of JSON. Scenes need four levels.
+/// Maximum nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
-/// The most values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`. In memory each takes
-/// up to 300 bytes, whereas its text may have two. 10 000 objects with every parameter of all models have half.
+/// Maximum number of values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`.
+/// Each takes up to 300 bytes in memory, but may take only two in the text. 10 000 objects with every
+/// parameter of all models have half.
 pub const MAX_VALUES: usize = 4_000_000;
 
 /// Strict JSON, or the first wrong byte and the expectation there.
@@ -19,8 +20,8 @@ pub(crate) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
     }
 }
 
-/// The place where a text that is JSON exceeds [`MAX_DEPTH`] or has more values than `most`, and which.
-/// Asked before a tree of it is built.
+/// The position where JSON exceeds [`MAX_DEPTH`] or has more than `most` values, and which of them. Called
+/// before a tree is built.
 fn too_much(text: &str, most: usize) -> Option<(usize, String)> {
     let (mut depth, mut values) = (0usize, 0usize);
     let (mut in_text, mut escaped, mut in_word) = (false, false, false);

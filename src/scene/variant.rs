@@ -10,16 +10,16 @@ use crate::{
     registry::Registry,
 };
 
-/// The most variants of a scene: with the scene itself, four views.
+/// Maximum number of variants of a scene: with the scene itself, four views.
 pub const MAX_VARIANTS: usize = 3;
 
 /// The letters of the views: A is the scene, the others are its variants.
 pub const LETTERS: [&str; MAX_VARIANTS + 1] = ["A", "B", "C", "D"];
 
-/// A scene with some things changed. What is `None`, or absent, is inherited.
+/// A scene with some things changed. Anything that is `None`, or missing, is inherited.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variant {
-    /// The user's name for it.
+    /// Name given by the user.
     pub name: Option<String>,
     /// The name of another variant, from which it inherits instead of the scene.
     pub based_on: Option<String>,
@@ -42,7 +42,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The display, where `inherited` is that of the scene.
+    /// The display settings, where `inherited` are those of the scene.
     #[must_use]
     pub fn display(&self, inherited: Display) -> Display {
         Display {
@@ -52,8 +52,8 @@ impl Variant {
         }
     }
 
-    /// The scene as the variant shows it: numbers that another model does not take are the nearest that it takes. The terms
-    /// are no part of it.
+    /// The scene as the variant shows it: numbers that another model does not allow are replaced by the
+    /// nearest that it allows. The terms are not included.
     #[must_use]
     pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = self.laid_over(scene, registry);
@@ -63,7 +63,7 @@ impl Variant {
         shown
     }
 
-    /// The same with every number as it is written.
+    /// The scene as the variant shows it, with every number as written.
     pub(super) fn laid_over(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = Scene { display: self.display(scene.display), ..scene.clone() };
         if let Some(id) = &self.reflection_model {
@@ -87,7 +87,7 @@ impl Variant {
         shown
     }
 
-    /// The same overrides, and those of `base` where it has none.
+    /// These overrides, supplemented by those of `base`.
     #[must_use]
     pub fn over(mut self, base: &Self) -> Self {
         let Self {
@@ -128,7 +128,7 @@ impl Scene {
     #[must_use]
     pub fn overrides(&self, view: usize) -> Option<Variant> {
         let mut variant = self.variants.get(view.checked_sub(1)?)?.clone();
-        // Of variants in a circle, each is asked once at most.
+        // Each variant in a cycle is visited at most once.
         for _ in 0..self.variants.len() {
             let Some(base) = variant.based_on.take().and_then(|name| self.variant(&name)) else { break };
             variant = variant.over(base);
@@ -136,7 +136,8 @@ impl Scene {
         Some(Variant { based_on: None, ..variant })
     }
 
-    /// The scene that a view shows, and the terms; view 0 is the scene itself. `None` if there is no such view.
+    /// The scene shown by a view, and its terms; view 0 is the scene itself. `None` if the view does not
+    /// exist.
     #[must_use]
     pub fn seen(&self, view: usize, registry: &Registry) -> Option<(Self, TermSelection)> {
         if view == 0 {
@@ -146,7 +147,7 @@ impl Scene {
         Some((variant.applied(self, registry), variant.terms.unwrap_or_default()))
     }
 
-    /// The same without its views and their comparison.
+    /// The scene without its variants and their comparison.
     #[must_use]
     pub fn alone(self) -> Self {
         Self { variants: Vec::new(), comparison: Comparison::default(), ..self }

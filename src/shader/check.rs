@@ -1,4 +1,4 @@
-//! Checking composed sources with naga, and reporting problems in terms of the author's own file.
+//! Checks composed sources with naga, and reports problems in terms of the author's own file.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use super::{compose::Composed, explain, limits, pitfall};
 /// A problem of a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ShaderProblem {
-    /// Path below the folder of shaders; for custom models, `models/` and the file name.
+    /// Path below the shader folder; for custom models, `models/` and the file name.
     pub file: String,
     /// Line in that file, from 1.
     pub line: usize,
@@ -53,10 +53,10 @@ impl fmt::Display for ShaderProblem {
 
 impl std::error::Error for ShaderProblem {}
 
-/// Parses and validates a composed source that has no imports left, if it is within the [`limits`].
+/// Parses and validates a composed source without remaining imports, if it is within the [`limits`].
 ///
 /// # Errors
-/// The first problem, located in the author's file.
+/// Returns the first problem, located in the author's file.
 pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     if let Some(problem) = &composed.problem {
         return Err(problem.clone());
@@ -86,12 +86,13 @@ fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     }
 }
 
-/// An explanation at its place.
+/// An explanation with its position.
 fn explained(composed: &Composed, (at, message): explain::Explained) -> Box<ShaderProblem> {
     locate(composed, at.map(|at| place(composed, at)), message)
 }
 
-/// The validator's message in full: the outermost part only says that some function is invalid, the innermost says why.
+/// The validator's complete message: the outermost part only states that some function is invalid, the
+/// innermost explains why.
 pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();
     let mut source = error.source();
@@ -114,7 +115,7 @@ pub(crate) fn locate(
     place: Option<(usize, usize)>,
     message: String,
 ) -> Box<ShaderProblem> {
-    /// The longest message, characters: some of naga's repeat the text.
+    /// Maximum length of a message, in characters: some of naga's repeat the text.
     const LONGEST: usize = 400;
     let message = match message.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &message[..end]),
@@ -133,7 +134,7 @@ pub(crate) fn locate(
     })
 }
 
-/// The byte offsets of the members of a struct in a module, by name; `None` if there is no such struct.
+/// The byte offsets of the members of a struct in a module, by name; `None` if the struct does not exist.
 #[must_use]
 pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
     module.types.iter().find_map(|(_, ty)| match &ty.inner {

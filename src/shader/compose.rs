@@ -1,9 +1,9 @@
-//! Joining shader sources: pure text to text. A [`LineMap`] leads from a line of the composed text back to the
-//! author's file.
+//! Combines shader sources: pure text to text. A [`LineMap`] leads from a line of the composed text back to
+//! the author's file.
 //!
-//! Any file may import another one of the author's: the line `#import "noise.wgsl"`, with a path relative to the
-//! importing file's folder, puts that file before it, once per composed source however often it is imported. Of the
-//! built-in files, [`PANORAMA`] can be imported.
+//! Any file may import another file of the author: the line `#import "noise.wgsl"`, with a path relative to
+//! the importing file's folder, inserts that file before it, once per composed source however often it is
+//! imported. Of the built-in files, [`PANORAMA`] can be imported.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -14,7 +14,7 @@ use std::{
 use super::{Source, check::ShaderProblem, wgsl};
 use crate::parameter;
 
-/// The vocabulary of the models, in the order of need.
+/// The vocabulary of the models, in the order of dependencies.
 pub const OPTICS: &[Source] = &[
     wgsl!("terms.wgsl"),
     wgsl!("optics/fresnel.wgsl"),
@@ -30,9 +30,9 @@ pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 pub const PANORAMA: Source = wgsl!("optics/panorama.wgsl");
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
-/// Directions chosen at random, for light with extent.
+/// Random directions, for light with extent.
 pub const SAMPLING: Source = wgsl!("sampling.wgsl");
-/// The light loop where there is light with extent.
+/// The part of the light loop for light with extent.
 pub const EXTENDED: Source = wgsl!("extended.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
@@ -47,13 +47,13 @@ pub const SEEN: Source = wgsl!("seen.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 
-/// The entry point that evaluates a model alone.
+/// The entry point that evaluates a single model.
 pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 
-/// The generated part of the source of a light type alone, with the numbers of its files.
+/// The generated part of the source of a single light type, with the numbers of its files.
 pub const LIGHT_ALONE: &str = "(light type)";
 
-/// The generated parts of the source of a shading model alone.
+/// The generated parts of the source of a single shading model.
 pub const SHADING_ALONE: &str = "(shading model)";
 
 /// The texts of sources: edited copies by path, otherwise the built-in ones. Cloning is cheap: clones share the texts.
@@ -69,7 +69,7 @@ impl Sources {
         self.get(source.path).unwrap_or(source.text)
     }
 
-    /// The edited text of that path, if there is one.
+    /// The edited text with this path, if any.
     #[must_use]
     pub fn get(&self, path: &str) -> Option<&str> {
         self.edited.get(path).map(|text| &**text)
@@ -85,7 +85,7 @@ impl Sources {
         self.edited.remove(path);
     }
 
-    /// The paths that have an edited text.
+    /// The paths with an edited text.
     pub fn edited(&self) -> impl Iterator<Item = &str> {
         self.edited.keys().map(String::as_str)
     }
@@ -99,7 +99,7 @@ impl Sources {
     }
 }
 
-/// Leads from lines of a composed source back to files.
+/// Maps lines of a composed source to files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LineMap {
     /// First line (from 1) of each piece in the composed text, and the path of its file.
@@ -114,7 +114,8 @@ impl LineMap {
         Some((path, line - first + 1))
     }
 
-    /// The files of the composed text, in the order of need. Generated ones are in parentheses.
+    /// The files of the composed text, in the order of dependencies. Names of generated ones are in
+    /// parentheses.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         self.pieces.iter().map(|(_, path)| path.as_str())
     }
@@ -133,14 +134,14 @@ pub struct Composed {
     pub text: String,
     /// The origin of each line.
     pub map: LineMap,
-    /// The files named by `#import`, found or not: when one changes, so does this.
+    /// The files named by `#import`, found or not: a change of one of them changes the source.
     pub imports: BTreeSet<String>,
-    /// The first `#import` that could not be followed.
+    /// The first `#import` that could not be resolved.
     pub problem: Option<Box<ShaderProblem>>,
 }
 
 impl Composed {
-    /// True if this may change when a file changes.
+    /// True if the source may change when a file changes.
     #[must_use]
     pub fn depends_on(&self, path: &str) -> bool {
         self.map.has(path) || self.imports.contains(path)
@@ -222,7 +223,7 @@ impl<'a> Composer<'a> {
         self.push(path, &own);
     }
 
-    /// Adds the file that a line imports, unless it is there already.
+    /// Adds the file imported by a line, unless it was added before.
     fn import(&mut self, from: &str, at: usize, line: &str, name: &str) {
         let Some(path) = beside(from, name) else {
             return self.complain(from, at, line, &format!("`{name}` leads out of the folder of shaders"));
@@ -288,12 +289,12 @@ fn import_of(line: &str) -> Option<&str> {
     (rest.trim().is_empty() || rest.trim().starts_with("//") || rest.trim() == ";").then_some(name)
 }
 
-/// The paths of the files that a text imports; `path` is its own.
+/// The paths of the files imported by a text; `path` is the path of the text itself.
 pub(crate) fn imports_of<'a>(path: &'a str, text: &'a str) -> impl Iterator<Item = String> + 'a {
     text.lines().filter_map(import_of).filter_map(move |name| beside(path, name))
 }
 
-/// The path of a file named by another one, relative to the folder of that one; `None` if it leads out.
+/// The path of a file named in another one, relative to the folder of that one; `None` if it leads out.
 fn beside(from: &str, name: &str) -> Option<String> {
     let mut parts: Vec<_> = from.split('/').collect();
     parts.pop();

@@ -1,6 +1,6 @@
-//! The names in WGSL texts: the functions that a text defines, and the words that cannot be names.
+//! Names in WGSL texts: the functions that a text defines, and the words that cannot be names.
 
-/// The byte after a comment that starts at a byte with `/*`. Comments nest, as in WGSL.
+/// The byte after a comment whose `/*` is at a byte. Comments nest, as in WGSL.
 pub(crate) fn block_comment(text: &str, start: usize) -> Option<usize> {
     let bytes = text.as_bytes();
     let (mut at, mut depth) = (start, 0);
@@ -45,7 +45,7 @@ fn without_comments(text: &str) -> String {
     out
 }
 
-/// The functions that a WGSL text defines: the byte of each name, and the name.
+/// The functions defined by a WGSL text: the byte of each name, and the name.
 pub(crate) fn functions(text: &str) -> Vec<(usize, &str)> {
     let plain = without_comments(text);
     let word = |c: char| c.is_alphanumeric() || c == '_';
@@ -54,7 +54,7 @@ pub(crate) fn functions(text: &str) -> Vec<(usize, &str)> {
         let found = behind.trim_start();
         let length = found.find(|c| !word(c)).unwrap_or(found.len());
         let defines = !plain[..at].ends_with(word) && found.len() < behind.len() && length > 0;
-        // Without its comments the text is as long.
+        // Removing comments does not change the length.
         let at = plain.len() - found.len();
         defines.then(|| Some((at, text.get(at..at + length)?)))?
     });
@@ -66,7 +66,7 @@ pub(crate) fn definition(text: &str, name: &str) -> Option<usize> {
     functions(text).into_iter().find(|(_, defined)| *defined == name).map(|(at, _)| at)
 }
 
-/// True if WGSL allows a name: it has many reserved words.
+/// True if WGSL allows a name; it has many reserved words.
 pub(crate) fn allowed_in_wgsl(name: &str) -> bool {
     !naga::keywords::wgsl::RESERVED.contains(&name)
 }

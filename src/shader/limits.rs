@@ -1,12 +1,13 @@
 //! Limits on users' shaders, so that a short file neither crashes nor freezes the program.
 //!
-//! Parsers, validators and compilers of shaders recurse as deep as the code is nested, inline every call and lay out
-//! every array, without limits of their own, and a stack overflow ends the process. So a text is checked before it is
-//! parsed ([`check_text`]), and a module before it is validated ([`check_module`]) or given to a driver. All of this
-//! takes time proportional to the length of the text.
+//! Parsers, validators and compilers of shaders recurse as deep as the code is nested, inline every call and
+//! lay out every array, without limits of their own, and a stack overflow ends the process. A text is
+//! therefore checked before it is parsed ([`check_text`]), and a module before it is validated
+//! ([`check_module`]) or passed to a driver. All of this takes time proportional to the length of the text.
 //!
-//! The numbers: threads of Bevy and of rayon have stacks of 2 MiB, on which naga 29 and naga_oil 0.22 can recurse at
-//! least four times as deep as allowed here (the test `hostile` tries it); the shipped shaders stay five times below.
+//! The numbers: threads of Bevy and of rayon have stacks of 2 MiB, on which naga 29 and naga_oil 0.22 can
+//! recurse at least four times as deep as allowed here (tested by `hostile`); the shipped shaders stay five
+//! times below.
 
 use std::thread;
 
@@ -28,44 +29,45 @@ pub use closed::{is_empty, unfinished};
 /// Limits on a shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
+    /// Maximum size of a composed text, in bytes. The preprocessor has 21 bits for a position in it.
     pub bytes: usize,
-    /// The most tokens of a composed text.
+    /// Maximum number of tokens in a composed text.
     pub tokens: usize,
-    /// The most statements of a composed text.
+    /// Maximum number of statements in a composed text.
     pub statements: usize,
-    /// The most declarations of a composed text: functions, constants, types, variables.
+    /// Maximum number of declarations in a composed text: functions, constants, types, variables.
     pub declarations: usize,
-    /// The deepest nesting of brackets, including template lists.
+    /// Maximum nesting of brackets, including template lists.
     pub nesting: usize,
-    /// The most operators, calls and brackets on one path through an expression.
+    /// Maximum number of operators, calls and brackets on one path through an expression.
     pub depth: usize,
-    /// The deepest nesting of blocks; each `else if` counts as nested in the one before.
+    /// Maximum nesting of blocks; each `else if` counts as nested in the one before.
     pub blocks: usize,
-    /// The most values of `case` in a switch.
+    /// Maximum number of `case` values in a switch.
     pub cases: usize,
-    /// The longest chain of declarations that use each other.
+    /// Maximum length of a chain of declarations that use each other.
     pub chain: usize,
-    /// The most elements of an array.
+    /// Maximum number of elements in an array.
     pub elements: u64,
-    /// The most words of a constant or a type when everything in it is expanded.
+    /// Maximum number of words in a constant or a type when everything in it is expanded.
     pub expansion: u64,
-    /// The largest value or variable, bytes. Software Vulkan takes quadratic time: ten seconds for this much.
+    /// Maximum size of a value or variable, in bytes. Software Vulkan takes quadratic time: ten seconds for
+    /// this size.
     pub value_bytes: u32,
-    /// The most bytes of variables of a function, including the functions it calls, and of a module; and the same for
-    /// constants.
+    /// Maximum size of the variables of a function, including the functions that it calls, and of a module,
+    /// in bytes; also that of constants.
     pub variable_bytes: u64,
-    /// The most expressions of a function.
+    /// Maximum number of expressions in a function.
     pub expressions: usize,
-    /// The longest chain of expressions that use each other, through `let` as well.
+    /// Maximum length of a chain of expressions that use each other, including through `let`.
     pub values: usize,
-    /// The most steps of a function with all calls inlined, as drivers do.
+    /// Maximum number of steps in a function with all calls inlined, as drivers do.
     pub steps: u64,
-    /// The deepest nesting of loops.
+    /// Maximum nesting of loops.
     pub loops: usize,
 }
 
-/// The limits for models and other shaders of the laboratory.
+/// The limits for models and other shaders of the lab.
 pub const LIMITS: Limits = Limits {
     bytes: 1 << 20,
     tokens: 100_000,
@@ -86,13 +88,13 @@ pub const LIMITS: Limits = Limits {
     loops: 16,
 };
 
-/// The stack for parsing and checking anything within the limits, bytes: twice that of Bevy's threads.
+/// Stack size for parsing and checking anything within the limits, in bytes: twice that of Bevy's threads.
 const STACK: usize = 4 << 20;
 
 /// Checks a composed text before it is parsed.
 ///
 /// # Errors
-/// Anything beyond a limit, in terms of the author's file.
+/// Returns anything beyond a limit, in terms of the author's file.
 pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let text = &composed.text;
     let line_of = |at: usize| text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
@@ -107,19 +109,20 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
             let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
             locate(composed, Some((line_of(at), at - start + 1)), what)
         }
-        // The longest file makes up most of it.
+        // The longest file accounts for most of it.
         text::Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
     })
 }
 
-/// The first thing in a module that exceeds a limit: its place, and the message. The module need not be valid.
+/// The first thing in a module that exceeds a limit: its position, and the message. The module need not be
+/// valid.
 #[must_use]
 pub fn check_module(module: &Module) -> Option<(Span, String)> {
     module::check(module, &LIMITS).err()
 }
 
-/// Calls a function on a stack large enough for anything within the limits; `None` if it panics, or if there is no
-/// memory for the stack.
+/// Calls a function on a stack large enough for anything within the limits; `None` if it panics, or if the
+/// stack cannot be allocated.
 pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
     thread::scope(|scope| {
         let thread = thread::Builder::new().name("shader".to_owned()).stack_size(STACK);

@@ -15,14 +15,14 @@ pub mod whole;
 /// The WGSL source of one file under `assets/shaders/`, with its built-in copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Path below `assets/shaders/`, such as `reflection/phong.wgsl`; its name in messages.
+    /// Path below `assets/shaders/`, such as `reflection/phong.wgsl`; also its name in messages.
     pub path: &'static str,
     /// The text at build time.
     pub text: &'static str,
 }
 
 impl Source {
-    /// A file by its path below a folder of shaders, and its text: `include_str!("../shaders/light/lamp.wgsl")`.
+    /// A file by its path below a shader folder, with its text: `include_str!("../shaders/light/lamp.wgsl")`.
     #[must_use]
     pub const fn new(path: &'static str, text: &'static str) -> Self {
         Self { path, text }

@@ -1,4 +1,4 @@
-//! Errors allowed by WGSL but fatal to a picture: endless loops and divisions by a constant zero.
+//! Errors that WGSL allows, but that ruin a picture: endless loops and divisions by a constant zero.
 
 use std::{
     cell::RefCell,
@@ -10,7 +10,7 @@ use naga::{
     UnaryOperator,
 };
 
-/// The first such error in a module: its place, and the message.
+/// The first such error in a module: its position, and the message.
 #[must_use]
 pub fn find(module: &Module) -> Option<(Span, String)> {
     let functions = module.functions.iter().map(|(_, function)| function);
@@ -23,16 +23,16 @@ pub fn find(module: &Module) -> Option<(Span, String)> {
 /// The exits of a loop, and their conditions.
 #[derive(Default)]
 struct Exits {
-    /// It can be left at some place.
+    /// True if the loop can be left somewhere.
     some: bool,
-    /// It has an exit that another iteration may reach even if this one does not.
+    /// True if it has an exit that another iteration may reach even if this one does not.
     changing: bool,
 }
 
-/// The conditions of a place in a loop.
+/// The conditions of a position in a loop.
 #[derive(Clone, Copy)]
 struct Path {
-    /// True if some condition on the way to it may differ in the next iteration, or there is none.
+    /// True if a condition on the way to the position may differ in the next iteration, or if there is none.
     changing: bool,
     conditional: bool,
     /// True if `break` here leaves the loop, and not a `switch` in it.
@@ -58,12 +58,12 @@ impl Search<'_> {
         })
     }
 
-    /// True if an expression is zero, or a vector with a zero, for all parameters.
+    /// True if an expression is zero, or a vector with a zero component, for all parameters.
     fn is_zero(&self, handle: Handle<Expression>) -> bool {
         is_zero(&self.function.expressions, handle, self.module)
     }
 
-    /// The truth of a constant condition.
+    /// The value of a constant condition.
     fn always(&self, condition: Handle<Expression>) -> Option<bool> {
         let (mut at, mut negated) = (condition, false);
         while let Expression::Unary { op: UnaryOperator::LogicalNot, expr } = self.function.expressions[at] {
@@ -164,8 +164,9 @@ impl Search<'_> {
         }
     }
 
-    /// True if an expression may have another value in the next iteration of a loop that writes to these variables.
-    /// Values used twice are examined once: a chain of sums of a value with itself would double the work each time.
+    /// True if an expression may have another value in the next iteration of a loop that writes to these
+    /// variables. Values used twice are examined once: otherwise a chain of sums of a value with itself would
+    /// double the work each time.
     fn may_change(&self, handle: Handle<Expression>, written: &Written) -> bool {
         if let Some(known) = written.known.borrow().get(&handle) {
             return *known;
@@ -211,12 +212,12 @@ impl Search<'_> {
             Expression::Math { arg, arg1, arg2, arg3, .. } => {
                 change(arg) || [arg1, arg2, arg3].into_iter().flatten().any(change)
             }
-            // The answer of a function or the hardware may differ next time.
+            // The result of a function or of the hardware may differ next time.
             _ => true,
         }
     }
 
-    /// The variables written by some blocks.
+    /// The variables written in some blocks.
     fn written(&self, blocks: &[&Block]) -> Written {
         let mut written = Written::default();
         blocks.iter().for_each(|block| self.collect_written(block, &mut written));
@@ -254,7 +255,7 @@ impl Search<'_> {
         }
     }
 
-    /// Notes the variable that a pointer points into; other values are ignored.
+    /// Records the variable that a pointer points into; other values are ignored.
     fn note(&self, pointer: Handle<Expression>, written: &mut Written) {
         match &self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
@@ -275,7 +276,7 @@ impl Search<'_> {
 struct Written {
     locals: HashSet<Handle<LocalVariable>>,
     globals: HashSet<Handle<GlobalVariable>>,
-    /// Statements that are not examined: they may write anywhere.
+    /// True if there are statements that are not examined: they may write anywhere.
     anything: bool,
     /// The findings on values, see [`Search::may_change`].
     known: RefCell<HashMap<Handle<Expression>, bool>>,

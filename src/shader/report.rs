@@ -1,4 +1,4 @@
-//! Problems with shaders as shown to people: the message, file, line and column, the line itself and a caret below the
+//! Shader problems for display: the message, file, line and column, the line itself and a caret below the
 //! character in question.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -6,13 +6,14 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use super::check::ShaderProblem;
 use crate::files::printable;
 
-/// A problem as several lines of plain text. `file` is the reader's name for the file: its path on disk if it has one.
+/// A problem as several lines of plain text. `file` is the file name for the reader: its path on disk if it
+/// has one.
 #[must_use]
 pub fn annotated(problem: &ShaderProblem, file: &str) -> String {
     rendered(problem, file, &Renderer::plain())
 }
 
-/// The same in terminal colours.
+/// The problem in terminal colours.
 #[must_use]
 pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
     rendered(problem, file, &Renderer::styled())
@@ -61,7 +62,7 @@ mod tests {
         let caret = lines.iter().find(|l| l.contains('^')).expect("has a caret");
         assert_eq!(at(caret, '^'), at(source, 'β'), "{text}");
         assert!(!text.contains('\u{1b}') && coloured(&problem, "a").contains('\u{1b}'));
-        // Beyond the line, and in an empty one.
+        // Beyond the end of the line, and in an empty one.
         problem.column = 99;
         assert!(annotated(&problem, "a").contains("there is no"));
         problem.source.clear();

@@ -1,7 +1,7 @@
-//! Texts without the parts that cost the composer time: comments, indentation, and lines.
+//! Removes the parts of texts that cost the composer time: comments, indentation, and lines.
 
-/// An equivalent text without comments and indentation, and with few lines, each of which costs the composer time.
-/// Places in it differ from those in the original.
+/// An equivalent text without comments and indentation, and with few lines, each of which costs the composer
+/// time. Positions in it differ from those in the original.
 #[must_use]
 pub fn slim(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -22,7 +22,7 @@ pub fn slim(text: &str) -> String {
     out
 }
 
-/// A text without comments and indentation; lines stay where they are.
+/// A text without comments and indentation; lines keep their positions.
 fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     // The number of open `/*`: they nest.

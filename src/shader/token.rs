@@ -1,7 +1,8 @@
-//! The tokens of a WGSL text, as far as limits and messages need them: flat, in one pass, for any text.
+//! The tokens of a WGSL text, as far as limits and messages need them: a flat list, in one pass, for any
+//! text.
 //!
-//! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are refused,
-//! so nothing visible to them is hidden here.
+//! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are
+//! refused, so nothing visible to them is hidden here.
 
 use std::ops::ControlFlow;
 
@@ -10,9 +11,9 @@ use std::ops::ControlFlow;
 pub(super) struct Token<'a> {
     pub kind: Kind,
     pub text: &'a str,
-    /// Its first byte.
+    /// First byte of the token.
     pub at: usize,
-    /// For the start of a template list, the number of the token that ends it.
+    /// For the start of a template list, the index of the token that ends it.
     pub end: usize,
 }
 
@@ -32,13 +33,13 @@ pub(super) enum Kind {
     Colon,
     Dot,
     Attribute,
-    /// The rest, one for each operator.
+    /// All other operators.
     Operator,
-    /// A line of the preprocessor: `if…`, `else…`, `endif…`.
+    /// A preprocessor directive: `if…`, `else…`, `endif…`.
     Directive,
 }
 
-/// The longest name, bytes.
+/// Maximum length of a name, in bytes.
 const LONGEST_WORD: usize = 256;
 
 /// A problem at a byte.
@@ -58,9 +59,9 @@ struct Scanner<'a> {
     /// The tokens `<` that may begin a template list, with the brackets around them.
     pending: Vec<(usize, usize)>,
     brackets: usize,
-    /// Only white space so far in this line.
+    /// True while the line contains only white space so far.
     line_begins: bool,
-    /// The rest of the line belongs to the preprocessor.
+    /// True if the rest of the line belongs to the preprocessor.
     directive: bool,
     open_comment: Option<usize>,
 }
@@ -90,7 +91,7 @@ impl<'a> Scanner<'a> {
         self.text.as_bytes().get(self.at + ahead).copied().unwrap_or(0)
     }
 
-    /// One token, comment or stretch of white space.
+    /// Reads one token, comment or stretch of white space.
     fn step(&mut self) -> ControlFlow<Finding> {
         let start = self.at;
         match (self.byte(0), self.byte(1)) {
@@ -163,14 +164,14 @@ impl<'a> Scanner<'a> {
         self.tokens.push(Token { kind, text, at: start, end: 0 });
     }
 
-    /// The code within the innermost brackets can no longer begin a template list.
+    /// Drops pending `<` when the code in the innermost brackets can no longer begin a template list.
     fn drop_pending(&mut self) {
         while self.pending.last().is_some_and(|(_, brackets)| *brackets >= self.brackets) {
             self.pending.pop();
         }
     }
 
-    /// Advances past the next token; `None` at a character that is no token.
+    /// Advances past the next token; `None` at an invalid character.
     fn advance(&mut self) -> Option<Kind> {
         let (first, second) = (self.byte(0), self.byte(1));
         let closes = self.pending.last().is_some_and(|(_, brackets)| *brackets == self.brackets);
@@ -205,7 +206,7 @@ impl<'a> Scanner<'a> {
         while let Some(b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'_' | 0x80..) = bytes.get(self.at) {
             self.at += 1;
         }
-        // The text is UTF-8, and only whole characters were taken.
+        // The text is UTF-8, and only whole characters were read.
         let word = &self.text[start..self.at];
         if !word.is_ascii() && word.contains(|c: char| separates(c) || c.is_whitespace()) {
             return None;
@@ -249,7 +250,7 @@ impl<'a> Scanner<'a> {
         ControlFlow::Continue(())
     }
 
-    /// Comments nest. One that is not closed hides the rest.
+    /// Skips a comment. Comments nest; one that is not closed hides the rest.
     fn block_comment(&mut self) {
         let bytes = self.text.as_bytes();
         let start = self.at;
@@ -275,7 +276,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The preprocessor ignores comments between quotation marks.
+    /// Reads a quotation, in which the preprocessor ignores comments.
     fn quotation(&mut self) -> ControlFlow<Finding> {
         let rest = &self.text[self.at + 1..];
         let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
@@ -295,7 +296,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// A line of the preprocessor, or the name of a value that it puts in.
+    /// Reads a preprocessor directive, or the name of a value that it inserts.
     fn hash(&mut self) {
         let start = self.at;
         self.at += 1;
@@ -318,12 +319,12 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// White space and line ends of WGSL beyond ASCII.
+/// True for white space and line ends of WGSL beyond ASCII.
 fn separates(c: char) -> bool {
     matches!(c, '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
 }
 
-/// Those of them that do not end a line.
+/// True for those of them that do not end a line.
 fn joins(c: char) -> bool {
     matches!(c, '\u{200e}' | '\u{200f}')
 }

@@ -1,12 +1,12 @@
-//! Checking composed sources that draw, wrapper included, without a renderer: the wrapper's imports from Bevy are
-//! replaced by functions with the same signatures.
+//! Checks composed sources for drawing, wrapper included, without a renderer: the wrapper's imports from Bevy
+//! are replaced by functions with the same signatures.
 
 use super::{
     check::{ShaderProblem, validate},
     compose::Composed,
 };
 
-/// The wrapper's imports, and their stand-ins.
+/// The wrapper's imports, and their replacements.
 const IMPORTS: &[(&str, &str)] = &[
     (
         "bevy_pbr::mesh_functions",
@@ -32,16 +32,16 @@ var<private> view: BevyView;
     ),
 ];
 
-/// Checks a source that draws; `faces` as for shading models that calculate per polygon. A source that uses more of
-/// Bevy than the shipped wrapper cannot be judged here and passes.
+/// Checks a source for drawing; `faces` as for shading models that calculate per polygon. A source that uses
+/// more of Bevy than the shipped wrapper cannot be judged here and passes.
 ///
 /// # Errors
-/// The first problem, located in the author's file.
+/// Returns the first problem, located in the author's file.
 pub fn validate_drawing(composed: &Composed, faces: bool) -> Result<(), Box<ShaderProblem>> {
     judged(composed, faces).unwrap_or(Ok(()))
 }
 
-/// As [`validate_drawing`]; `None` if it cannot be judged here.
+/// Like [`validate_drawing`]; `None` if the source cannot be judged here.
 pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderProblem>>> {
     if let Some(problem) = &composed.problem {
         return Some(Err(problem.clone()));
@@ -50,7 +50,7 @@ pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderP
     Some(validate(&Composed { text, ..composed.clone() }).map(drop))
 }
 
-/// The text without preprocessor directives; places stay the same.
+/// The text without preprocessor directives; positions stay the same.
 pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
     let mut out = String::with_capacity(text.len() + 512);
     let mut stand_ins = String::new();
@@ -125,7 +125,7 @@ mod tests {
         let alone = registry.lights().chunks(1);
         for lights in alone.chain([registry.lights(), &[]]) {
             let composed = compose_seen(&Sources::default(), lights);
-            // Nothing is drawn with a scene that has no light with extent.
+            // Without light with extent, nothing is drawn.
             if lights.iter().any(|light| light.declaration.extent) {
                 assert_eq!(validate_drawing(&composed, false), Ok(()), "{}", lights[0].declaration.id);
             }
@@ -147,7 +147,7 @@ mod tests {
         assert!(
             problem("loop.wgsl", "fn illuminate( {", "phong").expect("is broken").starts_with("loop.wgsl:1:")
         );
-        // More of Bevy than is known here is not judged.
+        // A source that uses more of Bevy is not judged.
         assert_eq!(problem("wrapper.wgsl", &format!("#import bevy_pbr::shadows\n{broken}"), "flat"), None);
     }
 }

@@ -1,4 +1,5 @@
-//! Declarations of shading models, step by step: another field of [`Declaration`] changes none of them.
+//! Builder methods for declarations of shading models: adding a field to [`Declaration`] does not break
+//! existing declarations.
 
 use super::{Declaration, Stage};
 use crate::shader::Source;
@@ -19,13 +20,13 @@ impl Declaration {
         Self { id, name, author: "", source: "", summary: "", stage, key, wgsl }
     }
 
-    /// The same with author and year, in short, and the publication.
+    /// Sets author and year, in short, and the publication.
     #[must_use]
     pub const fn published(self, author: &'static str, source: &'static str) -> Self {
         Self { author, source, ..self }
     }
 
-    /// The same with its method and what to look for, in one or two sentences.
+    /// Sets the summary: the method and what to look for, in one or two sentences.
     #[must_use]
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }

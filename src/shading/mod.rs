@@ -26,7 +26,7 @@ pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use phong::PhongShading;
 
-/// The shader that is drawn with instead of a broken one.
+/// The fallback for a broken shader.
 pub(crate) const STAND_IN: Source = wgsl!("shading/phong.wgsl");
 
 /// Receives shading models one after the other.
@@ -35,7 +35,7 @@ pub trait Take {
     fn take<T: ShadingModel>(&mut self);
 }
 
-/// The built-in shading models, in the order of all lists: the one list.
+/// Registers the built-in shading models, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Flat>();
     to.take::<Gouraud>();
@@ -55,7 +55,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// "per polygon", "per vertex" or "per pixel".
+    /// The stage in words: "per polygon", "per vertex" or "per pixel".
     #[must_use]
     pub fn phrase(self) -> &'static str {
         match self {
@@ -70,21 +70,22 @@ impl Stage {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Declaration {
-    /// The name in scene files.
+    /// Name in scene files.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
     /// Author and year.
     pub author: &'static str,
     /// Author, year, title and place of publication.
     pub source: &'static str,
-    /// Its method and what to look for, in one or two sentences.
+    /// The method and what to look for, in one or two sentences.
     pub summary: &'static str,
     /// The stage that evaluates the reflection model.
     pub stage: Stage,
-    /// The key that selects it in the window.
+    /// Key that selects it in the window.
     pub key: char,
-    /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`. `shading_parameters()` has the parameters by name.
+    /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`. `shading_parameters()` returns the
+    /// parameters by name.
     pub wgsl: Source,
 }
 
@@ -95,7 +96,8 @@ pub trait Lighting {
     /// any length and angle to it, or zero; see [`Frame::new`](crate::optics::Frame::new).
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3;
 
-    /// Says that the colours that follow are those of a pixel: light with extent is sampled in another way for each.
+    /// Announces that the following colours belong to a pixel: light with extent is sampled differently for
+    /// each pixel.
     fn begin_pixel(&self, _x: u32, _y: u32) {}
 }
 
@@ -106,7 +108,7 @@ pub struct Corner {
     pub position: Vec3,
     /// The vertex normal, CA DD9.
     pub normal: Vec3,
-    /// The tangent of the vertex: the direction in which the surface is brushed. Zero if there is none, and in the CPU
+    /// The tangent of the vertex: the brush direction of the surface. Zero without one, and in the CPU
     /// renderer for isotropic models.
     pub tangent: Vec3,
     /// The normal of the polygon, CA DD8.
@@ -130,14 +132,14 @@ pub struct Varying {
     pub colour: Vec3,
 }
 
-/// A shading model: the points at which the light loop runs, with their normals and tangents. Its parameters stand in
-/// the material of objects, beside those of reflection models, and are shared with these by name.
+/// A shading model: the points at which the light loop runs, with their normals and tangents. Its parameters
+/// are in the materials of objects, next to those of reflection models, with which they are shared by name.
 pub trait ShadingModel: ParameterSet {
     /// Name, source, stage, shader.
     const DECLARATION: Declaration;
 
-    /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be the same at all corners of
-    /// one polygon except for `position`.
+    /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be equal at all
+    /// corners of a polygon except for `position`.
     fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying;
 
     /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.
@@ -163,9 +165,9 @@ impl<S: ShadingModel> Shading for S {
     }
 }
 
-/// The name of the struct of parameters in WGSL, which `shading_parameters()` returns.
+/// The name of the parameter struct in WGSL, which `shading_parameters()` returns.
 pub(crate) const PARAMETERS: &str = "ShadingParameters";
-/// The room for parameters in the row of an object, in numbers: a colour takes three.
+/// Space for parameters in the row of an object, in numbers: a colour takes three.
 pub const PARAMETER_WORDS: usize = 16;
 
 /// A registered shading model.
@@ -173,9 +175,9 @@ pub const PARAMETER_WORDS: usize = 16;
 pub struct ShadingEntry {
     /// Name, source, stage, shader.
     pub declaration: &'static Declaration,
-    /// Its parameters.
+    /// Parameters of the shading model.
     pub parameters: &'static [Parameter],
-    /// The shading model with the parameters of one object.
+    /// Creates the shading model with the parameters of one object.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Shading>,
 }
 
@@ -190,7 +192,7 @@ impl ShadingEntry {
         }
     }
 
-    /// The parameter with that name, if the shading model has it.
+    /// The parameter with this name, if the shading model has it.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)

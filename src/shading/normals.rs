@@ -42,9 +42,9 @@ pub fn vertex_normals<'a>(
     sums.into_iter().map(Vec3::normalize_or_zero).collect()
 }
 
-/// The unit tangent of a polygon with a unit normal, brushed along a direction that need not lie in its plane. Where
-/// that direction is zero or along the normal, the polygon is brushed horizontally, `y × n`; where the polygon is
-/// itself horizontal, along x.
+/// The unit tangent of a polygon with a unit normal, for a brush direction that need not lie in its plane. If
+/// the brush direction is zero or along the normal, the polygon is brushed horizontally, `y × n`, and a
+/// horizontal polygon along x.
 #[must_use]
 pub fn polygon_tangent(brushed: Vec3, normal: Vec3) -> Vec3 {
     [brushed, Vec3::Y.cross(normal), Vec3::X]
@@ -55,13 +55,14 @@ pub fn polygon_tangent(brushed: Vec3, normal: Vec3) -> Vec3 {
         .map_or(Vec3::ZERO, Vec3::normalize_or_zero)
 }
 
-/// The length of a vertex tangent between polygons brushed in different directions.
+/// Minimum length of a vertex tangent between polygons brushed in different directions.
 const DISPUTED: f32 = 1e-3;
 
 /// Vertex tangents: the normalised unweighted mean of the tangents of all polygons that share the vertex, as
-/// [`vertex_normals`] does for normals. Zero where they cancel: at a pole, around which they run. Short where they are
-/// at right angles or more, as at an edge between two faces brushed differently: interpolated, such a tangent yields to
-/// those of the other corners, so that each face is brushed uniformly up to the edge.
+/// [`vertex_normals`] does for normals. Zero where they cancel: at a pole, around which they run. Short where
+/// they are at right angles or more, as at an edge between two faces brushed differently: in interpolation
+/// such a tangent has less weight than those of the other corners, so that each face is brushed uniformly up
+/// to the edge.
 #[must_use]
 pub fn vertex_tangents<'a>(
     vertex_count: usize,

@@ -1,11 +1,12 @@
-//! Declarations of object types, step by step: another field of [`Declaration`] changes none of them.
+//! Builder methods for declarations of object types: adding a field to [`Declaration`] does not break
+//! existing declarations.
 
 use std::ops::RangeInclusive;
 
 use super::Declaration;
 
 impl Declaration {
-    /// An object type with an id and a name, and one tessellation.
+    /// An object type with an id, a name, and a single tessellation.
     ///
     /// ```
     /// use lights_camera_models::shape::Declaration;
@@ -26,19 +27,19 @@ impl Declaration {
         }
     }
 
-    /// The same with one sentence about its shape and use.
+    /// Sets a one-sentence summary of the shape and its use.
     #[must_use]
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }
     }
 
-    /// The same with a glyph for lists.
+    /// Sets the glyph for lists.
     #[must_use]
     pub const fn glyph(self, glyph: &'static str) -> Self {
         Self { glyph, ..self }
     }
 
-    /// The same with several tessellations, and the meaning of the number.
+    /// Sets the range of tessellations, and the meaning of the number.
     #[must_use]
     pub const fn tessellation(self, range: RangeInclusive<u32>, default: u32, help: &'static str) -> Self {
         Self { tessellation: range, default_tessellation: default, tessellation_help: help, ..self }

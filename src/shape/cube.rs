@@ -28,7 +28,7 @@ impl ObjectType for Cube {
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let n = tessellation.max(1);
         let mut mesh = PolygonMesh::default();
-        // Vertices are identified by their place on a lattice, so neighbouring faces share them.
+        // Vertices are identified by their position on a lattice, so neighbouring faces share them.
         let mut known: HashMap<UVec3, u32> = HashMap::new();
         for axis in 0..3 {
             for high in [false, true] {
@@ -42,7 +42,7 @@ impl ObjectType for Cube {
                         (mesh.positions.len() - 1) as u32
                     })
                 };
-                // Along x where that lies in the face, so that most neighbours agree; otherwise horizontally.
+                // Along x where that is in the face, so that most neighbours agree; otherwise horizontally.
                 let along = if axis == 0 { Vec3::ZERO } else { Vec3::X };
                 let mut squares = Vec::with_capacity((n * n) as usize);
                 for u in 0..n {
@@ -95,7 +95,7 @@ mod tests {
             let expected = if n.x.abs() > 0.5 { Vec3::Y.cross(n) } else { Vec3::X };
             assert!((mesh.polygon_tangents()[i] - expected).length() < 1e-5);
             let corners = mesh.polygons[i].corners();
-            // In the middle of both triangles, including those without a vertex inside the face.
+            // In the centre of both triangles, including those without a vertex inside the face.
             for triangle in mesh.polygons[i].triangles() {
                 let mean: Vec3 = triangle.iter().map(|&c| vertices[corners[c] as usize]).sum();
                 assert!((polygon_tangent(mean, n) - expected).length() < 0.01, "{mean} {n}");

@@ -14,9 +14,9 @@ use crate::{
     parameter::{Parameter, ParameterKind, TypeComponent, Value, Values, words},
 };
 
-/// A tessellation fine enough to tell the space that a shape takes.
+/// A tessellation fine enough to determine the bounds of a shape.
 const COARSE: u32 = 8;
-/// The most parameters whose bounds are kept: more than a scene has objects.
+/// Maximum number of parameter sets with stored bounds: more than a scene has objects.
 const KEPT: usize = 1 << 14;
 
 /// A registered object type, in the form used by the rest of the program.
@@ -24,12 +24,12 @@ const KEPT: usize = 1 << 14;
 pub struct ShapeEntry {
     /// Name and tessellation.
     pub declaration: &'static Declaration,
-    /// Its parameters.
+    /// Parameters of the type.
     pub parameters: &'static [Parameter],
-    /// Its component.
+    /// Component of the type.
     pub component: TypeComponent,
     mesh: fn(&Values, u32) -> PolygonMesh,
-    /// Bounds by parameters: many objects are asked for theirs in every frame.
+    /// Bounds by parameters: they are requested for many objects in every frame.
     bounds: Arc<Mutex<HashMap<Vec<u32>, Bounds>>>,
 }
 
@@ -41,12 +41,12 @@ pub struct MeshKey {
     tessellation: u32,
 }
 
-/// The space that an object of size 1 takes around its position.
+/// The bounds of an object of size 1 around its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
-    /// Half the extents of the box around it.
+    /// Half the extents of the bounding box.
     pub half: Vec3,
-    /// The radius of the sphere around it.
+    /// Radius of the bounding sphere.
     pub radius: f32,
 }
 
@@ -63,7 +63,7 @@ impl ShapeEntry {
         }
     }
 
-    /// The parameter with that name, if the type has it.
+    /// The parameter with this name, if the type has it.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)
@@ -76,8 +76,8 @@ impl ShapeEntry {
         wanted.unwrap_or(self.declaration.default_tessellation).clamp(*range.start(), *range.end())
     }
 
-    /// The mesh for parameters and a tessellation, which is clamped to the legal range. Parameters that are absent or
-    /// illegal have their defaults.
+    /// The mesh for parameters and a tessellation, which is clamped to the legal range. Missing or illegal
+    /// parameters have their defaults.
     #[must_use]
     pub fn mesh(&self, parameters: &Values, tessellation: u32) -> PolygonMesh {
         (self.mesh)(parameters, self.tessellation(Some(tessellation)))
@@ -93,7 +93,7 @@ impl ShapeEntry {
         }
     }
 
-    /// The space that an object with these parameters takes.
+    /// The bounds of an object with these parameters.
     #[must_use]
     pub fn bounds(&self, parameters: &Values) -> Bounds {
         let mut known = self.bounds.lock().unwrap_or_else(PoisonError::into_inner);
@@ -109,7 +109,7 @@ impl ShapeEntry {
         })
     }
 
-    /// The parameters as the type gets them, bit by bit; of files, the version of their numbers.
+    /// The bits of the parameters as passed to the type; for files, the version of their numbers.
     fn words(&self, parameters: &Values) -> Vec<u32> {
         let mut words = words(self.parameters, parameters, Encoding::Srgb);
         for p in self.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::File { .. })) {
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(key(&default, None), key(&tube(0.15), Some(32)));
         assert_ne!(key(&default, None), key(&tube(0.16), None));
         assert_ne!(key(&default, None), key(&default, Some(33)));
-        // Illegal values and those of other types count for nothing.
+        // Illegal values and those of other types are ignored.
         assert_eq!(key(&default, None), key(&tube(7.0), Some(32)));
         let other = Values([("cone_angle".into(), Value::Number(3.0))].into());
         assert_eq!(key(&default, None), key(&other, None));

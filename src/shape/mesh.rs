@@ -15,7 +15,7 @@ pub struct PolygonMesh {
     pub polygons: Vec<Polygon>,
 }
 
-/// A polygon of three or four corners, the direction in which it is brushed, and perhaps normals of its own.
+/// A polygon of three or four corners, its brush direction, and possibly explicit normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polygon {
     corners: [u32; 4],
@@ -49,15 +49,15 @@ impl Polygon {
         Self { corners, count: count as u8, brushed: Vec3::ZERO, normals: [Vec3::ZERO; 4] }
     }
 
-    /// The polygon, brushed along a direction, which matters to anisotropic models. Without one, it is brushed
-    /// horizontally.
+    /// The polygon with a brush direction, for anisotropic models. Without one, it is brushed horizontally.
     #[must_use]
     pub const fn brushed(self, direction: Vec3) -> Self {
         Self { brushed: direction, ..self }
     }
 
-    /// The polygon with the unit normals that the surface has at its corners, for shapes that know them better than
-    /// their polygons do. Zero is none. Polygons that share a vertex should agree on its normal: it has their mean.
+    /// The polygon with the unit normals of the surface at its corners, for shapes that know them better than
+    /// their polygons do. Zero stands for none. Polygons that share a vertex should agree on its normal,
+    /// which is their mean.
     #[must_use]
     pub const fn with_normals(self, normals: [Vec3; 4]) -> Self {
         Self { normals, ..self }
@@ -81,7 +81,7 @@ impl Polygon {
 }
 
 impl PolygonMesh {
-    /// True if some polygon has [normals of its own](Polygon::with_normals).
+    /// True if any polygon has [explicit normals](Polygon::with_normals).
     #[must_use]
     pub fn has_own_normals(&self) -> bool {
         self.polygons.iter().any(|polygon| polygon.normals.iter().any(|normal| *normal != Vec3::ZERO))
@@ -129,7 +129,8 @@ impl PolygonMesh {
             .collect()
     }
 
-    /// The normal of every vertex, CA DD9; that of the surface where polygons [have it](Polygon::with_normals).
+    /// The normal of every vertex, CA DD9; that of the surface where polygons [have
+    /// it](Polygon::with_normals).
     #[must_use]
     pub fn vertex_normals(&self) -> Vec<Vec3> {
         let normals = self.polygon_normals();
@@ -148,14 +149,14 @@ impl PolygonMesh {
         means
     }
 
-    /// The tangent of every polygon: the direction in which it is brushed, in its plane.
+    /// The tangent of every polygon: the brush direction in its plane.
     #[must_use]
     pub fn polygon_tangents(&self) -> Vec<Vec3> {
         let normals = self.polygon_normals();
         self.polygons.iter().zip(normals).map(|(p, n)| polygon_tangent(p.brushed, n)).collect()
     }
 
-    /// The tangent of every vertex: the mean of those of its polygons, zero at a pole.
+    /// The tangent of every vertex: the mean of the tangents of its polygons, zero at a pole.
     #[must_use]
     pub fn vertex_tangents(&self) -> Vec<Vec3> {
         let tangents = self.polygon_tangents();
@@ -173,8 +174,9 @@ impl PolygonMesh {
         }
     }
 
-    /// A surface of height 1 from pole to pole of the y axis. `outline` has the distance from the axis and the height of
-    /// each row between them, from above; `parallel` the x and −z of the points around, at distance 1.
+    /// A surface of height 1 from pole to pole of the y axis. `outline` contains the distance from the axis
+    /// and the height of each row between them, from above; `parallel` contains the x and −z of the points
+    /// around the axis, at distance 1.
     #[must_use]
     pub fn between_poles(outline: impl Iterator<Item = Vec2>, parallel: &[Vec2]) -> Self {
         let mut rows = vec![vec![Vec3::Y * 0.5]];
@@ -187,13 +189,13 @@ impl PolygonMesh {
         mesh
     }
 
-    /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral between each four
-    /// neighbours. Seen from outside, rows follow each other downwards and each runs from left to right. A row of one
-    /// point is a pole, where triangles meet. With `ring` the last row is joined to the first. The polygons are brushed
-    /// along the rows.
+    /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral between
+    /// each four neighbours. Seen from outside, rows follow each other downwards and each runs from left to
+    /// right. A row of one point is a pole, where triangles meet. With `ring` the last row is joined to the
+    /// first. The polygons are brushed along the rows.
     ///
     /// # Panics
-    /// If rows other than poles differ in length, or a row is empty: an error of the shape's author.
+    /// Panics if rows other than poles differ in length, or a row is empty: an error of the shape's author.
     pub fn append_loops(&mut self, rows: &[Vec<Vec3>], ring: bool) {
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let mut starts = Vec::with_capacity(rows.len());

@@ -34,7 +34,7 @@ pub trait Take {
     fn take<T: ObjectType>(&mut self);
 }
 
-/// The built-in object types, in the order of all lists: the one list.
+/// Registers the built-in object types, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Sphere>();
     to.take::<Cube>();
@@ -48,11 +48,11 @@ pub fn register_builtin(to: &mut impl Take) {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Declaration {
-    /// The name in scene files.
+    /// Name in scene files.
     pub id: &'static str,
-    /// The name shown to people.
+    /// Display name.
     pub name: &'static str,
-    /// One sentence: its shape and its use.
+    /// One sentence: the shape and its use.
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
@@ -60,12 +60,13 @@ pub struct Declaration {
     pub tessellation_help: &'static str,
     /// The legal tessellations.
     pub tessellation: RangeInclusive<u32>,
-    /// The tessellation if the scene gives none.
+    /// Default tessellation.
     pub default_tessellation: u32,
 }
 
-/// An object type: a struct of parameters, written by [`parameters!`](crate::parameters), that creates a mesh of
-/// polygons whose largest extent is 1, centred on the origin. It is a component of the entities of the type.
+/// An object type: a parameter struct, defined with [`parameters!`](crate::parameters), that creates a mesh
+/// of polygons whose largest extent is 1, centred on the origin. It is a component of the entities of the
+/// type.
 pub trait ObjectType: ParameterSet + Component + Reflectable {
     /// Name and tessellation.
     const DECLARATION: Declaration;
@@ -86,8 +87,8 @@ mod tests {
         testing::meshes::{self, Case, Findings},
     };
 
-    /// Every type at both ends of the ranges of its tessellation and of its parameters, at their defaults, and at all
-    /// that can be made of these; with a name of the case.
+    /// Visits every type at both ends of the ranges of its tessellation and of its parameters, at their
+    /// defaults, and at all combinations of these; with a name for the case.
     fn each(mut visit: impl FnMut(&str, &str, &Case)) {
         for shape in Registry::builtin().shapes() {
             let id = shape.declaration.id;
@@ -134,7 +135,7 @@ mod tests {
             let coarse_teapot = teapot && n == 2;
             // The teapot's lid and rim (4 n each) and the ends of handle and spout (2 n each).
             assert_eq!(found.open_edges as u32, if teapot { 16 * n } else { 0 }, "{name}");
-            // A thin torus has little of it.
+            // A thin torus contains little of it.
             let least = if id == "torus" && number(values, "tube_radius") < 0.1 { 0.001 } else { 0.03 };
             assert!(found.volume > least, "{name}: {}", found.volume);
             assert_eq!((found.no_normal, found.no_tangent), (0, 0), "{name}");
@@ -144,12 +145,12 @@ mod tests {
             if n <= 64 {
                 assert!(found.doubled <= usize::from(teapot), "{name}: {}", found.doubled);
             }
-            // With the lip fold its vertices.
+            // Where the lip folds, so do its vertices.
             if coarse_teapot {
                 return;
             }
             let expected = match id {
-                // All edges but the four along x.
+                // All edges except the four along x.
                 "cube" => (0, 8 * n as usize),
                 // Four vertices around: their polygons face four sides.
                 "sphere" => (2, if n == 2 { 4 } else { 0 }),

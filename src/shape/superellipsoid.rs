@@ -8,7 +8,7 @@ use crate::{
     parameters,
 };
 
-/// The exponent of the outline from the side.
+/// The exponent of the outline seen from the side.
 const VERTICAL: Parameter = Parameter {
     name: "vertical_exponent",
     symbol: "ε_1",
@@ -19,7 +19,7 @@ const VERTICAL: Parameter = Parameter {
     used_when: None,
 };
 
-/// The exponent of the outline from above.
+/// The exponent of the outline seen from above.
 const HORIZONTAL: Parameter = Parameter {
     name: "horizontal_exponent",
     symbol: "ε_2",
@@ -114,7 +114,7 @@ mod tests {
                     mesh.positions.iter().map(|p| (inside_outside(of, *p) - 1.0).abs()).fold(0.0, f64::max)
                 };
                 assert!(worst(&s) < 2e-5, "{s:?}: {}", worst(&s));
-                // The wrong twin: the exponents exchanged.
+                // The wrong twin: the exponents swapped.
                 let twin = of(horizontal, vertical);
                 assert!(s == twin || worst(&twin) > 0.01, "{s:?}");
             }

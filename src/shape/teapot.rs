@@ -97,8 +97,8 @@ fn bernstein(t: f32) -> [f32; 4] {
     [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
 }
 
-/// The rows of a chain of patches over control rows: for each step along the chain, the blend of four control rows. The
-/// first row of each further patch is the last of the one before.
+/// The rows of a chain of patches over control rows: for each step along the chain, the blend of four control
+/// rows. The first row of each additional patch is the last of the one before.
 fn along<R, B>(rows: &[R], steps: usize, blend: impl Fn(&[R], [f32; 4]) -> B) -> Vec<B> {
     let patches = rows.len() / 3;
     (0..=patches * steps)
@@ -124,7 +124,7 @@ fn turned(rings: &[Ring], steps: usize) -> Vec<Vec<Vec3>> {
                 Vec2::new((a + b) * radius + c * handle, b * handle + (c + d) * radius)
             })
             .collect();
-        // Anticlockwise seen from above: +x, −z, −x, +z. Turning by swapping keeps symmetry exact.
+        // Anticlockwise seen from above: +x, −z, −x, +z. Rotation by swapping preserves exact symmetry.
         let turns: [fn(Vec2) -> Vec2; 4] = [|p| p, Vec2::perp, |p| -p, |p| -p.perp()];
         turns
             .into_iter()
@@ -198,7 +198,7 @@ mod tests {
         let right = mesh.positions.iter().max_by(|a, b| a.x.total_cmp(&b.x)).expect("has vertices");
         let left = mesh.positions.iter().min_by(|a, b| a.x.total_cmp(&b.x)).expect("has vertices");
         let top = mesh.positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).expect("has vertices");
-        // The spout's lip is high above the middle; the handle's outermost point is not.
+        // The spout's lip is high above the centre; the handle's outermost point is not.
         assert!(right.y > 0.1 && left.y < right.y, "{right} {left}");
         assert!(top.x.abs() < 0.05 && top.z.abs() < 0.05, "{top}");
     }
@@ -214,7 +214,7 @@ mod tests {
         for (centre, normal) in centres[body.clone()].iter().zip(&normals[body]) {
             assert!(centre.with_y(0.0).dot(*normal) > 0.0, "{centre} {normal}");
         }
-        // Handle and spout: away from the middle of their cross-section.
+        // Handle and spout: away from the centre of their cross-section.
         for start in [24 * n * n, 28 * n * n] {
             for row in 0..2 * n {
                 let from = start + row * 2 * n;
@@ -234,7 +234,7 @@ mod tests {
         let mouth = rows.last().expect("has rows");
         assert!((mouth[0] - Vec3::new(2.8, 2.4, 0.0)).length() < 1e-6);
         assert!((mouth[4] - Vec3::new(3.2, 2.4, 0.0)).length() < 1e-6);
-        // The middle of a half circle of control width w is 3/4 w wide.
+        // The centre of a half circle of control width w is 3/4 w wide.
         assert!((mouth[2].z + 0.75 * 0.15).abs() < 1e-6);
     }
 

@@ -29,7 +29,7 @@ parameters! {
 }
 
 impl Torus {
-    /// Radius of the circle that the tube's centre follows.
+    /// Radius of the circle along which the tube's centre runs.
     fn ring_radius(&self) -> f32 {
         0.5 - self.tube_radius
     }

@@ -20,9 +20,9 @@ use crate::matching::least_squares::{Limits, Residuals, Stop, descend};
 /// One value of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// To the light.
+    /// Direction to the light.
     pub l: Vec3,
-    /// To the viewer.
+    /// Direction to the viewer.
     pub v: Vec3,
     /// `f_r` in sr⁻¹, greater than 0.
     pub value: f64,
@@ -131,7 +131,7 @@ impl Residuals for Scales<'_> {
     }
 }
 
-/// The best width and scales. `lobe` gives the specular lobe of a width at every sample.
+/// The best width and scales. `lobe` returns the specular lobe with a width at every sample.
 #[must_use]
 pub fn fit(samples: &[Sample], widths: (f64, f64), lobe: impl Fn(f64, &[Sample]) -> Vec<f64>) -> Fit {
     let values: Vec<f64> = samples.iter().map(|s| s.value).collect();
@@ -198,7 +198,7 @@ mod tests {
             for (name, a, b) in [("d", found.diffuse, d), ("s", found.specular, s), ("w", found.width, w)] {
                 assert!((a / b - 1.0).abs() < 0.02, "{name}: {a} instead of {b}");
             }
-            // The lobe of another distribution does not fit as well: the error notices.
+            // The lobe of another distribution does not fit as well, which the error shows.
             let beckmann = |width: f64, samples: &[Sample]| {
                 let d = |s: &Sample| distribution::beckmann(half_vector(s.l, s.v), Vec2::splat(width as f32));
                 samples.iter().map(|s| f64::from(d(s)) / f64::from(4.0 * s.l.z * s.v.z)).collect()
@@ -213,7 +213,7 @@ mod tests {
         let values = vec![0.1; 50];
         let found = diffuse_only(&values);
         assert!((found.diffuse - 0.1 * std::f64::consts::PI).abs() < 1e-9 && found.error < 1e-9);
-        // A factor e up and down is an error of 1.
+        // A factor e up and down gives an error of 1.
         let values = [1f64.exp(), (-1f64).exp()];
         assert!((diffuse_only(&values).error - 1.0).abs() < 1e-12);
         // A lobe that is zero everywhere changes nothing.

@@ -19,7 +19,7 @@ use crate::{
 };
 
 const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");
-/// Angles of the table, degrees.
+/// Angles of the table, in degrees.
 const ANGLES: [f64; 5] = [0.0, 45.0, 60.0, 75.0, 85.0];
 /// Measured materials: id and name.
 const MATERIALS: [(&str, &str); 6] = [
@@ -30,8 +30,8 @@ const MATERIALS: [(&str, &str); 6] = [
     ("gold", "Gold"),
     ("aluminium", "Aluminium"),
 ];
-/// Blinn–Phong with the width of this α and, at normal incidence, the brightness of glass: n = 2/α² − 2 and k_s = F₀/(4
-/// α²). The shipped scene has the same.
+/// Blinn–Phong with the width of this α and, at normal incidence, the brightness of glass: n = 2/α² − 2 and
+/// k_s = F₀/(4 α²). The shipped scene uses the same values.
 const ALPHA: f64 = 0.15;
 const EXPONENT: i64 = 87;
 const K_S: f64 = 0.444;
@@ -163,7 +163,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &rows,
     );
 
-    // The same for the models' lobes.
+    // The curves of the models' lobes.
     let mut settings =
         vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
     settings.extend(alpha(ALPHA));

@@ -1,4 +1,4 @@
-//! Phenomenon 2: no surface sends out more light than it receives.
+//! Phenomenon 2: no surface reflects more light than it receives.
 
 use glam::Vec3;
 use maud::html;
@@ -16,12 +16,12 @@ use crate::{
 };
 
 const SCENE: &str = include_str!("../../scenes/white_furnace.json");
-/// Directions of light in the furnace of lamps: as many as a scene can have.
+/// Number of light directions in the furnace of lamps: the maximum for a scene.
 const LAMPS: u16 = 256;
-/// Exponents tried for the largest albedo. It falls as the highlight narrows, so it is enough to start at the smallest
-/// legal one.
+/// Exponents tried for the largest albedo. It decreases as the highlight narrows, so it is enough to start at
+/// the smallest legal one.
 const EXPONENTS: [i64; 6] = [0, 1, 2, 4, 8, 16];
-/// A model further from 1 than this loses or gains light.
+/// Deviation from 1 beyond which a model loses or gains light.
 const TOLERANCE: f64 = 0.01;
 
 /// A white surface: name, model, settings.
@@ -29,7 +29,7 @@ struct White {
     name: &'static str,
     id: &'static str,
     settings: Vec<Setting>,
-    /// True if it should return all light: nothing absorbs or transmits any.
+    /// True if the surface should return all light: nothing is absorbed or transmitted.
     whole: bool,
 }
 
@@ -110,7 +110,7 @@ pub(super) fn verdict(least: f64, most: f64) -> &'static str {
     }
 }
 
-/// The picture in front of a white wall: the wall is uniform light of half the display's white.
+/// The picture in front of a white wall: the wall is uniform light at half the display's white.
 fn before_white(picture: &Picture) -> Vec<u8> {
     picture
         .pixels
@@ -122,8 +122,8 @@ fn before_white(picture: &Picture) -> Vec<u8> {
         .collect()
 }
 
-/// Lamps in even directions (a Fibonacci lattice) that together make uniform light of 1 lx: a Lambertian surface under
-/// them has its base colour.
+/// Evenly distributed lamps (a Fibonacci lattice) that together make uniform light of 1 lx: a Lambertian
+/// surface under them has its base colour.
 fn lamps() -> Vec<Light> {
     let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
     (0..LAMPS)
@@ -233,7 +233,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let uniform = lab.render(&scene, "", TermSelection::All, size);
     let mut lit: Scene = scene.clone();
     lit.lights = lamps();
-    // All light has a direction here, so nothing replaces light without one.
+    // All light here has a direction, so nothing replaces uniform light.
     lit.objects.iter_mut().for_each(|o| o.material.set("k_a", Value::Number(0.0)));
     let lamps = lab.render(&lit, "", TermSelection::All, size);
     let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();

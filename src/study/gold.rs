@@ -113,8 +113,8 @@ fn tune(lab: &Lab, scene: &Scene, wanted: &Picture, size: (u32, u32)) -> Blinn {
         .map_or(Blinn { diffuse: Vec3::ONE, specular: Vec3::ONE, exponent: 1 }, |best| best.0)
 }
 
-/// The distance of a picture from the reference: root mean square of the difference over that of the reference, mean of
-/// the channels; and the mean brightness relative to the reference.
+/// The difference of a picture from the reference: root mean square of the difference over that of the
+/// reference, mean of the channels; and the mean brightness relative to the reference.
 fn distance(picture: &Picture, wanted: &Picture) -> (f64, f64) {
     let mut rms = 0.0;
     for c in 0..3 {
@@ -126,7 +126,7 @@ fn distance(picture: &Picture, wanted: &Picture) -> (f64, f64) {
     (rms, mean(picture) / mean(wanted).max(1e-12))
 }
 
-/// The shipped scene with only one of its objects, under that object's light.
+/// The shipped scene with a single object, under that object's light.
 fn case(scene: &Scene, i: usize) -> Scene {
     let mut scene = scene.clone();
     scene.objects = vec![scene.objects.swap_remove(i)];
@@ -164,7 +164,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         lab.render(&scene, "blinn_phong", TermSelection::All, size)
     };
     let kept: Vec<Picture> = cases.iter().map(|(_, _, scene)| with(lab, scene, &tuned[0])).collect();
-    // The open question after a picture under a lamp: the answer to uniform light.
+    // A picture under a lamp leaves one question open: the response to uniform light.
     let open = {
         let mut scene = cases[3].2.clone();
         scene.objects.iter_mut().for_each(|o| {

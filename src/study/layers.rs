@@ -1,4 +1,4 @@
-//! OpenPBR layer by layer: the part of the light that each of them sends back.
+//! OpenPBR layer by layer: the fraction of the light that each layer reflects.
 
 use glam::Vec3;
 use maud::{Markup, html};
@@ -19,20 +19,20 @@ use crate::{
 const MODEL: &str = "openpbr";
 /// The thickest film of the pictures, in µm.
 const THICKEST: f64 = 1.0;
-/// The factor on the reflectance of the film over glass in its picture: it reflects a few per cent.
+/// The factor applied to the reflectance of the film over glass in its picture, which is only a few per cent.
 const BRIGHTER: f32 = 6.0;
 
 fn colour(name: &'static str, rgb: [u8; 3]) -> Setting {
     (name, Value::Colour(rgb))
 }
 
-/// Some settings and more of them, which count where both have one.
+/// Settings with more settings added; the latter take precedence.
 fn with(settings: &[Setting], more: &[Setting]) -> Vec<Setting> {
     let kept = settings.iter().filter(|(name, _)| !more.iter().any(|m| m.0 == *name));
     kept.chain(more).cloned().collect()
 }
 
-/// A grey body of albedo one half below a dielectric boundary, under a smooth coat and half fuzz.
+/// A grey diffuse base of albedo one half below a dielectric boundary, under a smooth coat and half fuzz.
 fn stack() -> Vec<Setting> {
     vec![
         colour("base_colour", [188; 3]),
@@ -42,15 +42,15 @@ fn stack() -> Vec<Setting> {
     ]
 }
 
-/// A base that sends nothing back: no colour, and no boundary to what lies above.
+/// A base that reflects nothing: no colour, and no boundary to the layer above.
 fn nothing() -> [Setting; 2] {
     [number("base_weight", 0.0), number("specular_strength", 0.0)]
 }
 
-/// The albedo by layer for a viewer at an angle: fuzz, coat, boundary of the base, body.
+/// The albedo by layer for a viewer at an angle: fuzz, coat, boundary of the base, diffuse base.
 ///
-/// A layer's own share is what is added by it over a base that sends nothing back; the shares of the base are the rest,
-/// by term.
+/// A layer's share is the increase that it causes over a base that reflects nothing; the shares of the base
+/// are the rest, by term.
 fn shares(lab: &Lab, degrees: f64) -> Result<[f64; 4], StudyError> {
     let fuzz = lab.surface(MODEL, &with(&with(&stack(), &nothing()), &[number("coat_weight", 0.0)]))?;
     let coat = lab.surface(MODEL, &with(&stack(), &nothing()))?;
@@ -91,7 +91,7 @@ fn coppers(lab: &Lab) -> Result<Vec<(&'static str, std::sync::Arc<dyn Surface>)>
     ])
 }
 
-/// A colour by angle as a band, from 0° at the left.
+/// A colour by angle as a band, starting with 0° at the left.
 fn band(colours: &[(f64, Vec3)], (width, height): (u32, u32), alt: &str) -> Result<Markup, StudyError> {
     let last = colours.last().map_or(1.0, |c| c.0);
     let row: Vec<u8> = (0..width)
@@ -144,7 +144,7 @@ fn reflectances(lab: &Lab, film: &Film, (width, height): (u32, u32)) -> Result<V
         .collect()
 }
 
-/// White materials that should send back what they receive: name and settings.
+/// White materials that should reflect all the light that they receive: name and settings.
 fn whites() -> Vec<(&'static str, Vec<Setting>)> {
     let white = [colour("base_colour", [255; 3])];
     let metal = with(&white, &[number("metallic", 1.0)]);
@@ -241,7 +241,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     })
 }
 
-/// Energy by layer: the figure, the numbers, the coat's share at the first and at the last angle, and its growth.
+/// Energy by layer: the figure, the numbers, the coat's share at the first and at the last angle, and its
+/// growth.
 fn by_layer(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, [f64; 2], f64), StudyError> {
     let mut raw = Table::new("layers_energy", "angle_deg,fuzz,coat,boundary,body,total");
     let mut all = Vec::new();
@@ -312,8 +313,8 @@ fn coated_metal(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, (f64, f
     Ok((html! { (figure) (table) }, raw, (loss, richer)))
 }
 
-/// The pictures of films: the figure, the numbers, and the largest over the smallest green reflectance of the soap film
-/// at normal incidence.
+/// The pictures of films: the figure, the numbers, and the ratio of the largest to the smallest green
+/// reflectance of the soap film at normal incidence.
 fn iridescence(lab: &mut Lab) -> Result<(Markup, Table, f64), StudyError> {
     let mut raw = Table::new("layers_film", "film,thickness_um,red,green,blue");
     let (columns, height) = lab.size(240, 160);
@@ -326,11 +327,11 @@ fn iridescence(lab: &mut Lab) -> Result<(Markup, Table, f64), StudyError> {
             raw.row(&[film.name], &[d, f64::from(rgb.x), f64::from(rgb.y), f64::from(rgb.z)]);
         }
         if shown.is_empty() {
-            // From where the film is whole: below 0.03 µm it fades.
+            // From the thickness at which the film is complete: below 0.03 µm it fades.
             let green = || normal.iter().skip(columns as usize / 16).map(|rgb| f64::from(rgb.y));
             swing = green().fold(0.0, f64::max) / green().fold(f64::INFINITY, f64::min).max(1e-6);
         }
-        // 0° below; each column is two pixels wide.
+        // 0° at the bottom; each column is two pixels wide.
         let pixels: Vec<u8> = (0..height as usize)
             .rev()
             .flat_map(|y| all.iter().flat_map(move |column| [column[y]; 2]))
@@ -349,7 +350,7 @@ fn iridescence(lab: &mut Lab) -> Result<(Markup, Table, f64), StudyError> {
     Ok((figure, raw, swing))
 }
 
-/// The furnace of white materials: the table, the numbers, and the material that sends back most.
+/// The furnace of white materials: the table, the numbers, and the material that reflects most.
 fn furnace_of(lab: &mut Lab, angles: &[f64]) -> Result<(Markup, Table, (&'static str, f64)), StudyError> {
     let mut raw = Table::new("layers_white", "material,angle_deg,albedo");
     let (mut rows, mut worst) = (Vec::new(), ("", 0.0));

@@ -1,9 +1,11 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
 //! reproduce and Blinn–Phong does not, of the layers of OpenPBR, and of light with extent.
 //!
-//! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe` (the shape of
-//! the highlight), `layers`, `extent`; their measured data are in [`curves::data`](crate::curves::data). It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
-//! Every sentence of a conclusion that depends on a number is chosen by that number.
+//! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe`
+//! (the shape of the highlight), `layers`, `extent`; their measured data are in
+//! [`curves::data`](crate::curves::data). This is the results chapter planned in E. James (2022), *Physically
+//! Based Shading Models in Real-time Rendering*. Every sentence of a conclusion that depends on a number is
+//! selected by that number.
 
 use std::{fmt::Write as _, fs, io, iter, path::Path, sync::Arc};
 
@@ -37,39 +39,39 @@ mod report;
 /// The number of steps reported by [`run`].
 pub const STEPS: u64 = 7;
 
-/// The file name of the report in its folder.
+/// File name of the report in its folder.
 pub const PAGE: &str = "index.html";
 
-/// True if a folder holds a report of this program.
+/// True if a folder contains a report of this program.
 #[must_use]
 pub fn is_report(folder: &Path) -> bool {
-    /// The mark is near its beginning.
+    /// Size of the beginning that contains the mark.
     const HEAD: u64 = 4096;
     let start = files::read_start(&folder.join(PAGE), HEAD).unwrap_or_default();
     let mark = format!("<meta name=\"generator\" content=\"{}", report::GENERATOR);
     String::from_utf8_lossy(&start).contains(&mark)
 }
 
-/// A failure of a study: something it needs is missing.
+/// An error of a study: something that it needs is missing.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// A model that is not registered.
+    /// A model is not registered.
     #[error("there is no reflection model {0}")]
     NoModel(String),
-    /// A setting that a model lacks or does not allow.
+    /// A model lacks a setting, or does not allow its value.
     #[error("{model} does not accept {name} = {value}")]
     NoSetting {
-        /// The model.
+        /// Model.
         model: String,
-        /// The parameter.
+        /// Parameter.
         name: String,
-        /// The value.
+        /// Value.
         value: String,
     },
-    /// Shipped data that cannot be read.
+    /// Shipped data cannot be read.
     #[error("{0}")]
     Data(String),
-    /// A plot or picture that could not be drawn.
+    /// A plot or picture could not be drawn.
     #[error("a figure could not be drawn: {0}")]
     Figure(String),
 }
@@ -84,9 +86,9 @@ pub struct Settings {
 /// A table of raw numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Its file name, without extension.
+    /// File name, without extension.
     pub name: &'static str,
-    /// As CSV.
+    /// CSV text.
     pub csv: String,
 }
 
@@ -100,18 +102,18 @@ impl Table {
         let mut cells: Vec<String> = words.iter().map(|w| w.replace(',', ";")).collect();
         // Cells without a finite number stay empty.
         cells.extend(numbers.iter().map(|n| if n.is_finite() { format!("{n:.6}") } else { String::new() }));
-        // Writing to a string cannot fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(self.csv, "{}", cells.join(","));
     }
 }
 
-/// A phenomenon, or what goes beyond them: its section of the report, the finding, and the numbers.
+/// A chapter on a phenomenon or another subject: its section of the report, the finding, and the numbers.
 struct Chapter {
     title: &'static str,
     body: Markup,
     /// One sentence for the summary.
     finding: String,
-    /// True if the numbers show the phenomenon.
+    /// True if the numbers confirm the phenomenon.
     shown: bool,
     tables: Vec<Table>,
 }
@@ -126,14 +128,15 @@ pub struct Study {
 }
 
 impl Study {
-    /// Writes `index.html` and the tables into a folder, all or nothing. The folder is made whole if there is none;
-    /// other files in an existing one stay.
+    /// Writes `index.html` and the tables into a folder, all or nothing. A missing folder is created; other
+    /// files in an existing one are kept.
     ///
     /// # Errors
-    /// If the folder cannot be created or a file cannot be written.
+    /// Returns an error if the folder cannot be created or a file cannot be written.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         let tables = self.tables.iter().map(|table| (format!("{}.csv", table.name), table.csv.as_bytes()));
-        // The page is first: by it the report is known, and may be replaced, if a killed process left half of it.
+        // The page comes first: it identifies the report, which may then be replaced if a killed process left
+        // half of it.
         let all = iter::once((PAGE.to_owned(), self.html.as_bytes())).chain(tables);
         let before = Before::of(folder);
         if !before.is_nothing() {
@@ -148,20 +151,20 @@ impl Study {
     }
 }
 
-/// The registry, the settings and the counters that chapters share.
+/// The registry, the settings and the counters shared by chapters.
 struct Lab<'a> {
     registry: &'a Registry,
     settings: Settings,
-    /// Figures so far.
+    /// Number of figures so far.
     figures: u32,
-    /// Tables so far.
+    /// Number of tables so far.
     tables: u32,
 }
 
 /// A setting of a model.
 type Setting = (&'static str, Value);
 
-/// A setting that is one of several choices.
+/// A setting that is a choice.
 fn choice(name: &'static str, value: &'static str) -> Setting {
     (name, Value::Choice(value.into()))
 }
@@ -177,7 +180,7 @@ fn alpha(value: f64) -> [Setting; 2] {
 }
 
 impl Lab<'_> {
-    /// A model with settings, each of which it must have and allow.
+    /// A model with settings, which it must have and allow.
     fn surface(&self, id: &str, settings: &[Setting]) -> Result<Arc<dyn Surface>, StudyError> {
         let model = self.registry.model(id).ok_or_else(|| StudyError::NoModel(id.to_owned()))?;
         let mut values = Values::default();
@@ -295,7 +298,7 @@ fn pictures(all: &[(Markup, &str)]) -> Markup {
     row(all.len().min(3), all)
 }
 
-/// The same with this many in a row.
+/// Pictures side by side, with this many in a row.
 fn row(columns: usize, all: &[(Markup, &str)]) -> Markup {
     html! {
         div .pictures style=(format!("--columns:{columns}")) {
@@ -340,7 +343,7 @@ fn percent(x: f64) -> String {
 /// Runs the study. `tell` is called [`STEPS`] times with the name of the next step.
 ///
 /// # Errors
-/// If a model, a scene or data of the program does not match the study's expectations.
+/// Returns an error if a model, a scene or data of the program does not match the study's expectations.
 pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Result<Study, StudyError> {
     let mut lab = Lab { registry, settings, figures: 0, tables: 0 };
     tell("Fresnel effect");

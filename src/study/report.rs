@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Chapter, Settings};
 
-/// The name of the program in the head of a report; its version follows.
+/// The name of the program in the head of a report, followed by its version.
 pub(super) const GENERATOR: &str = "Lights, Camera, Models! ";
 
 const STYLE: &str = include_str!("report.css");
@@ -156,7 +156,7 @@ pub(super) fn page(chapters: &[Chapter], beyond: &[(&str, Chapter)], settings: S
                     (discussion(chapters, shown))
                     @for (i, (id, chapter)) in beyond.iter().enumerate() {
                         section id=(id) {
-                            // The discussion of the phenomena is between.
+                            // The discussion of the phenomena comes in between.
                             h2 { (chapters.len() + 2 + i) ". " (chapter.title) }
                             (chapter.body)
                         }

@@ -1,4 +1,4 @@
-//! Equations that can be followed by hand.
+//! Checks that equations can be followed by hand.
 
 use std::sync::Arc;
 
@@ -10,19 +10,20 @@ use crate::{
     reflection::ModelEntry,
 };
 
-/// Digits of numbers, which a line must give; the terms themselves are calculated with 32 bits and must agree to one less.
+/// Digits of numbers that a line must reproduce; the terms themselves are calculated with 32 bits and must
+/// agree to one digit less.
 const DIGITS: usize = 4;
-/// Terms that are no farther apart agree: the light of white is 1.
+/// Difference up to which terms agree: the light of white is 1.
 const DARK: f64 = 1e-5;
-/// Random parameters, and directions for each.
+/// Number of random parameter sets, with several directions for each.
 const SURFACES: usize = 60;
 const DIRECTIONS: usize = 8;
 
-/// True if every line of the explanation of a model gives its own value, evaluated as it is printed: for many random
-/// directions, frames and parameters. A quantity that the equation names and nobody gives fails, too.
+/// Checks that every line of the explanation of a model yields its own value when evaluated as printed: for
+/// many random directions, frames and parameters. A quantity in the equation without a value is an error too.
 ///
 /// # Errors
-/// The first line that does not, with its numbers.
+/// Returns the first line that does not, with its numbers.
 pub fn followed(model: &ModelEntry) -> Outcome {
     let mut seed = 29;
     for i in 0..SURFACES {
@@ -45,10 +46,10 @@ pub fn followed(model: &ModelEntry) -> Outcome {
     Ok(())
 }
 
-/// The same for one surface and one geometry.
+/// Like [`followed`], for one surface and one geometry.
 ///
 /// # Errors
-/// As [`followed`].
+/// Returns the errors of [`followed`].
 pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
     let surface = model.instantiate(values, Encoding::Srgb);
     let response = surface.response(geometry.l, geometry.v, &geometry.frame);
@@ -68,18 +69,18 @@ pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
     every_term(model, &lines, &response)
 }
 
-/// True if a line gives its own value.
+/// Checks that a line yields its own value.
 ///
 /// # Errors
-/// The reason why it does not.
+/// Returns the reason why it does not.
 pub fn follows(line: &Line) -> Result<(), String> {
     let Some(value) = &line.value else { return Err("no value".to_owned()) };
     let calculated =
         line.numbers.as_deref().or_else(|| Some(line.text.as_str()).filter(|text| text.contains('=')));
-    // A quantity that the model gives has no equation.
+    // A quantity that the model provides has no equation.
     let Some(calculated) = calculated else { return Ok(()) };
     let read = reading(calculated)?;
-    // What 32 bits lose in a dark tail is not seen.
+    // The loss of 32 bits in a dark tail is not visible.
     let apart = read.rgb.iter().zip(&value.rgb).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if line.is_term() && apart <= DARK {
         return Ok(());
@@ -88,7 +89,7 @@ pub fn follows(line: &Line) -> Result<(), String> {
     if agrees(&read, value, digits) { Ok(()) } else { Err(format!("gives {:?}", read.rgb)) }
 }
 
-/// Terms about which the equation says nothing have no line that could be followed.
+/// Checks that every non-zero term has a line in the equation.
 fn every_term(model: &ModelEntry, lines: &[Line], response: &Terms) -> Outcome {
     for (symbol, value) in [("I_d", response.diffuse), ("I_s", response.specular)] {
         let said = lines.iter().any(|line| line.defines() == symbol && !line.text.is_empty());

@@ -1,4 +1,4 @@
-//! Light types with extent in Rust and in WGSL, compared, and the laws that they keep.
+//! Compares light types with extent in Rust and in WGSL, and checks their laws.
 
 use glam::{Vec2, Vec3};
 
@@ -17,17 +17,17 @@ use crate::{
     shader::{compose::Sources, interpret::Program},
 };
 
-/// The largest relative difference between the languages, or between a sample and what is seen in its direction, attributed to
-/// rounding: densities of small lights are differences of angles.
+/// Maximum relative difference between the languages, or between a sample and the light seen in its
+/// direction, attributed to rounding: densities of small lights are differences of angles.
 const TOLERANCE: f32 = 5e-3;
 
-/// The part of the directions that may pass an edge by rounding.
+/// Maximum fraction of directions that may cross an edge by rounding.
 const AT_EDGES: f32 = 0.01;
 
-/// The points that are tried.
+/// Number of points tried.
 const TRIES: u32 = 4000;
 
-/// True if numbers agree, relative to the larger one and to what hardly matters.
+/// True if numbers agree, relative to the larger one and to a negligible value.
 fn near(a: f32, b: f32) -> bool {
     (a - b).abs() <= TOLERANCE * a.abs().max(b.abs()).max(1e-3)
 }
@@ -36,11 +36,12 @@ fn near3(a: Vec3, b: Vec3) -> bool {
     a.to_array().into_iter().zip(b.to_array()).all(|(a, b)| near(a, b))
 }
 
-/// WGSL that the CPU interprets agrees with the Rust functions; a sample is seen again in its direction, with its radiance and
-/// its density; radiance is finite, not negative, and proportional to the intensity.
+/// Checks that WGSL interpreted on the CPU agrees with the Rust functions; that a sample is seen again in its
+/// direction, with its radiance and its density; and that radiance is finite, not negative, and proportional
+/// to the intensity.
 ///
 /// # Errors
-/// The first violation, or too many directions at edges.
+/// Returns the first violation, or an error if too many directions are at edges.
 pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
     let module = check::wgsl::light(sources, light).map_err(|problem| problem.to_string())?;
     let program =
@@ -89,7 +90,7 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
             && near(own.pdf, other.pdf);
         let again = emitter.seen(&record, p, own.l);
         let fits = near3(again.radiance, own.radiance) && near(again.pdf, own.pdf);
-        // Another direction too: mostly past the light.
+        // Another direction too, which mostly misses the light.
         let l = if i % 2 == 0 { own.l } else { any_direction(&mut seed) };
         let here = emitter.seen(&record, p, l);
         let mut results = [0; 5];

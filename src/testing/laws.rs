@@ -1,5 +1,5 @@
-//! The laws of reflection models, over random directions and parameters: kept if the model declares them, and found
-//! violated otherwise.
+//! Checks the laws of reflection models over random directions and parameters: obeyed if the model declares
+//! them, and violated otherwise.
 
 use std::{convert::Infallible, f32::consts::FRAC_PI_2};
 
@@ -18,14 +18,14 @@ use crate::{
     },
 };
 
-/// Sets of parameters, and pairs of directions for each.
+/// Number of parameter sets, and of pairs of directions for each.
 const SETS: usize = 60;
 const PAIRS: usize = 200;
 
-/// All of them.
+/// Checks all laws.
 ///
 /// # Errors
-/// The first that does not hold.
+/// Returns the first law that does not hold.
 pub fn all(model: &ModelEntry) -> Outcome {
     [finite, non_negative, reciprocal, energy_conserving, sampled].iter().try_for_each(|law| law(model))
 }
@@ -50,7 +50,7 @@ fn surfaces(
     Ok(())
 }
 
-/// The worst violation of a law by a model: a number that is 0 for models that keep it exactly.
+/// The worst violation of a law by a model: a number that is 0 for models that obey it exactly.
 fn worst(
     model: &ModelEntry,
     seed: u64,
@@ -64,10 +64,10 @@ fn worst(
     Ok(worst)
 }
 
-/// Responses are finite for all directions and legal parameters.
+/// Checks that responses are finite for all directions and legal parameters.
 ///
 /// # Errors
-/// The first that is not.
+/// Returns the first response that is not finite.
 pub fn finite(model: &ModelEntry) -> Outcome {
     surfaces(model, 1, |values, surface, frame, random| {
         let grazing = (frame.t + 1e-7 * frame.n).normalize();
@@ -87,10 +87,10 @@ pub fn finite(model: &ModelEntry) -> Outcome {
     })
 }
 
-/// No light is negative where that is declared, and somewhere it is where not.
+/// Checks that no light is negative if declared, and that some is otherwise.
 ///
 /// # Errors
-/// If that is not so.
+/// Returns an error if the law does not hold as declared.
 pub fn non_negative(model: &ModelEntry) -> Outcome {
     let broken = worst(model, 2, |surface, frame, random| {
         let mut least = 0.0f32;
@@ -108,10 +108,10 @@ pub fn non_negative(model: &ModelEntry) -> Outcome {
     }
 }
 
-/// Light may go backwards where that is declared, and somewhere it may not where not.
+/// Checks that light paths are reversible if declared, and that some are not otherwise.
 ///
 /// # Errors
-/// If that is not so.
+/// Returns an error if the law does not hold as declared.
 pub fn reciprocal(model: &ModelEntry) -> Outcome {
     let broken = worst(model, 3, |surface, frame, random| {
         let mut most = 0.0f32;
@@ -133,18 +133,18 @@ pub fn reciprocal(model: &ModelEntry) -> Outcome {
     }
 }
 
-/// The fraction of light from direction `v` that leaves a surface in any direction, largest channel, by a quadrature
-/// with that many rows.
+/// The fraction of light from direction `v` that leaves a surface in any direction, largest channel, by a
+/// quadrature with this many rows.
 #[must_use]
 pub fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
     let directions = laws::albedo_directions(v, frame, rows);
     laws::albedo(&directions, directions.iter().map(|(l, _)| surface.response(*l, v, frame)))
 }
 
-/// Samples by the model's lobes give the directional albedo of quadrature.
+/// Checks that samples of the model's lobes yield the directional albedo of quadrature.
 ///
 /// # Errors
-/// If they are further from it than [`SAMPLING_TOLERANCE`].
+/// Returns an error if they differ by more than [`SAMPLING_TOLERANCE`].
 pub fn sampled(model: &ModelEntry) -> Outcome {
     let mut random = Random(5);
     let sets = [Values::default(), least(model)].into_iter().chain((0..4).map(|_| random.values(model)));
@@ -162,10 +162,10 @@ pub fn sampled(model: &ModelEntry) -> Outcome {
     Ok(())
 }
 
-/// No light is made where that is declared, and somewhere it is where not.
+/// Checks that no light is created if declared, and that some is otherwise.
 ///
 /// # Errors
-/// If that is not so.
+/// Returns an error if the law does not hold as declared.
 pub fn energy_conserving(model: &ModelEntry) -> Outcome {
     let most = worst(model, 4, |surface, frame, random| {
         let mut most = 0.0f32;
@@ -173,7 +173,7 @@ pub fn energy_conserving(model: &ModelEntry) -> Outcome {
             let theta = FRAC_PI_2 * [0.02, 0.5, 0.95, random.unit() * 0.99][i];
             let (sin, cos) = theta.sin_cos();
             let v = cos * frame.n + sin * frame.t;
-            // Findings of a coarse grid are checked by a finer one, so that its error is no verdict.
+            // Findings of a coarse grid are checked by a finer one, so that its error does not decide.
             let coarse = albedo(surface, v, frame, COARSE);
             let found = if coarse > NEARLY_ALL { albedo(surface, v, frame, FINE) } else { coarse };
             most = most.max(found);
@@ -184,7 +184,7 @@ pub fn energy_conserving(model: &ModelEntry) -> Outcome {
         true if most >= LARGEST_ALBEDO => {
             Err(format!("declares that it conserves energy, but reflects {most} of the light"))
         }
-        // The finer grid is right to 3e-4 for wide lobes; Strauss's makes 0.5 % too much at most.
+        // The finer grid is accurate to 3e-4 for wide lobes; for Strauss's it is at most 0.5 % too large.
         false if most <= 1.003 => {
             Err(format!("declares that it makes light, but reflects {most} of it at most"))
         }

@@ -1,4 +1,4 @@
-//! Light types in Rust and in WGSL, compared, and the laws that they keep.
+//! Compares light types in Rust and in WGSL, and checks their laws.
 
 use std::f32::consts::TAU;
 
@@ -16,17 +16,17 @@ use crate::{
     shader::{compose::Sources, interpret::Program},
 };
 
-/// The largest relative difference between the languages attributed to rounding.
+/// Maximum relative difference between the languages attributed to rounding.
 pub const TOLERANCE: f32 = 1e-4;
-/// The largest relative difference of a luminous flux attributed to its quadrature.
+/// Maximum relative difference of a luminous flux attributed to its quadrature.
 const FLUX_TOLERANCE: f64 = 0.02;
-/// Directions of that quadrature.
+/// Number of directions in that quadrature.
 const DIRECTIONS: usize = 50_000;
 
-/// All of them.
+/// Checks everything about a light type.
 ///
 /// # Errors
-/// The first that does not hold.
+/// Returns the first violation.
 pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
     if light.declaration.extent {
         return extended::all(light, sources);
@@ -60,7 +60,7 @@ pub(super) fn place(seed: &mut u64) -> Vec3 {
     Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
 }
 
-/// The answer of a light, for comparison: direction, intensity, 1 if it comes from everywhere.
+/// The light from a light type, for comparison: direction, intensity, 1 if it is uniform.
 fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
     match incident {
         Incident::From { l, intensity } => (l, intensity, 0),
@@ -68,7 +68,7 @@ fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
     }
 }
 
-/// The parameters of a light as its function in WGSL takes them, and the numbers of its files.
+/// The parameters of a light in the layout of its WGSL function, and the numbers of its files.
 pub(super) fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
     let mut words = light.words(values, Encoding::Srgb);
     let mut files = Vec::new();
@@ -79,7 +79,7 @@ pub(super) fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>)
     (words, files)
 }
 
-/// The arguments of the function of a light type in WGSL: the light, its own parameters, the point.
+/// The arguments of a light type's WGSL function: the light, its own parameters, the point.
 pub(super) fn arguments(record: &LightRecord, own: &[u32], p: Vec3) -> Vec<u32> {
     let LightRecord { light_type, position, direction, colour, intensity } = *record;
     let mut arguments = Vec::new();
@@ -89,17 +89,17 @@ pub(super) fn arguments(record: &LightRecord, own: &[u32], p: Vec3) -> Vec<u32> 
     put(&direction.to_array());
     put(&[intensity]);
     put(&colour.to_array());
-    // Where its parameters begin: they are given to it here.
+    // The offset of the parameters, which are passed here directly.
     put(&[0.0]);
     arguments.extend(own);
     arguments.extend(p.to_array().map(f32::to_bits));
     arguments
 }
 
-/// WGSL that the CPU interprets agrees with the Rust function.
+/// Checks that WGSL interpreted on the CPU agrees with the Rust function.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
     let module = check::wgsl::light(sources, light).map_err(|problem| problem.to_string())?;
     let function = format!("incident_{}", light.declaration.id);
@@ -125,7 +125,8 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
                 ));
             }
         }
-        // At the edge of a beam a rounded angle is much of little light: 1 % of the mean in all directions is dark.
+        // At the edge of a beam a rounded angle is a large part of little light: 1 % of the mean over all
+        // directions counts as dark.
         let mean = light.solid_angle(&values).map_or(0.0, |sr| sr as f32 / (2.0 * TAU));
         let dark = 0.01 * mean * record.intensity / (record.position - p).length_squared().max(1e-6);
         let scale = rust.abs().max(Vec3::splat(dark.max(1e-3)));
@@ -145,11 +146,11 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
     }
 }
 
-/// Light is finite and not negative, comes from a direction of unit length, is proportional to the intensity, and is the
-/// product of its factors.
+/// Checks that light is finite and not negative, comes from a direction of unit length, is proportional to
+/// the intensity, and is the product of its factors.
 ///
 /// # Errors
-/// The first violation.
+/// Returns the first violation.
 pub fn laws(light: &LightEntry) -> Outcome {
     let mut seed = 32;
     for _ in 0..4000 {
@@ -167,7 +168,7 @@ pub fn laws(light: &LightEntry) -> Outcome {
         if intensity.min_element() < 0.0 {
             return case(format!("the intensity is {intensity}, but must not be negative"));
         }
-        // At the light itself there is none.
+        // Exactly at the light there is none.
         let directed = uniform == 0 && intensity != Vec3::ZERO && p != record.position;
         if directed && (l.length() - 1.0).abs() > 1e-4 {
             return case(format!("the direction to the light is {l}, but must be a unit vector"));
@@ -190,10 +191,10 @@ pub fn laws(light: &LightEntry) -> Outcome {
     Ok(())
 }
 
-/// The luminous flux of a type that has one is its light in all directions: `Φ = ∫ I dω`.
+/// Checks that the luminous flux of a type that has one is its light in all directions: `Φ = ∫ I dω`.
 ///
 /// # Errors
-/// If it is not.
+/// Returns an error if it is not.
 pub fn flux(light: &LightEntry) -> Outcome {
     let mut seed = 33;
     for set in 0..8 {
@@ -202,7 +203,7 @@ pub fn flux(light: &LightEntry) -> Outcome {
             values = Values::default();
         }
         let Some(expected) = light.solid_angle(&values) else { continue };
-        // Of a very narrow beam the quadrature sees too little.
+        // The quadrature captures too little of a very narrow beam.
         if !light.declaration.has_position || expected < 0.2 {
             continue;
         }
@@ -215,7 +216,7 @@ pub fn flux(light: &LightEntry) -> Outcome {
                 let (sin, cos) = (golden * i as f32).rem_euclid(TAU).sin_cos();
                 let r = (1.0 - y * y).sqrt();
                 let p = record.position + Vec3::new(r * cos, y, r * sin);
-                // Of coloured light, what its colours have in the middle.
+                // For coloured light, the mean of its colours.
                 f64::from(flat(emitter.incident(&record, p)).1.element_sum() / 3.0)
             })
             .sum();

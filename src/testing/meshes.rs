@@ -1,4 +1,4 @@
-//! Meshes: what shading models rely on.
+//! Checks meshes for the properties on which shading models rely.
 
 use std::collections::HashMap;
 
@@ -9,20 +9,21 @@ use crate::{
     shape::{PolygonMesh, ShapeEntry},
 };
 
-/// The properties of a mesh that [`mesh::check`] passes.
+/// The properties of a mesh that passes [`mesh::check`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    /// The number of edges that only one polygon has: 0 if the surface is closed.
+    /// The number of edges with a single polygon: 0 if the surface is closed.
     pub open_edges: usize,
-    /// The volume that it encloses.
+    /// The enclosed volume.
     pub volume: f32,
-    /// The number of polygons or vertices whose normal is no unit vector: they have no area, or no polygons.
+    /// The number of polygons or vertices whose normal is not a unit vector: they have no area, or no
+    /// polygons.
     pub no_normal: usize,
-    /// The number of polygons with a corner whose vertex normal is behind it.
+    /// The number of polygons with a vertex normal that faces backwards.
     pub folded: usize,
-    /// The number of places with more than one vertex: normals are interpolated over shared ones only.
+    /// The number of positions with more than one vertex: normals are interpolated only over shared ones.
     pub doubled: usize,
-    /// The number of polygons whose tangent is no unit vector in their plane.
+    /// The number of polygons whose tangent is not a unit vector in their plane.
     pub no_tangent: usize,
     /// The number of vertices without a tangent: poles, around which the surface is brushed.
     pub poles: usize,
@@ -30,7 +31,7 @@ pub struct Findings {
     pub disputed: usize,
     /// The number of edges along which the tangent turns by more than a right angle.
     pub turned: usize,
-    /// The largest part of a vertex tangent along the vertex normal.
+    /// The largest component of a vertex tangent along the vertex normal.
     pub lean: f32,
 }
 
@@ -76,10 +77,10 @@ impl Findings {
     }
 }
 
-/// A mesh, and what it was made from.
+/// A mesh, and the values from which it was made.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The parameters, each of them.
+    /// The values of all parameters.
     pub values: Values,
     /// The tessellation.
     pub tessellation: u32,
@@ -87,8 +88,9 @@ pub struct Case {
     pub mesh: PolygonMesh,
 }
 
-/// The meshes of an object type at both ends of its tessellations and at the default, each with its parameters at the
-/// ends of their ranges and at their defaults: in all combinations, or one by one where there are too many.
+/// The meshes of an object type at both ends of its tessellations and at the default, each with its
+/// parameters at the ends of their ranges and at their defaults: in all combinations, or one by one if there
+/// are too many.
 pub fn cases(shape: &ShapeEntry) -> impl Iterator<Item = Case> + '_ {
     let d = shape.declaration;
     combinations(shape.parameters).into_iter().flat_map(move |values| {
@@ -102,7 +104,7 @@ pub fn cases(shape: &ShapeEntry) -> impl Iterator<Item = Case> + '_ {
 
 /// Parameters at the ends of their ranges and at their defaults.
 fn combinations(parameters: &[Parameter]) -> Vec<Values> {
-    /// The most combinations.
+    /// Maximum number of combinations.
     const MOST: usize = 243;
     let with = |values: &Values, p: &Parameter, value| {
         let mut values = values.clone();
@@ -120,11 +122,12 @@ fn combinations(parameters: &[Parameter]) -> Vec<Values> {
     })
 }
 
-/// Each mesh passes [`mesh::check`], every polygon and vertex has a normal and every polygon a tangent, vertex normals
-/// are on the outer side of their polygons, and no place has two vertices.
+/// Checks that each mesh passes [`mesh::check`], that every polygon and vertex has a normal and every polygon
+/// a tangent, that vertex normals are on the outer side of their polygons, and that no position has two
+/// vertices.
 ///
 /// # Errors
-/// The first that does not.
+/// Returns the first mesh that does not.
 pub fn all(shape: &ShapeEntry) -> Outcome {
     cases(shape).try_for_each(|Case { values, tessellation, mesh }| {
         one(&mesh).map_err(|what| {
@@ -134,12 +137,13 @@ pub fn all(shape: &ShapeEntry) -> Outcome {
     })
 }
 
-/// The same for one mesh.
+/// Checks one mesh.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// Returns the first violation.
 pub fn one(mesh: &PolygonMesh) -> Outcome {
-    /// The most vertices of a mesh whose places are told apart: those of a finer one may be as close as rounding.
+    /// Maximum number of vertices of a mesh whose positions are compared: those of a finer one may be as
+    /// close as rounding.
     const MOST: usize = 10_000;
     mesh::check(mesh)?;
     let Findings { no_normal, folded, doubled, no_tangent, .. } = Findings::of(mesh);

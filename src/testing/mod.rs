@@ -1,4 +1,5 @@
-//! Tests for models, shading models, light types and object types of other crates: those that the built-in ones pass.
+//! Tests for models, shading models, light types and object types of other crates: the tests that the
+//! built-in ones pass.
 //!
 //! ```
 //! use lights_camera_models::{light, reflection, shading, shape, testing};
@@ -12,8 +13,9 @@
 //! testing::assert_mesh::<shape::Torus>();
 //! ```
 //!
-//! Each also tries the registration, and panics with the id and the first thing that is wrong, where, and by how much. The
-//! functions in [`laws`], [`parity`], [`lights`], [`shadings`] and [`meshes`] do parts of it for entries of a registry.
+//! Each also checks the registration, and panics with the id and the first error, where it is, and how large.
+//! The functions in [`laws`], [`parity`], [`lights`], [`shadings`] and [`meshes`] perform parts of these
+//! tests for entries of a registry.
 
 pub mod equations;
 mod extended;
@@ -35,7 +37,7 @@ use crate::{
     shape::{ObjectType, ShapeEntry},
 };
 
-/// The outcome of a test: the first thing that is wrong.
+/// The outcome of a test: the first error.
 pub type Outcome = Result<(), String>;
 
 #[track_caller]
@@ -45,7 +47,7 @@ fn assert(id: &str, outcome: Outcome) {
     }
 }
 
-/// The outcome of a registration, of something new or in the place of what is built in.
+/// The outcome of a registration, of something new or as a replacement of something built in.
 macro_rules! registered {
     ($T:ty, $known:ident, $add:ident, $replace:ident) => {{
         let mut registry = Registry::builtin();
@@ -59,41 +61,43 @@ fn registered_model<M: ReflectionModel>() -> Outcome {
     registered!(M, model, try_add_reflection_model, replace_reflection_model)
 }
 
-/// Asserts that a reflection model gives finite numbers, keeps the laws that it declares, and breaks the others.
+/// Asserts that a reflection model returns finite numbers, obeys the laws that it declares, and violates the
+/// others.
 ///
 /// # Panics
-/// If it does not.
+/// Panics if it does not.
 #[track_caller]
 pub fn assert_laws<M: ReflectionModel>() {
     assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| laws::all(&ModelEntry::of::<M>())));
 }
 
-/// Asserts that the equation of a reflection model can be followed by hand: every line of an explanation gives its own
-/// value from the numbers that it shows, for many directions and parameters.
+/// Asserts that the equation of a reflection model can be followed by hand: every line of an explanation
+/// yields its own value from the numbers that it shows, for many directions and parameters.
 ///
 /// # Panics
-/// If one does not.
+/// Panics if a line does not.
 #[track_caller]
 pub fn assert_equation<M: ReflectionModel>() {
     let followed = || equations::followed(&ModelEntry::of::<M>());
     assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| followed()));
 }
 
-/// Asserts that a reflection model is the same in Rust and in WGSL, which the CPU interprets: to 1e-4, for many
+/// Asserts that a reflection model is equal in Rust and in WGSL, which the CPU interprets: to 1e-4, for many
 /// directions, frames and parameters.
 ///
 /// # Panics
-/// If it is not.
+/// Panics if it is not.
 #[track_caller]
 pub fn assert_parity<M: ReflectionModel>() {
     let both = || parity::all(&ModelEntry::of::<M>(), &Sources::default());
     assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| both()));
 }
 
-/// Asserts the same on the GPU, at the ends of all ranges too. Needs a Vulkan driver; a software one will do.
+/// Asserts that a reflection model is equal in Rust and in WGSL on the GPU, including at the ends of all
+/// ranges. Needs a Vulkan driver; a software one is enough.
 ///
 /// # Panics
-/// If it is not, or if there is no driver.
+/// Panics if it is not, or without a driver.
 #[track_caller]
 pub fn assert_parity_on_gpu<M: ReflectionModel>() {
     let (model, sources) = (ModelEntry::of::<M>(), Sources::default());
@@ -105,11 +109,12 @@ pub fn assert_parity_on_gpu<M: ReflectionModel>() {
     assert(M::DECLARATION.id, both());
 }
 
-/// Asserts that a light type is the same in Rust and in WGSL, that its light is finite, not negative, proportional
-/// to the intensity and the product of its factors, and that its luminous flux is what it sends out in all directions.
+/// Asserts that a light type is equal in Rust and in WGSL, that its light is finite, not negative,
+/// proportional to the intensity and the product of its factors, and that its luminous flux is its light in
+/// all directions.
 ///
 /// # Panics
-/// If it is not.
+/// Panics if any of this is not true.
 #[track_caller]
 pub fn assert_light<L: LightType>() {
     let registered = registered!(L, light, try_add_light_type, replace_light_type);
@@ -117,11 +122,11 @@ pub fn assert_light<L: LightType>() {
     assert(L::DECLARATION.id, registered.and_then(|()| all()));
 }
 
-/// Asserts that a shading model is the same in Rust and in WGSL, at corners and in pixels, and evaluates the light at the
-/// stage that it declares and at no other.
+/// Asserts that a shading model is equal in Rust and in WGSL, at corners and in pixels, and evaluates the
+/// light only at the stage that it declares.
 ///
 /// # Panics
-/// If it is not, or does not.
+/// Panics if any of this is not true.
 #[track_caller]
 pub fn assert_shading<S: ShadingModel>() {
     let registered = registered!(S, shading_model, try_add_shading_model, replace_shading_model);
@@ -129,14 +134,14 @@ pub fn assert_shading<S: ShadingModel>() {
     assert(S::DECLARATION.id, registered.and_then(|()| all()));
 }
 
-/// Asserts that the meshes of an object type can be drawn by every shading model: at both ends of its tessellations,
-/// and at the default.
+/// Asserts that the meshes of an object type can be drawn by every shading model: at both ends of its
+/// tessellations, and at the default.
 ///
 /// # Panics
-/// If one cannot.
+/// Panics if a mesh cannot.
 #[track_caller]
 pub fn assert_mesh<T: ObjectType>() {
-    // Its messages are about what is drawn, so they come first.
+    // Its messages are about the mesh as drawn, so they come first.
     let all = meshes::all(&ShapeEntry::of::<T>());
     assert(
         T::DECLARATION.id,

@@ -1,4 +1,4 @@
-//! Reflection models in Rust and in WGSL, compared: both say the same.
+//! Compares reflection models in Rust and in WGSL.
 
 use glam::Vec3;
 use naga::Module;
@@ -16,18 +16,19 @@ use crate::{
     shader::{compose::Sources, interpret::Program},
 };
 
-/// The largest difference attributed to rounding, relative where the response is not dark.
+/// Maximum difference attributed to rounding, relative where the response is not dark.
 pub const TOLERANCE: f32 = 1e-4;
-/// The same where all parameters are at the ends of their ranges, or directions were rotated back and forth.
+/// Maximum difference where all parameters are at the ends of their ranges, or directions were rotated back
+/// and forth.
 const WIDE: f32 = 1e-3;
 
 /// A seed for [`at_the_ends_on_gpu`].
 pub const SEED_OF_ENDS: u64 = 11;
 
-/// All that needs no GPU.
+/// Checks everything that needs no GPU.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn all(model: &ModelEntry, sources: &Sources) -> Outcome {
     interpreted(model, sources)?;
     in_any_frame(model, sources)?;
@@ -55,7 +56,7 @@ fn put_frame(to: &mut Vec<u32>, frame: &Frame) {
     [frame.n, frame.t, frame.b].into_iter().for_each(|v| put(to, v));
 }
 
-/// The parameters of a model as its WGSL takes them: a struct has one field at least.
+/// The parameters of a model in the layout of its WGSL, where a struct has at least one field.
 fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
     match model.parameters {
         [] => vec![0],
@@ -63,7 +64,7 @@ fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
     }
 }
 
-/// A model's response by its WGSL, with one set of parameters.
+/// A model's response calculated by its WGSL, with one set of parameters.
 struct Twin<'a> {
     program: &'a Program,
     row: Vec<u32>,
@@ -97,7 +98,8 @@ impl<'a> Twin<'a> {
     }
 }
 
-/// The largest difference, relative where the response is not dark: below 1e-5 no display shows it.
+/// The largest difference, relative where the response is not dark: differences below 1e-5 are not visible on
+/// any display.
 #[must_use]
 pub fn difference(a: Terms, b: Terms) -> f32 {
     [(a.ambient, b.ambient), (a.diffuse, b.diffuse), (a.specular, b.specular)]
@@ -107,13 +109,13 @@ pub fn difference(a: Terms, b: Terms) -> f32 {
         .fold(0.0, |worst, error| if error.is_nan() { f32::INFINITY } else { worst.max(error) })
 }
 
-/// A response that is larger by a factor.
+/// A response multiplied by a factor.
 fn scaled(terms: Terms, factor: f32) -> Terms {
     let Terms { ambient, diffuse, specular } = terms;
     Terms { ambient: factor * ambient, diffuse: factor * diffuse, specular: factor * specular }
 }
 
-/// A comparison, which notes if a slightly wrong twin would have been noticed.
+/// A comparison, which records whether a slightly wrong twin would have been detected.
 struct Comparison {
     tolerance: f32,
     sensitive: bool,
@@ -142,10 +144,10 @@ impl Comparison {
     }
 }
 
-/// WGSL that the CPU interprets agrees with the Rust function in the local frame.
+/// Checks that WGSL interpreted on the CPU agrees with the Rust function in the local frame.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
     let module = module(model, sources)?;
     let program = program(&module, "response")?;
@@ -165,10 +167,10 @@ pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
     comparison.done()
 }
 
-/// The frame is used as the Rust function uses it.
+/// Checks that the frame is used as in the Rust function.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
     let module = module(model, sources)?;
     let program = program(&module, "response")?;
@@ -189,10 +191,10 @@ pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
     Ok(())
 }
 
-/// Uniform light is answered alike, by the formula or by the curve in the row of the object.
+/// Checks that the responses to uniform light agree, by formula or by the curve in the row of the object.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
     let module = module(model, sources)?;
     let program = program(&module, "ambient_response")?;
@@ -227,13 +229,13 @@ pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
     Ok(())
 }
 
-/// WGSL on the GPU agrees with the Rust function.
+/// Checks that WGSL on the GPU agrees with the Rust function.
 ///
 /// # Errors
-/// The first difference, or why the GPU gives no answer.
+/// Returns the first difference, or the reason why the GPU returns no result.
 pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     let mut seed = 7;
-    // Every choice should come up.
+    // Every choice should occur.
     let choices = model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
     let mut comparison = Comparison::new(TOLERANCE);
     for _ in 0..8 * (1 + choices) {
@@ -249,11 +251,12 @@ pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     comparison.done()
 }
 
-/// At the ends of all ranges both languages are finite and agree, for directions straight on, at the horizon and
-/// within it, below, opposite each other, and on one line. `seed` chooses the ends.
+/// Checks that both languages are finite and agree at the ends of all ranges, for directions along the
+/// normal, at the horizon and within it, below, opposite each other, and on one line. `seed` chooses the
+/// ends.
 ///
 /// # Errors
-/// The first difference, or why the GPU gives no answer.
+/// Returns the first difference, or the reason why the GPU returns no result.
 pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64) -> Outcome {
     let mut directions = SEED_OF_ENDS;
     let mut ends = vec![Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::ZERO];
@@ -263,7 +266,7 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
     ends.extend((0..6).map(|_| direction(&mut directions)));
     let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
     let mut sensitive = false;
-    // All at the smallest, all at the largest, then each at either.
+    // All at the minimum, all at the maximum, then each at either.
     for set in 0..10 {
         let mut values = Values::default();
         for p in model.parameters {
@@ -295,7 +298,7 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
                 if !(g.is_finite() && c.is_finite() && legal) {
                     return Err(case());
                 }
-                // Of a sum as short as this the languages need not find the same direction.
+                // For a sum as short as this the languages need not find the same direction.
                 if (*l + *v).length() < 1e-12 {
                     continue;
                 }

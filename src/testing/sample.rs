@@ -1,4 +1,4 @@
-//! Random directions and parameters, the same ones in every run.
+//! Random directions and parameters, identical in every run.
 
 use glam::Vec3;
 
@@ -21,7 +21,7 @@ pub fn direction(seed: &mut u64) -> Vec3 {
     Vec3::new(r * phi.cos(), r * phi.sin(), z)
 }
 
-/// A direction in the whole sphere.
+/// A direction on the whole sphere.
 pub(super) fn any_direction(seed: &mut u64) -> Vec3 {
     let d = direction(seed);
     if random(seed) < 0.5 { -d } else { d }

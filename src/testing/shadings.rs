@@ -1,4 +1,4 @@
-//! Shading models in Rust and in WGSL, compared, and the stage at which they evaluate the light.
+//! Compares shading models in Rust and in WGSL, and checks the stage at which they evaluate the light.
 
 use std::cell::Cell;
 
@@ -17,19 +17,19 @@ use crate::{
     shading::{Corner, Lighting, Shading, ShadingEntry, Stage, Varying},
 };
 
-/// Corners and pixels that are compared.
+/// Number of corners and pixels compared.
 const SAMPLES: usize = 4000;
 
-/// All of them.
+/// Checks everything about a shading model.
 ///
 /// # Errors
-/// The first that does not hold.
+/// Returns the first violation.
 pub fn all(shading: &ShadingEntry, sources: &Sources) -> Outcome {
     stage(shading)?;
     parity(shading, sources)
 }
 
-/// The light at a point, the same formula as in [`compose_shading`], and how often it was asked for.
+/// The light at a point, with the same formula as in [`compose_shading`], and the number of evaluations.
 #[derive(Default)]
 struct StandIn(Cell<usize>);
 
@@ -44,7 +44,7 @@ fn place(seed: &mut u64) -> Vec3 {
     Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
 }
 
-/// A tangent, as interpolation and scale leave it: of any length, sometimes none.
+/// A tangent as after interpolation and scaling: of any length, sometimes zero.
 fn tangent(seed: &mut u64) -> Vec3 {
     if random(seed) < 0.05 { Vec3::ZERO } else { 2.0 * random(seed) * any_direction(seed) }
 }
@@ -60,7 +60,7 @@ fn corner(seed: &mut u64) -> Corner {
     }
 }
 
-/// Values between corners, whose normals are shorter than 1.
+/// Values between corners, with normals shorter than 1.
 fn varying(seed: &mut u64) -> Varying {
     Varying {
         position: place(seed),
@@ -78,11 +78,11 @@ fn values(shading: &ShadingEntry, seed: &mut u64) -> Values {
     values
 }
 
-/// The light is evaluated at the declared stage and at no other, and for [`Stage::Polygon`] the corners of a polygon have the
-/// same values but for their positions.
+/// Checks that the light is evaluated only at the declared stage and that, for [`Stage::Polygon`], the
+/// corners of a polygon have equal values except for their positions.
 ///
 /// # Errors
-/// The first violation.
+/// Returns the first violation.
 pub fn stage(shading: &ShadingEntry) -> Outcome {
     let mut seed = 41;
     let declared = shading.declaration.stage;
@@ -121,7 +121,7 @@ pub fn stage(shading: &ShadingEntry) -> Outcome {
     Ok(())
 }
 
-/// One function in WGSL, with the row of parameters.
+/// A function in WGSL, with the row of parameters.
 struct Twin {
     program: Program,
     name: &'static str,
@@ -136,11 +136,12 @@ impl Twin {
     }
 }
 
-/// WGSL that the CPU interprets agrees with the Rust functions. Derivatives on the screen are those of a plane triangle, so
-/// a shading model that takes them of something else than the place cannot be compared.
+/// Checks that WGSL interpreted on the CPU agrees with the Rust functions. Derivatives on the screen are
+/// those of a plane triangle, so a shading model that takes derivatives of anything but the position cannot
+/// be compared.
 ///
 /// # Errors
-/// The first difference.
+/// Returns the first difference.
 pub fn parity(shading: &ShadingEntry, sources: &Sources) -> Outcome {
     let module = validate(&compose_shading(sources, shading)).map_err(|problem| problem.to_string())?;
     let [vertex, pixel] =
@@ -187,7 +188,7 @@ fn at_corner(own: &dyn Shading, twin: &Twin, row: &[u32], at: &Corner) -> Outcom
     })
 }
 
-/// True if a pixel that is 0.05 % brighter would have been noticed.
+/// True if a pixel that is 0.05 % brighter would have been detected.
 fn in_pixel(
     (own, twin): (&dyn Shading, &Twin),
     row: &[u32],

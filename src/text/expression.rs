@@ -1,4 +1,5 @@
-//! Equations that calculate: the notation of [`mathematics`](super::mathematics), read as expressions with values.
+//! Evaluates equations: the notation of [`mathematics`](super::mathematics), parsed as expressions with
+//! values.
 //!
 //! ```text
 //! expression  sum ["if" condition ["else" expression]]
@@ -10,26 +11,27 @@
 //!             each with a power
 //! ```
 //!
-//! A symbol right before a bracket is a function, and a product where a space is between them. Angles carry their unit:
-//! `20°` times or over numbers stays an angle, `20°/180°` is a number, and a sum of an angle and a number is an error, so an
-//! equation that takes degrees for radians is one that cannot be read. A product whose left side is zero is zero,
-//! whatever stands on its right, which is not asked for then; and so is the side of a condition that does not hold.
+//! A symbol directly before a bracket is a function, but a product if a space is between them. Angles have a
+//! unit: `20°` multiplied or divided by numbers stays an angle, `20°/180°` is a number, and a sum of an angle
+//! and a number is an error, so an equation that mistakes degrees for radians cannot be evaluated. A product
+//! whose left factor is zero is zero, and its right factor is not evaluated; nor is the branch of a condition
+//! that does not apply.
 
 use super::mathematics::{Atom, MAX_DEPTH, beyond_limits, parse as atoms, write};
 
-/// The letters of directions, whose scalar products are written `N·L`.
+/// Letters of directions, whose scalar products are written `N·L`.
 const VECTORS: &str = "NLVHRTB";
-/// The deepest nesting of an expression; powers and signs count as brackets do.
+/// Maximum nesting of an expression; powers and signs count like brackets.
 const DEEPEST: usize = 4 * MAX_DEPTH;
 
-/// A value: red, green and blue, all the same for a number, and the power of the unit degree.
+/// A value: red, green and blue, all equal for a number, and the power of the unit degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
     /// The three channels.
     pub rgb: [f64; 3],
     /// 1 for angles in degrees, 0 for numbers, 2 for the square of an angle.
     pub degrees: i32,
-    /// True for what is, or comes of, a colour, even a grey one.
+    /// True for a colour, even a grey one, and for values calculated from one.
     pub is_colour: bool,
 }
 
@@ -52,7 +54,7 @@ impl Value {
         Self { rgb: [degrees; 3], degrees: 1, is_colour: false }
     }
 
-    /// True if red, green and blue are the same.
+    /// True if red, green and blue are equal.
     #[must_use]
     pub fn is_grey(&self) -> bool {
         let [r, g, b] = self.rgb;
@@ -75,7 +77,7 @@ impl Value {
         }
     }
 
-    /// The unit of two values that are added or compared: the same, or that of the other for zero.
+    /// The unit of two values that are added or compared: their common unit, or that of the other for zero.
     fn common(self, other: Self) -> Result<i32, String> {
         match (self.degrees, other.degrees) {
             (a, b) if a == b => Ok(a),
@@ -89,7 +91,7 @@ impl Value {
         if self.degrees == 0 { Ok(self) } else { Err(format!("{what} of an angle in degrees")) }
     }
 
-    /// In radians, for functions of angles; a plain number is in radians already.
+    /// The value in radians, for functions of angles; a plain number is already in radians.
     fn radians(self) -> Result<Self, String> {
         match self.degrees {
             0 => Ok(self),
@@ -99,22 +101,22 @@ impl Value {
     }
 }
 
-/// Gives expressions the values of what they name.
+/// Provides the values of names in expressions.
 pub trait Scope {
     /// The value of a symbol, such as `k_d` or `F_{90}`, or of a scalar product, `N·L`.
     ///
     /// # Errors
-    /// If it has none, or it cannot be calculated: in words.
+    /// Returns the reason, in words, if the symbol has no value or cannot be calculated.
     fn value(&mut self, symbol: &str) -> Result<Value, String>;
 
-    /// The value of a function that is no function of everybody's: `F(N·L)`. The arguments are as they are written.
+    /// The value of a function that is not built in: `F(N·L)`. The arguments are as written.
     ///
     /// # Errors
-    /// As for symbols.
+    /// Returns the reason, in words, if the function has no value or cannot be calculated.
     fn call(&mut self, name: &str, arguments: &[String]) -> Result<Value, String>;
 }
 
-/// Functions that need no definition.
+/// Built-in functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Function {
     Max,
@@ -136,7 +138,7 @@ enum Function {
     Fract,
 }
 
-/// True for the name of a function that needs no definition.
+/// True for the name of a built-in function.
 #[must_use]
 pub fn is_function(word: &str) -> bool {
     Function::named(word).is_some()
@@ -166,7 +168,7 @@ impl Function {
         })
     }
 
-    /// Its smallest and largest number of arguments.
+    /// The minimum and maximum number of arguments.
     fn arity(self) -> (usize, usize) {
         match self {
             Self::Max | Self::Min => (2, 8),
@@ -191,7 +193,7 @@ impl Function {
             Self::Sin => first.radians()?.map(0, f64::sin),
             Self::Cos => first.radians()?.map(0, f64::cos),
             Self::Tan => first.radians()?.map(0, f64::tan),
-            // Equations have angles in degrees, as people do.
+            // Equations have angles in degrees.
             Self::Arccos => first.plain("arccos")?.map(1, |c| c.clamp(-1.0, 1.0).acos().to_degrees()),
             Self::Arcsin => first.plain("arcsin")?.map(1, |s| s.clamp(-1.0, 1.0).asin().to_degrees()),
             Self::Arctan => first.plain("arctan")?.map(1, |t| t.atan().to_degrees()),
@@ -225,7 +227,7 @@ enum Relation {
     Equal,
 }
 
-/// An expression that has been read.
+/// A parsed expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression(Node);
 
@@ -243,10 +245,10 @@ enum Node {
 }
 
 impl Expression {
-    /// Reads an expression.
+    /// Parses an expression.
     ///
     /// # Errors
-    /// If it is none, in words, or beyond the limits of equations.
+    /// Returns the reason, in words, if the text is not an expression, or exceeds the limits of equations.
     pub fn read(text: &str) -> Result<Self, String> {
         if let Some((_, what)) = beyond_limits(text) {
             return Err(what);
@@ -264,10 +266,10 @@ impl Expression {
         }
     }
 
-    /// Its value.
+    /// Evaluates the expression.
     ///
     /// # Errors
-    /// If something that it needs has no value, or units do not fit: in words.
+    /// Returns the reason, in words, if something in it has no value, or units do not match.
     pub fn value(&self, scope: &mut dyn Scope) -> Result<Value, String> {
         self.0.value(scope)
     }
@@ -388,7 +390,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The next atom that is no space, without taking it.
+    /// The next atom that is not a space, without consuming it.
     fn next_base(&mut self) -> &'a str {
         self.skip_spaces();
         self.peek().map_or("", Atom::base)
@@ -478,7 +480,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What stands below a slash: one factor behind a space, and otherwise all up to the next space, as it is set.
+    /// The divisor after a slash: one factor after a space, and otherwise everything up to the next space, as
+    /// in print.
     fn divisor(&mut self) -> Result<Node, String> {
         let spaced = self.peek() == Some(&Atom::Space);
         let mut divisor = self.factor()?;
@@ -494,7 +497,7 @@ impl<'a> Reader<'a> {
         Ok(divisor)
     }
 
-    /// The power of an atom that ends a factor.
+    /// An atom that ends a factor, with its power.
     fn raised(&mut self, base: Node, by: &Atom) -> Result<Node, String> {
         if by.sup().is_empty() {
             return Ok(base);
@@ -517,7 +520,7 @@ impl<'a> Reader<'a> {
         let base = atom.base();
         if let Some(function) = Function::named(base) {
             let arguments = self.arguments_of(function)?;
-            // A power of the function's name, as in tan² θ, is one of its value.
+            // A power of the function's name, as in tan² θ, applies to its value.
             let (arguments, last) = arguments;
             let value = Node::Function(function, arguments);
             let value = self.raised(value, atom)?;
@@ -628,7 +631,7 @@ impl<'a> Reader<'a> {
         Ok((parts, Some(close)))
     }
 
-    /// Values with commas between, up to a closing bracket.
+    /// Values separated by commas, up to a closing bracket.
     fn list(&mut self, close: &str) -> Result<(Vec<Node>, &'a Atom), String> {
         let mut parts = vec![self.expression()?];
         loop {
@@ -644,7 +647,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Arguments as they are written, without their commas.
+/// Arguments as written, without their commas.
 fn split(atoms: &[Atom]) -> Vec<String> {
     let (mut texts, mut start, mut depth) = (Vec::new(), 0, 0);
     for (i, atom) in atoms.iter().enumerate() {

@@ -1,12 +1,12 @@
-//! The identifiers of scene files: ids, and the names of parameters.
+//! The identifiers of scene files: ids, and names of parameters.
 
-/// The longest id or name of a parameter, characters.
+/// Maximum length of an id or a parameter name, in characters.
 pub const LONGEST_ID: usize = 40;
 
-/// Checks an id or the name of a parameter.
+/// Checks an id or a parameter name.
 ///
 /// # Errors
-/// [`identifier_rule`], if it cannot be used.
+/// Returns [`identifier_rule`] if the identifier is invalid.
 pub fn identifier(id: &str) -> Result<(), String> {
     let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     let starts = id.starts_with(|c: char| c.is_ascii_lowercase());
@@ -24,7 +24,7 @@ pub fn identifier_rule() -> String {
     )
 }
 
-/// The identifier that somebody who wrote a word may have meant.
+/// The identifier that was probably meant by a word.
 #[must_use]
 pub fn as_identifier(word: &str) -> Option<String> {
     let mut out = String::new();

@@ -1,8 +1,8 @@
-//! Reading JSON by hand, with a path and a byte offset for everything that is wrong. Scenes and the declarations of
-//! custom models are read alike.
+//! Reads JSON manually, with a path and a byte offset for every error. Used for scenes and for the
+//! declarations of custom models.
 //!
-//! A [`Cursor`] stands at a value and knows the way to it; a [`Reader`] returns the value as a type, and reports a
-//! value of another type with its path, itself and the rule.
+//! A [`Cursor`] points at a value and knows its path; a [`Reader`] returns the value as a type, and reports a
+//! value of another type with its path, the value and the rule.
 
 use jsonc_parser::{CollectOptions, ParseOptions, common::Ranged, parse_to_ast};
 
@@ -14,7 +14,7 @@ use super::{
     shortened,
 };
 
-/// JSON and nothing else.
+/// Options for strict JSON.
 pub const STRICT: ParseOptions = ParseOptions {
     allow_comments: false,
     allow_loose_object_property_names: false,
@@ -30,13 +30,14 @@ pub const STRICT: ParseOptions = ParseOptions {
 
 /// The value in a text, if there is one.
 ///
-/// The byte at which the text stops being JSON, and the reason.
+/// # Errors
+/// Returns the byte at which the text stops being JSON, and the reason.
 pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), options);
     parsed.map(|p| p.value).map_err(|e| (e.range().start, e.kind().to_string()))
 }
 
-/// A value, and the way to it. The path is built on demand: most values are right, and there may be many.
+/// A value, and its path. The path is built on demand: most values are valid, and there may be many.
 #[derive(Clone, Copy)]
 pub struct Cursor<'p, 'a> {
     /// The value.
@@ -59,7 +60,7 @@ impl<'p, 'a> Cursor<'p, 'a> {
         Self { value, way: Way::Root }
     }
 
-    /// The way from the outermost value.
+    /// The path from the outermost value.
     #[must_use]
     pub fn path(&self) -> Path {
         match self.way {
@@ -69,7 +70,7 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// Another value, under this one's name in messages.
+    /// Another value, with this one's name in messages.
     #[must_use]
     pub fn holding(self, value: &'p Ast<'a>) -> Self {
         Self { value, ..self }
@@ -99,14 +100,14 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// The whole number. `32.0` and `3.2e1` are whole: JSON does not distinguish them from `32`.
+    /// The integer. `32.0` and `3.2e1` are integers: JSON does not distinguish them from `32`.
     #[must_use]
     pub fn integer(&self) -> Option<i64> {
         let Ast::NumberLit(number) = self.value else { return None };
         if let Ok(integer) = number.value.parse() {
             return Some(integer);
         }
-        // Beyond this, neighbouring whole numbers are the same in 64 bits.
+        // Beyond this, neighbouring integers are equal in 64 bits.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         let v: f64 = number.value.parse().ok()?;
         (v.fract() == 0.0 && v.abs() <= EXACT).then_some(v as i64)
@@ -155,7 +156,7 @@ impl<'a> Fields<'_, 'a> {
         self.fields.iter().map(|(k, p)| (*k, Cursor { value: &p.value, way: Way::Key(&self.of, k) }))
     }
 
-    /// The way to a field, given or not.
+    /// The path of a field, given or not.
     #[must_use]
     pub fn path(&self, key: &'static str) -> Path {
         self.of.path().key(key)
@@ -170,7 +171,7 @@ pub trait Reader {
     /// Records a problem at a byte: a value as written and the rule that it breaks, or a whole predicate.
     fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str);
 
-    /// True if so much is wrong that unknown keys need not be listed any more.
+    /// True after so many errors that unknown keys need not be listed any more.
     fn has_enough(&self) -> bool {
         false
     }
@@ -180,7 +181,7 @@ pub trait Reader {
         String::new()
     }
 
-    /// The end of the message about an unknown key: the nearest known key, for example.
+    /// The end of the message about an unknown key, for example with the nearest known key.
     fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String;
 
     /// A value as shown in messages.
@@ -199,7 +200,7 @@ pub trait Reader {
         self.report(fields.of.start(), fields.path(key), None, &format!("is missing; {why}"));
     }
 
-    /// The fields of an object. Reports a value that is no object, unknown keys, and keys given twice.
+    /// The fields of an object. Reports a value that is not an object, unknown keys, and repeated keys.
     fn fields<'p, 'a>(
         &mut self,
         of: Cursor<'p, 'a>,
@@ -283,7 +284,8 @@ pub fn describe(value: &Ast, text: &str) -> String {
     }
 }
 
-/// The byte and the value of a path; if the value is missing, the byte of the object that lacks it.
+/// The byte and the value at a path; if the value is missing, the byte of the enclosing object, which lacks
+/// it.
 #[must_use]
 pub fn locate<'b, 'a>(root: &'b Ast<'a>, path: &Path) -> (usize, Option<&'b Ast<'a>>) {
     let mut value = root;

@@ -1,7 +1,7 @@
-//! Short lists as people type them: on the command line and in the cells of a table.
+//! Short lists as typed by people: on the command line and in the cells of a table.
 
-/// The items of a list, each with its byte: `255 128 0`, `255, 128, 0`, `255; 128; 0`, with or without brackets
-/// around it. Between two separators there may be nothing.
+/// The items of a list, each with its byte: `255 128 0`, `255, 128, 0`, `255; 128; 0`, with or without
+/// enclosing brackets. An item between two separators may be empty.
 #[must_use]
 pub fn items(text: &str) -> Vec<(usize, &str)> {
     let trimmed = text.trim();
@@ -9,7 +9,7 @@ pub fn items(text: &str) -> Vec<(usize, &str)> {
     let separated = inner.contains([',', ';']);
     let raw: Vec<_> =
         if separated { inner.split([',', ';']).collect() } else { inner.split_whitespace().collect() };
-    // Slices of one text: their distance is their place.
+    // Slices of one text: their distance is their position.
     let place = |item: &str| item.as_ptr() as usize - text.as_ptr() as usize;
     raw.into_iter().map(str::trim).map(|item| (place(item), item)).collect()
 }
@@ -32,7 +32,7 @@ mod tests {
             }
         }
         assert_eq!(items("0.5"), [(0, "0.5")]);
-        // The wrong twins: something is missing, or there is too much.
+        // The wrong twins: something is missing or superfluous.
         for text in ["1,,2", "1, 2,", "[1, 2"] {
             assert!(items(text).iter().any(|(_, item)| item.parse::<f32>().is_err()), "{text}");
         }

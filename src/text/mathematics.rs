@@ -1,12 +1,14 @@
-//! The pieces of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group. A second
-//! superscript of one atom is that of the first, as powers are read: `x^y^z` is `x^{y^z}`; so are subscripts.
+//! The atoms of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group. A
+//! second superscript of one atom belongs to the first, as powers are read: `x^y^z` is `x^{y^z}`; so do
+//! subscripts.
 
-/// The most characters of a line of an equation. The longest of the shipped models has a tenth of this.
+/// Maximum length of a line of an equation, in characters. The longest line in the shipped models has a tenth
+/// of it.
 pub const LONGEST_LINE: usize = 2000;
-/// The deepest nesting of brackets in an equation, which is also the deepest recursion of what sets one.
+/// Maximum nesting of brackets in an equation, which also bounds the recursion of typesetting.
 pub const MAX_DEPTH: usize = 24;
 
-/// The first place at which an equation is longer or deeper than any may be: its byte, and a sentence.
+/// The first position at which an equation exceeds a limit: its byte, and a sentence.
 #[must_use]
 pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
     let mut open: Vec<char> = Vec::new();
@@ -14,7 +16,7 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
     for (at, c) in equation.char_indices() {
         length = if c == '\n' { 0 } else { length + 1 };
         match c {
-            // Of two bars the second closes.
+            // The second of two bars closes.
             '|' if open.last() == Some(&'|') => _ = open.pop(),
             '(' | '[' | '{' | '⟨' | '|' => open.push(c),
             ')' | ']' | '}' | '⟩' => while open.pop() == Some('|') {},
@@ -43,7 +45,7 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
     None
 }
 
-/// True if the scripts of some text, which is the script of so many others, are nested deeper than any may be.
+/// True if the scripts of a text, itself nested this deep, exceed the maximum depth.
 fn stands_beyond(text: &str, depth: usize) -> bool {
     depth > MAX_DEPTH
         || parse(text).iter().any(|atom| {
@@ -51,33 +53,33 @@ fn stands_beyond(text: &str, depth: usize) -> bool {
         })
 }
 
-/// A piece of an equation that is not broken.
+/// An unbreakable piece of an equation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Atom {
-    /// A variable, perhaps with an index and a power: `k_d`, `d^2`.
+    /// A variable, possibly with a subscript and a power: `k_d`, `d^2`.
     Symbol {
         /// The letter.
         base: String,
-        /// Below the line.
+        /// Subscript.
         sub: String,
-        /// Above the line.
+        /// Superscript.
         sup: String,
     },
-    /// A function's name, a number, an operator or a bracket, perhaps with an index and a power.
+    /// A function name, a number, an operator or a bracket, possibly with a subscript and a power.
     Upright {
         /// The characters.
         base: String,
-        /// Below the line.
+        /// Subscript.
         sub: String,
-        /// Above the line.
+        /// Superscript.
         sup: String,
     },
-    /// A space: where a line may be broken.
+    /// A space, where a line may be broken.
     Space,
 }
 
 impl Atom {
-    /// The symbol as declarations write it (`k_d`), if the atom is one.
+    /// The symbol as written in declarations (`k_d`), if the atom is one.
     #[must_use]
     pub fn symbol(&self) -> Option<String> {
         match self {
@@ -87,7 +89,7 @@ impl Atom {
         }
     }
 
-    /// The letter, the word or the sign; empty for a space.
+    /// The letter, word or sign; empty for a space.
     #[must_use]
     pub fn base(&self) -> &str {
         match self {
@@ -96,7 +98,7 @@ impl Atom {
         }
     }
 
-    /// The index; often empty.
+    /// The subscript; often empty.
     #[must_use]
     pub fn sub(&self) -> &str {
         match self {
@@ -114,7 +116,7 @@ impl Atom {
         }
     }
 
-    /// The symbol that is the power of the atom, if the power is one: the `α` of `(N·H)^α`.
+    /// The symbol that is the power of the atom, if any: the `α` of `(N·H)^α`.
     #[must_use]
     pub fn power(&self) -> Option<String> {
         match self {
@@ -152,7 +154,7 @@ pub fn parse(text: &str) -> Vec<Atom> {
         }
         let base: String = chars[start..i].iter().collect();
         let (mut sub, mut sup) = (String::new(), String::new());
-        // True for the power, and the index, if it is a group so far.
+        // True for the power and the subscript if it is a group so far.
         let mut grouped = [false; 2];
         while let Some(mark @ ('_' | '^')) = chars.get(i).copied() {
             let (inside, next) = script(&chars, i + 1);
@@ -176,7 +178,8 @@ pub fn parse(text: &str) -> Vec<Atom> {
     atoms
 }
 
-/// Gives a script one of its own: to its last atom, or, if it was a group of several or has one already, to all of it.
+/// Adds a script to a script: to its last atom, or to all of it if it was a group of several or already has
+/// one.
 fn nest(script: &mut String, mark: char, own: &str, grouped: bool) {
     let atoms = if grouped { parse(script) } else { Vec::new() };
     let taken = |atom: &Atom| !(if mark == '_' { atom.sub() } else { atom.sup() }).is_empty();
@@ -187,7 +190,7 @@ fn nest(script: &mut String, mark: char, own: &str, grouped: bool) {
     script.push_str(own);
 }
 
-/// The definitions of a part of an equation, which has commas between them.
+/// The definitions in a part of an equation, separated by commas.
 #[must_use]
 pub fn definitions(text: &str) -> Vec<&str> {
     let (mut pieces, mut start, mut depth) = (Vec::new(), 0, 0);
@@ -206,7 +209,7 @@ pub fn definitions(text: &str) -> Vec<&str> {
     pieces
 }
 
-/// True if a text begins with one thing and an equals sign: `F_0 = …`, `cos g = …`.
+/// True if a text begins with a single term and an equals sign: `F_0 = …`, `cos g = …`.
 fn defines(text: &str) -> bool {
     text.split_once('=').is_some_and(|(head, _)| {
         !head.contains([',', '+', '−', '·', '/', '<', '>'])
@@ -214,13 +217,13 @@ fn defines(text: &str) -> bool {
     })
 }
 
-/// A symbol as programs compare it: without the braces that group its index.
+/// A symbol for comparison: without the braces that group its subscript.
 #[must_use]
 pub fn plain_symbol(symbol: &str) -> String {
     symbol.replace(['{', '}'], "")
 }
 
-/// Atoms as they are written.
+/// Atoms as text.
 #[must_use]
 pub fn write(atoms: &[Atom]) -> String {
     let mut out = String::new();
@@ -245,14 +248,15 @@ pub fn write(atoms: &[Atom]) -> String {
     out.trim().to_owned()
 }
 
-/// True for a variable: one letter. Several are a word, such as `max`.
+/// True for a variable: a single letter. Several are a word, such as `max`.
 #[must_use]
 pub fn is_variable(text: &str) -> bool {
     let mut chars = text.chars();
     chars.next().is_some_and(char::is_alphabetic) && chars.next().is_none()
 }
 
-/// A superscript or subscript: a group in braces or brackets, a number, perhaps with a sign, or one character.
+/// A superscript or subscript: a group in braces or brackets, a number, possibly with a sign, or a single
+/// character.
 fn script(chars: &[char], start: usize) -> (String, usize) {
     match chars.get(start) {
         Some('{') => {
@@ -276,7 +280,7 @@ fn script(chars: &[char], start: usize) -> (String, usize) {
         Some(c) if c.is_ascii_digit() || *c == '−' => {
             let digit = |i: usize| chars.get(i).is_some_and(char::is_ascii_digit);
             let mut end = start + 1;
-            // A point belongs to a number if a digit is behind it.
+            // A point belongs to a number if a digit follows.
             while digit(end) || chars.get(end) == Some(&'.') && digit(end + 1) {
                 end += 1;
             }
@@ -287,7 +291,7 @@ fn script(chars: &[char], start: usize) -> (String, usize) {
     }
 }
 
-/// The symbol of a parameter, which is all one symbol: everything after `_` is its index.
+/// The symbol of a parameter, which is a single symbol: everything after `_` is its subscript.
 #[must_use]
 pub fn parse_symbol(symbol: &str) -> Atom {
     let (base, sub) = symbol.split_once('_').unwrap_or((symbol, ""));
@@ -295,7 +299,7 @@ pub fn parse_symbol(symbol: &str) -> Atom {
     Atom::Symbol { base: base.to_owned(), sub, sup: String::new() }
 }
 
-/// The same symbol, however it is written.
+/// True if two notations stand for the same symbol.
 #[must_use]
 pub fn same_symbol(a: &str, b: &str) -> bool {
     let plain = |c: &char| !matches!(c, '{' | '}');

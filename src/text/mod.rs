@@ -1,4 +1,4 @@
-//! Words for messages, and JSON whose values know their place.
+//! Words for messages, and JSON values with their positions.
 
 pub mod expression;
 pub mod identifier;
@@ -16,7 +16,7 @@ pub use words::{
     with_article,
 };
 
-/// The bytes of a text in UTF-8 without the byte order mark that some programs write before it.
+/// The bytes of a UTF-8 text without the byte order mark that some programs write first.
 pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
 }

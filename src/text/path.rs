@@ -1,4 +1,4 @@
-//! The way to a value in JSON.
+//! Paths to values in JSON.
 
 use std::{borrow::Cow, fmt};
 
@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::quoted;
 
-/// One step on the way to a value.
+/// A step of a path.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Segment {
     /// Into an object, by key.
@@ -15,18 +15,19 @@ pub enum Segment {
     Index(usize),
 }
 
-/// The way to a value from the outermost one: `objects[0].material.k_d`. Empty for the outermost value itself.
+/// The path from the outermost value to another one: `objects[0].material.k_d`. Empty for the outermost value
+/// itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Path(Vec<Segment>);
 
 impl Path {
-    /// The outermost value.
+    /// The path of the outermost value.
     #[must_use]
     pub fn root() -> Self {
         Self::default()
     }
 
-    /// One step further.
+    /// The path extended by a step.
     #[must_use]
     pub fn then(mut self, step: Segment) -> Self {
         self.0.push(step);
@@ -45,7 +46,7 @@ impl Path {
         self.clone().then(Segment::Index(index))
     }
 
-    /// The index in a list at the outermost level: 3 for `objects[3].size` in `objects`.
+    /// The index in a top-level list: 3 for `objects[3].size` in `objects`.
     #[must_use]
     pub fn index_in(&self, list: &str) -> Option<usize> {
         match self.0.as_slice() {
@@ -60,7 +61,7 @@ impl Path {
         &self.0
     }
 
-    /// Every path on the way to this one, including the outermost value and this one.
+    /// All prefixes of this path, including the empty path and this one.
     pub fn ancestors(&self) -> impl Iterator<Item = Self> + '_ {
         (0..=self.0.len()).map(|n| Self(self.0[..n].to_vec()))
     }
@@ -90,7 +91,7 @@ impl Serialize for Path {
     }
 }
 
-/// True if a key can stand in a path without quotes.
+/// True if a key can appear in a path without quotes.
 fn is_plain(key: &str) -> bool {
     !key.is_empty() && key.len() <= 60 && key.chars().all(|c| c.is_alphanumeric() || "_-$".contains(c))
 }

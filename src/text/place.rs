@@ -1,10 +1,10 @@
-//! Lines and columns of a text.
+//! Lines and columns in a text.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// A place in a text. Both count from 1; columns count characters.
+/// A position in a text. Both numbers count from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Place {
     /// The line.
@@ -19,7 +19,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Finds lines and columns. Built once per text; lookups are fast even in a text of one huge line.
+/// Finds lines and columns. Built once per text; lookups are fast even in a single huge line.
 pub struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -27,7 +27,7 @@ pub struct Lines<'a> {
     characters: Vec<usize>,
 }
 
-/// Bytes between two counts.
+/// Number of bytes between two counts.
 const BLOCK: usize = 4096;
 
 impl<'a> Lines<'a> {

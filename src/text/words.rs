@@ -15,15 +15,15 @@ pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
     }
 }
 
-/// The target whose spelling is nearest to the written one, if any is near. Each candidate is a spelling and its
-/// target.
+/// The target with the spelling nearest to the given one, if it is near enough. Each candidate is a spelling
+/// and its target.
 #[must_use]
 pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
     // Names are short; comparing a book with each of them would take forever.
     if written.len() > 64 {
         return None;
     }
-    // Case and separators are the most common slips: sceneSize, scene-size.
+    // Differences in case and separators are the most common: sceneSize, scene-size.
     let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
     let wanted = plain(written);
     let distance = |candidate: &str| {
@@ -43,7 +43,7 @@ pub fn did_you_mean<'a>(written: &str, candidates: impl Iterator<Item = (&'a str
     nearest(written, candidates).map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)))
 }
 
-/// A message with one more detail, which stands before a question at its end.
+/// A message with an additional detail, inserted before a question at its end.
 #[must_use]
 pub fn detailed(message: &str, detail: &str) -> String {
     let question = message.rfind("; did you mean").filter(|_| message.ends_with('?'));
@@ -51,7 +51,7 @@ pub fn detailed(message: &str, detail: &str) -> String {
     format!("{said}; {detail}{question}")
 }
 
-/// A part of 1 in per cent, with two digits: "12 %", "1.2 %", "0.12 %", "< 0.01 %".
+/// A fraction in per cent, with two digits: "12 %", "1.2 %", "0.12 %", "< 0.01 %".
 #[must_use]
 pub fn per_cent(part: f32) -> String {
     match 100.0 * part {
@@ -62,7 +62,7 @@ pub fn per_cent(part: f32) -> String {
     }
 }
 
-/// A message as a sentence within a text: with a full stop, unless it ends with another mark.
+/// A message as a sentence in a text: with a full stop, unless it ends with another mark.
 #[must_use]
 pub fn sentence(message: &str) -> String {
     let ended = message.ends_with(['.', '?', '!', '…']);
@@ -75,7 +75,7 @@ pub fn one_of<'a>(what: &str, words: impl Iterator<Item = &'a str>) -> String {
     format!("{what} must be {}", listed(&words.map(quoted).collect::<Vec<_>>(), "or"))
 }
 
-/// A text in double quotes, with control characters escaped, and shortened: for messages.
+/// A text in double quotes for messages, shortened and with control characters escaped.
 #[must_use]
 pub fn quoted(text: &str) -> String {
     shortened(&format!("{text:?}"))
@@ -84,7 +84,7 @@ pub fn quoted(text: &str) -> String {
 /// The beginning of a text that is too long for a message, on one line.
 #[must_use]
 pub fn shortened(text: &str) -> String {
-    /// The most characters that read well within a sentence.
+    /// Maximum number of characters that read well within a sentence.
     const LONGEST: usize = 60;
     let flat = |c: char| if c.is_control() { ' ' } else { c };
     match text.char_indices().nth(LONGEST) {
@@ -106,7 +106,7 @@ pub fn plural(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
-/// The number as a person would write it: 0.1, and not its nearest 32-bit neighbour in 64 bits.
+/// The number as a person would write it: 0.1, not its nearest 32-bit neighbour in 64 bits.
 #[must_use]
 pub fn number(v: f32) -> Json {
     if v.fract() == 0.0 && v.abs() < 1e9 {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-/// A text in which the characters that XML 1.0 forbids are written like `\u{fffe}`.
+/// A text in which characters forbidden by XML 1.0 are written like `\u{fffe}`.
 #[must_use]
 pub fn legal(text: &str) -> String {
     let mut legal = String::with_capacity(text.len());
@@ -16,13 +16,13 @@ pub fn legal(text: &str) -> String {
     legal
 }
 
-/// The same with the signs escaped that XML gives a meaning, for texts and attributes.
+/// A text with XML's special characters escaped, for texts and attributes.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     legal(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The same for a comment, which must neither contain `--` nor end with `-`.
+/// A text for a comment, which must neither contain `--` nor end with `-`.
 #[must_use]
 pub fn comment(text: &str) -> String {
     let mut apart = String::with_capacity(text.len());

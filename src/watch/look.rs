@@ -1,4 +1,4 @@
-//! Looking at folders: the files in them, and the places to listen for changes.
+//! Examines folders: the files in them, and the places to watch for changes.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -8,9 +8,9 @@ use std::{
     time::SystemTime,
 };
 
-/// The longest chain of links that is followed.
+/// Maximum number of links followed in a chain.
 const MAX_LINKS: usize = 16;
-/// The deepest nesting of folders that is followed.
+/// Maximum nesting of folders that is followed.
 const MAX_DEPTH: usize = 32;
 
 /// The state of a file, as far as it is known without reading it.
@@ -18,12 +18,12 @@ const MAX_DEPTH: usize = 32;
 pub(crate) struct Print {
     length: u64,
     modified: Option<SystemTime>,
-    /// Distinguishes a file from another one that takes its place.
+    /// Distinguishes a file from another one that replaces it.
     number: u64,
 }
 
 impl Print {
-    /// The state of a file; `None` if there is none.
+    /// The state of a file; `None` if it does not exist.
     pub(crate) fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         (!metadata.is_dir()).then(|| Self::from_metadata(&metadata))
@@ -45,8 +45,8 @@ pub(super) struct Place {
     pub(super) folder: PathBuf,
     /// The name in it; `None` for every name.
     pub(super) name: Option<OsString>,
-    /// The name of the file in reports, or of the files' folder; `None` where a change only means that everything must
-    /// be looked at again.
+    /// The name of the file in reports, or of the files' folder; `None` where a change only means that
+    /// everything must be checked again.
     pub(super) shown: Option<PathBuf>,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct Found {
     pub(super) places: Vec<Place>,
 }
 
-/// Looks for one file.
+/// Examines a single file.
 pub(super) fn file(path: &Path) -> Found {
     let mut found = Found::default();
     trace(path, Some(path), &mut found.places, 0);
@@ -65,7 +65,7 @@ pub(super) fn file(path: &Path) -> Found {
     found
 }
 
-/// Looks at a folder and everything below it.
+/// Examines a folder and everything below it.
 pub(super) fn folder(path: &Path) -> Found {
     let mut found = Found::default();
     trace(path, None, &mut found.places, 0);
@@ -73,7 +73,7 @@ pub(super) fn folder(path: &Path) -> Found {
     found
 }
 
-/// Follows a path name by name and lists the places where a change could make it lead elsewhere: at the first missing
+/// Follows a path name by name and lists the places where a change could redirect it: at the first missing
 /// name, at every link, and at its end if that is a file.
 fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usize) {
     let Ok(absolute) = std::path::absolute(path) else { return };
@@ -107,7 +107,7 @@ fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usiz
 
 fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usize) {
     let Ok(folder) = fs::canonicalize(shown) else { return };
-    // Links may form a circle.
+    // Links may form a cycle.
     if depth > MAX_DEPTH || !folder.is_dir() || !seen.insert(folder.clone()) {
         return;
     }

@@ -1,4 +1,4 @@
-//! The meaning of the operating system's events and refusals.
+//! Interprets the operating system's events and errors.
 
 use std::io;
 

@@ -1,4 +1,4 @@
-//! The ways in which editors save, with real files.
+//! Tests the ways in which editors save, with real files.
 #![allow(clippy::unwrap_used)]
 
 use std::{fs, fs::File, io, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
@@ -7,9 +7,9 @@ use notify::ErrorKind;
 
 use super::*;
 
-/// No change takes so long.
+/// Longer than any change takes.
 const DEADLINE: Duration = Duration::from_secs(10);
-/// Long enough for a wrong report to come.
+/// Long enough for a wrong report to arrive.
 const SILENCE: Duration = Duration::from_millis(150);
 
 struct Bench {
@@ -26,7 +26,7 @@ impl Bench {
         Self { watcher, woken, folder: tempfile::tempdir().unwrap() }
     }
 
-    /// With a folder of these files, watched.
+    /// A watched folder with these files.
     fn folder(files: &[&str]) -> Self {
         let mut bench = Self::new();
         for file in files {
@@ -36,7 +36,7 @@ impl Bench {
         bench
     }
 
-    /// With one file that is watched, and another one.
+    /// One watched file, and another one.
     fn file() -> Self {
         let mut bench = Self::new();
         bench.write("room.json", "old");
@@ -59,7 +59,7 @@ impl Bench {
         fs::rename(self.path(from), self.path(to)).unwrap();
     }
 
-    /// The next reports, as names in the folder; waits to be woken.
+    /// The next reports, as names in the folder; waits for a wake-up.
     fn news(&self) -> Vec<String> {
         let begin = Instant::now();
         loop {
@@ -78,7 +78,7 @@ impl Bench {
         changed.iter().map(short).collect()
     }
 
-    /// Waits until everything named was reported, in any order, and nothing else was.
+    /// Waits until everything named was reported, in any order, and nothing else.
     fn expect(&self, names: &[&str]) {
         let mut missing: Vec<_> = names.to_vec();
         while !missing.is_empty() {
@@ -90,7 +90,7 @@ impl Bench {
         self.expect_only(names);
     }
 
-    /// For a while nothing is reported but these, again.
+    /// Checks that for a while only these are reported, again.
     fn expect_only(&self, names: &[&str]) {
         let end = Instant::now() + SILENCE;
         while let Ok(()) = self.woken.recv_timeout(end.saturating_duration_since(Instant::now())) {
@@ -99,7 +99,7 @@ impl Bench {
         }
     }
 
-    /// For a while nothing is reported, and nobody is woken.
+    /// Checks that for a while nothing is reported, without a wake-up.
     fn expect_silence(&self) {
         let woken = self.woken.recv_timeout(SILENCE);
         assert_eq!(woken, Err(RecvTimeoutError::Timeout), "{:?}", self.look());
@@ -107,7 +107,7 @@ impl Bench {
     }
 }
 
-/// Does the same in a watched folder and around a watched file.
+/// Performs an action in a watched folder and around a watched file.
 fn in_both(act: impl Fn(&Bench)) {
     for bench in [Bench::folder(&["room.json", "other.json"]), Bench::file()] {
         act(&bench);
@@ -248,7 +248,7 @@ fn temporary_and_hidden_files_wake_nobody() {
     }
     bench.write(".git/a.wgsl", "x");
     bench.expect_silence();
-    // A file that was asked for by name is reported, whatever it is called.
+    // A file watched by name is reported, whatever its name.
     let mut bench = Bench::new();
     bench.watcher.watch_file(&bench.path(".room.tmp"));
     bench.write(".room.tmp", "x");
@@ -358,7 +358,7 @@ fn a_file_is_reported_later_when_that_is_asked_for() {
     let bench = Bench::file();
     let after = Duration::from_millis(80);
     let begin = Instant::now();
-    // Nor does it matter whether there is such a file.
+    // It does not matter whether the file exists.
     for name in ["room.json", "none.json"] {
         bench.watcher.report_later(&bench.path(name), after);
     }
@@ -432,7 +432,7 @@ fn links_are_followed_and_watched() {
     bench.expect_silence();
 }
 
-/// A system that watches nothing, and says so.
+/// A system that cannot watch anything, and reports it.
 struct Refusing;
 
 impl notify::Watcher for Refusing {

@@ -1,4 +1,4 @@
-//! An OpenGL context without a window, by EGL.
+//! An OpenGL context without a window, using EGL.
 
 use std::error::Error;
 
@@ -33,7 +33,7 @@ pub fn create() -> Result<glow::Context, Box<dyn Error>> {
         let gl = glow::Context::from_loader_function(|name| {
             egl.get_proc_address(name).map_or(std::ptr::null(), |f| f as *const _)
         });
-        // The context lives as long as the program.
+        // The context exists as long as the program.
         std::mem::forget(egl);
         Ok(gl)
     }

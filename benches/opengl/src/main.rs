@@ -53,7 +53,7 @@ fn sphere() -> (Vec<f32>, Vec<u16>) {
     (vertices, indices)
 }
 
-/// Everything that is made once.
+/// Everything that is created once.
 struct Scene {
     gl: glow::Context,
     index_count: i32,

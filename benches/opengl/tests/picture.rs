@@ -1,4 +1,4 @@
-//! The OpenGL program draws what the lab draws: the race is between two programs for one picture.
+//! The OpenGL program draws the lab's picture: the race is between two programs for one picture.
 
 use std::{fs::File, io::BufReader, process::Command};
 

@@ -1,15 +1,15 @@
-//! Axes: ranges, and the places of their labels.
+//! Axes: ranges and the positions of their labels.
 
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Its quantity, with its unit.
+    /// The quantity, with its unit.
     pub label: String,
-    /// Smallest value.
+    /// The smallest value.
     pub from: f64,
-    /// Largest value.
+    /// The largest value.
     pub to: f64,
-    /// True if it is logarithmic.
+    /// True if the axis is logarithmic.
     pub log: bool,
     /// The approximate number of labels.
     pub ticks: usize,
@@ -19,24 +19,24 @@ pub struct Axis {
 const DEGREES: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0];
 
 impl Axis {
-    /// An axis with equal steps.
+    /// An axis with a linear scale.
     #[must_use]
     pub fn new(label: &str, from: f64, to: f64, ticks: usize) -> Self {
         Self { label: label.to_owned(), from, to, log: false, ticks }
     }
 
-    /// An axis with equal factors.
+    /// An axis with a logarithmic scale.
     #[must_use]
     pub fn log(label: &str, from: f64, to: f64) -> Self {
         let ticks = (to.log10() - from.log10()).ceil() as usize + 1;
         Self { label: label.to_owned(), from, to, log: true, ticks }
     }
 
-    /// The place of a value, 0 at the start of the axis and 1 at its end.
+    /// The position of a value: 0 at the start of the axis and 1 at its end.
     #[must_use]
     pub fn place(&self, v: f64) -> f64 {
         let at = |v: f64| match self.log {
-            // Zero lies far outside, and no value stays none.
+            // Zero is far outside, and NaN stays NaN.
             true if v <= 0.0 => -30.0,
             true => v.log10(),
             false => v,
@@ -44,7 +44,7 @@ impl Axis {
         (at(v) - at(self.from)) / (at(self.to) - at(self.from))
     }
 
-    /// The values with labels, and those without that have a mark on the axis.
+    /// The values with marks on the axis, each with its label, which may be empty.
     pub(super) fn marks(&self) -> Vec<(f64, String)> {
         if self.log { self.powers() } else { self.steps() }
     }
@@ -58,7 +58,7 @@ impl Axis {
         values.filter(|v| *v <= self.to + 1e-6 * step).map(|v| (v, self.text(v))).collect()
     }
 
-    /// The distance of labels.
+    /// The distance between labels.
     fn step(&self) -> f64 {
         let rough = (self.to - self.from).abs() / self.ticks.saturating_sub(1).max(1) as f64;
         if rough <= 0.0 || !rough.is_finite() {

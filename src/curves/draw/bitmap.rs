@@ -12,7 +12,7 @@ pub(super) struct Bitmap {
 }
 
 impl Bitmap {
-    /// White paper for a figure of a width and a height.
+    /// A white bitmap for a figure of this width and height.
     pub(super) fn new(size: [f64; 2], scale: f64) -> Self {
         let size = size.map(|v| (v * scale).round().max(1.0) as u32);
         Self { size, rgb8: vec![255; 3 * size[0] as usize * size[1] as usize], scale }
@@ -25,7 +25,7 @@ impl Bitmap {
         }
     }
 
-    /// The pixels from `low` to `high`, each coordinate, within the picture.
+    /// The pixels of the picture in the box from `low` to `high`.
     fn box_of(&self, low: [f64; 2], high: [f64; 2]) -> [std::ops::Range<i64>; 2] {
         let range = |i: usize| {
             let end = i64::from(self.size[i]);
@@ -42,7 +42,7 @@ impl Bitmap {
     }
 }
 
-/// A line in pieces, as its dashes cover it.
+/// The pieces of a line that its dashes cover.
 fn dashes(path: &[[f64; 2]], dash: &[f64]) -> Vec<Vec<[f64; 2]>> {
     if dash.iter().sum::<f64>() <= 0.0 {
         return vec![path.to_vec()];

@@ -14,7 +14,7 @@ pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) -> Ground {
     let [left, top, right, bottom] = layout::around(pen, &parts);
     let (across, up) = (plot.x.marks(), plot.y.marks());
     let widest = up.iter().map(|(_, label)| pen.width(FONT - 1.0, label)).fold(0.0, f64::max);
-    // The label of the vertical axis stands above it, where it reads without turning the head.
+    // The label of the vertical axis is above it, where it can be read without turning the head.
     let label_top = top;
     let [left, top, bottom] = [left + widest + 8.0, top + FONT + 14.0, bottom - 2.0 * FONT - 16.0];
     let x = |v: f64| left + plot.x.place(v) * (right - left);

@@ -16,7 +16,7 @@ const SAMPLE: f64 = 36.0;
 /// The thickness of curves.
 pub(super) const THICK: f64 = 2.0;
 
-/// What stands around a figure.
+/// The parts around a figure.
 pub(super) struct Around<'a> {
     pub(super) size: [f64; 2],
     pub(super) heading: &'a str,
@@ -25,7 +25,7 @@ pub(super) struct Around<'a> {
     pub(super) legend: &'a [Series],
 }
 
-/// Draws what stands around a figure; returns the area that is left: left, top, right, bottom.
+/// Draws the parts around a figure; returns the remaining area: left, top, right, bottom.
 pub(super) fn around(pen: &mut impl Pen, parts: &Around) -> [f64; 4] {
     let [width, height] = parts.size;
     let (mut top, mut right, mut bottom) = (MARGIN, width - MARGIN, height - MARGIN);
@@ -72,7 +72,7 @@ pub(super) fn around(pen: &mut impl Pen, parts: &Around) -> [f64; 4] {
     [MARGIN, top, right, bottom]
 }
 
-/// A name that is not broken between a parameter and its value, nor within brackets.
+/// A name with line breaks prevented between a parameter and its value, and within brackets.
 fn joined(name: &str) -> String {
     let mut depth = 0i32;
     let kept = |c: char| {
@@ -89,8 +89,8 @@ pub(super) fn line(pen: &mut impl Pen, path: &[[f64; 2]], series: &Series) {
     }
 }
 
-/// Draws the points of a series, in places of the figure, as far as they lie in an area; a cross at the foot of the area
-/// stands for each that is not finite, unless another is close.
+/// Draws the points of a series, in coordinates of the figure, clipped to an area; a cross at the bottom of
+/// the area marks each non-finite point, unless another cross is close.
 pub(super) fn curve(pen: &mut impl Pen, points: &[[f64; 2]], area: [f64; 4], series: &Series) {
     for run in clipped(points, area) {
         line(pen, &run, series);

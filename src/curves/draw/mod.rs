@@ -21,36 +21,36 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
-/// Text and axes of figures that stand alone.
+/// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
-/// Their thin lines behind the curves.
+/// The colour of grid lines behind the curves.
 const GRID: [u8; 3] = [222, 222, 218];
 
 /// The line between the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
-    /// Without a gap.
+    /// A solid line.
     Solid,
-    /// By dashes.
+    /// Dashes.
     Dashed,
-    /// By dots.
+    /// Dots.
     Dotted,
-    /// By dashes and dots in turn.
+    /// Alternating dashes and dots.
     DashDot,
-    /// By long dashes.
+    /// Long dashes.
     LongDashed,
-    /// By a dash and two dots in turn.
+    /// Alternating dashes and pairs of dots.
     DashDotDot,
-    /// By long and short dashes in turn.
+    /// Alternating long and short dashes.
     LongShort,
-    /// By short dashes close to each other.
+    /// Short dashes close together.
     ShortDashed,
-    /// Not at all.
+    /// No line.
     None,
 }
 
 impl Line {
-    /// The lines that there are, the plainest first.
+    /// All lines, the plainest first.
     pub const ALL: [Self; 8] = [
         Self::Solid,
         Self::Dashed,
@@ -62,7 +62,7 @@ impl Line {
         Self::ShortDashed,
     ];
 
-    /// The lengths of dashes and gaps; none if there are no gaps.
+    /// The lengths of dashes and gaps; empty for a solid line.
     #[must_use]
     pub fn dash(self) -> &'static [f64] {
         match self {
@@ -81,7 +81,7 @@ impl Line {
 /// The mark at each point of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// Nothing.
+    /// No mark.
     None,
     /// A filled circle.
     Disc,
@@ -98,24 +98,24 @@ pub enum Mark {
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
-    /// Its points. Where one is not finite the line has a gap, with crosses at the edge of the plot.
+    /// Points. A point that is not finite makes a gap in the line, with crosses at the edge of the plot.
     pub points: Vec<(f64, f64)>,
-    /// Its colour, counted from 0; 6 is the text colour.
+    /// Colour, counted from 0; 6 is the text colour.
     pub colour: usize,
-    /// The line between them.
+    /// The line between the points.
     pub line: Line,
-    /// The mark at each of them.
+    /// The mark at each point.
     pub mark: Mark,
 }
 
 /// A plot with two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// Its content, for screen readers.
+    /// The content, for screen readers.
     pub title: String,
-    /// The line above it; often empty, where a caption stands below.
+    /// The line above the plot; often empty if there is a caption below.
     pub heading: String,
     /// The horizontal axis.
     pub x: Axis,
@@ -125,9 +125,9 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Width and height.
     pub size: (u32, u32),
-    /// True if it has a legend, at the right.
+    /// True if the plot has a legend, at the right.
     pub legend: bool,
-    /// Remarks below it.
+    /// Remarks below the plot.
     pub notes: Vec<String>,
 }
 
@@ -156,7 +156,7 @@ impl Plot {
     }
 }
 
-/// A picture of a figure.
+/// A figure as pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -165,23 +165,23 @@ pub struct Picture {
     pub rgb8: Vec<u8>,
 }
 
-/// Something drawn, which stands alone.
+/// A complete figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Figure {
-    /// With two axes.
+    /// A plot with two axes.
     Plot(Plot),
-    /// Around a point of the surface.
+    /// A polar plot around a point of the surface.
     Polar(Polar),
     /// Pictures with two angles as axes.
     Slices(Slices),
 }
 
-/// The place of the values in a figure that was drawn, in its units.
+/// The area of the values in a drawn figure, in its units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
-    /// Between two axes: left, top, right, bottom.
+    /// The area between two axes: left, top, right, bottom.
     Plot([f64; 4]),
-    /// Around a point.
+    /// The area around a point.
     Polar {
         /// The point of the surface.
         centre: [f64; 2],
@@ -196,7 +196,7 @@ pub enum Ground {
 const SCALE: f64 = 2.0;
 
 impl Figure {
-    /// Draws it; returns where its values are.
+    /// Draws the figure, and returns the area of its values.
     pub fn draw(&self, pen: &mut impl Pen) -> Ground {
         match self {
             Self::Plot(plot) => cartesian::draw(plot, pen),
@@ -213,7 +213,7 @@ impl Figure {
         }
     }
 
-    /// As an SVG file.
+    /// The figure as an SVG file.
     #[must_use]
     pub fn svg(&self) -> String {
         let (size, title) = self.frame();
@@ -222,7 +222,7 @@ impl Figure {
         svg.finish(size, title)
     }
 
-    /// As a picture, two pixels per unit.
+    /// The figure as a picture, two pixels per unit.
     #[must_use]
     pub fn picture(&self) -> Picture {
         let mut bitmap = Bitmap::new(self.frame().0, SCALE);
@@ -231,7 +231,7 @@ impl Figure {
     }
 }
 
-/// Draws the sample of a series as a legend has it: its line, from a point to the right, and its mark.
+/// Draws the sample of a series for a legend: its line, from a point to the right, and its mark.
 pub fn sample(pen: &mut impl Pen, [x, y]: [f64; 2], length: f64, series: &Series) {
     layout::line(pen, &[[x, y], [x + length, y]], series);
     layout::mark(pen, [x + 0.5 * length, y], series);
@@ -270,7 +270,7 @@ mod tests {
         }
     }
 
-    /// The names of elements, each closed as it was opened, or what is wrong.
+    /// The names of elements, each closed in the right order, or a description of the mistake.
     fn elements(xml: &str) -> Result<Vec<String>, String> {
         let (mut open, mut all) = (Vec::new(), Vec::new());
         let mut rest = xml;

@@ -1,13 +1,13 @@
-//! What figures are drawn with: lines, areas, text and pictures, on paper of either sort.
+//! The drawing operations for figures: lines, areas, text and pictures, on light or dark paper.
 
-/// A colour by its job.
+/// A colour, by its purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// Text and axes.
     Text,
-    /// Thin lines behind the curves.
+    /// Grid lines behind the curves.
     Grid,
-    /// A curve's, counted from 0; 6 is the colour of text.
+    /// The colour of a curve, counted from 0; 6 is the colour of text.
     Curve(usize),
 }
 
@@ -16,7 +16,7 @@ pub const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 
 impl Ink {
-    /// The colour of a curve; none for that of text.
+    /// The colour of a curve; `None` for the colour of text.
     #[must_use]
     pub fn colour(self) -> Option<[u8; 3]> {
         match self {
@@ -26,33 +26,35 @@ impl Ink {
     }
 }
 
-/// The part of a line of text that stands at its place.
+/// The part of a line of text that is placed at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its left end.
+    /// The left end.
     Start,
-    /// Its middle.
+    /// The middle.
     Middle,
-    /// Its right end.
+    /// The right end.
     End,
 }
 
-/// Places are in units of the figure, x to the right and y down from the upper left corner.
+/// Draws the curves of a figure. Positions are in the figure's units, x to the right and y down from the
+/// upper left corner.
 pub trait Pen {
-    /// A line through some points; `dash` has the lengths of dashes and gaps, none for a line without gaps.
+    /// Draws a line through points; `dash` holds the lengths of dashes and gaps, and is empty for a solid
+    /// line.
     fn stroke(&mut self, path: &[[f64; 2]], ink: Ink, width: f64, dash: &[f64]);
-    /// An area.
+    /// Fills an area.
     fn fill(&mut self, path: &[[f64; 2]], ink: Ink);
-    /// A line of text, whose letters stand at the height of `at`.
+    /// Draws a line of text with its baseline at `at`.
     fn text(&mut self, at: [f64; 2], anchor: Anchor, px: f64, text: &str);
-    /// A picture of RGB bytes in a rectangle: left, top, width, height.
+    /// Draws a picture of RGB bytes in a rectangle: left, top, width, height.
     fn picture(&mut self, to: [f64; 4], size: [u32; 2], rgb8: &[u8]);
-    /// What follows is drawn for a series, counted from 0, or for none. Most pens draw all alike.
+    /// Says which series the following calls belong to, counted from 0, or `None`. Most pens ignore it.
     fn series(&mut self, _series: Option<usize>) {}
-    /// The room that a line of text takes at most.
+    /// The maximum width of a line of text.
     fn width(&self, px: f64, text: &str) -> f64;
 
-    /// The text in lines no wider than `width`.
+    /// The text broken into lines no wider than `width`.
     fn lines(&self, px: f64, text: &str, width: f64) -> Vec<String> {
         let mut lines = Vec::new();
         let mut line = String::new();
@@ -133,7 +135,7 @@ mod tests {
         let area = [0.0, 0.0, 10.0, 10.0];
         let whole = [[1.0, 1.0], [5.0, 5.0], [9.0, 1.0]];
         assert_eq!(clipped(&whole, area), [whole.to_vec()]);
-        // Out at the top and in again.
+        // The line leaves at the top and comes in again.
         let over = [[0.0, 5.0], [5.0, -5.0], [10.0, 5.0]];
         assert_eq!(clipped(&over, area), [[[0.0, 5.0], [2.5, 0.0]], [[7.5, 0.0], [10.0, 5.0]]]);
         let gap = [[1.0, 1.0], [2.0, 1.0], [3.0, f64::NAN], [4.0, 1.0], [5.0, 1.0]];

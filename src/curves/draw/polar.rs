@@ -10,9 +10,9 @@ use super::{
 /// A polar plot of the half plane above a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polar {
-    /// Its content, for screen readers.
+    /// The content, for screen readers.
     pub title: String,
-    /// The line above it.
+    /// The line above the plot.
     pub heading: String,
     /// The scale of the radius, from the centre.
     pub radius: Axis,
@@ -22,9 +22,9 @@ pub struct Polar {
     pub light: f64,
     /// Width and height.
     pub size: (u32, u32),
-    /// True if it has a legend, at the right.
+    /// True if the plot has a legend, at the right.
     pub legend: bool,
-    /// Remarks below it.
+    /// Remarks below the plot.
     pub notes: Vec<String>,
 }
 
@@ -36,7 +36,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
     let bottom = bottom - 2.0 * FONT - 16.0;
     let [centre, floor] = [0.5 * (left + right), bottom];
     let named = named(plot.light);
-    // Labels at the sides need room beyond the circle.
+    // Labels at the sides need room outside the circle.
     let sideways = |(angle, name): &(f64, String)| {
         let room = 0.5 * (right - left) - 0.8 * FONT - pen.width(FONT - 2.0, name);
         room / angle.to_radians().sin().abs().max(0.1)
@@ -90,7 +90,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
         let mut points = Vec::new();
         for (angle, value) in &series.points {
             let part = plot.radius.place(*value);
-            // What is below the scale lies at the centre.
+            // Values below the scale are at the centre.
             points.push(at(*angle, full * if part < 0.0 { 0.0 } else { part }));
             if !value.is_finite() && (angle - last).abs() > 2.0 {
                 last = *angle;
@@ -108,7 +108,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
     Ground::Polar { centre: [centre, floor], radius: full }
 }
 
-/// The labels of light and mirror direction with their angles; one where they would cover each other.
+/// The labels of light and mirror direction with their angles; a single label if two would overlap.
 fn named(light: f64) -> Vec<(f64, String)> {
     let degrees = format!("{}°", (light * 10.0).round() / 10.0);
     if light < 6.0 {

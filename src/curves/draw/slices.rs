@@ -9,9 +9,9 @@ use super::{
 /// One picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Its name, above it.
+    /// The name, above the picture.
     pub name: String,
-    /// Pixels across and down.
+    /// The number of pixels across and down.
     pub side: u32,
     /// Red, green and blue, row by row from the top.
     pub rgb8: Vec<u8>,
@@ -20,31 +20,31 @@ pub struct Tile {
 /// Pictures side by side, with axes from 0° to 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
-    /// Its content, for screen readers.
+    /// The content, for screen readers.
     pub title: String,
-    /// The line above it.
+    /// The line above the pictures.
     pub heading: String,
     /// The pictures.
     pub tiles: Vec<Tile>,
-    /// The side of each.
+    /// The side of each picture.
     pub side: f64,
     /// The number of pictures in a row.
     pub columns: usize,
-    /// Remarks below it.
+    /// Remarks below the pictures.
     pub notes: Vec<String>,
 }
 
 /// The side of a picture in a file.
 pub const SIDE: f64 = 320.0;
-/// The room between two pictures, with labels.
+/// The gap between two pictures, with labels.
 pub const GAP: [f64; 2] = [84.0, 5.6 * FONT];
-/// The most pictures in a row.
+/// Maximum number of pictures in a row.
 const ROW: usize = 3;
-/// The quantities of the axes.
+/// The labels of the axes.
 const AXES: [&str; 2] = ["half angle (°)", "difference angle (°)"];
 
 impl Slices {
-    /// The number of pictures in a row of a file, for so many.
+    /// The number of pictures in a row of a file with this number of pictures.
     pub(in crate::curves) fn columns_of(tiles: usize) -> usize {
         match tiles {
             4 => 2,
@@ -63,7 +63,7 @@ impl Slices {
     }
 }
 
-/// Draws them.
+/// Draws the slices.
 pub(super) fn draw(slices: &Slices, pen: &mut impl Pen) -> Ground {
     let parts = Around { size: slices.size(), heading: &slices.heading, notes: &slices.notes, legend: &[] };
     let [left, top, _, _] = layout::around(pen, &parts);

@@ -11,22 +11,22 @@ use crate::{
     text::xml,
 };
 
-/// Where the figure stands, which decides the colours of text and grid.
+/// The context of the figure, which determines the colours of text and grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// In a page, whose style sheet replaces them: `#010203` for text, `#040506` for the grid.
+    /// A page whose style sheet replaces the colours: `#010203` for text, `#040506` for the grid.
     Page,
-    /// Alone, on white.
+    /// A stand-alone file, on white.
     Alone,
 }
 
-/// An SVG document that grows.
+/// An SVG document under construction.
 pub(super) struct Svg {
     place: Place,
     body: String,
 }
 
-/// System fonts are wider than the font of the program that text is measured with.
+/// The allowance for system fonts, which are wider than the program's font, in which text is measured.
 const WIDER: f64 = 1.14;
 
 impl Svg {
@@ -34,7 +34,7 @@ impl Svg {
         Self { place, body: String::new() }
     }
 
-    /// The `<svg>` element, of some width and height, with a name for screen readers.
+    /// The `<svg>` element, with its width and height and a name for screen readers.
     pub(super) fn finish(self, [width, height]: [f64; 2], title: &str) -> String {
         let title = escaped(title);
         let ground = match self.place {
@@ -63,12 +63,12 @@ impl Svg {
     }
 }
 
-/// A text without the characters that mean something in XML, nor those that it must not contain.
+/// The text with XML's special characters escaped and forbidden characters removed.
 fn escaped(text: &str) -> String {
     xml::escaped(&text.replace(char::is_whitespace, " "))
 }
 
-/// A length with as many digits as can be seen.
+/// A length rounded to the visible digits.
 fn short(v: f64) -> f64 {
     (v * 100.0).round() / 100.0 + 0.0
 }
@@ -114,7 +114,7 @@ impl Pen for Svg {
 
     fn picture(&mut self, [x, y, width, height]: [f64; 4], [across, down]: [u32; 2], rgb8: &[u8]) {
         let mut bytes = Vec::new();
-        // The size is that of the bytes, and writing to memory cannot fail.
+        // The size matches the bytes, and writing to memory cannot fail.
         if encode(&mut bytes, across, down, rgb8, &About::default()).is_ok() {
             let data = base64::engine::general_purpose::STANDARD.encode(bytes);
             self.add(&format!(

@@ -6,7 +6,7 @@ use crate::{
     registry::Registry,
 };
 
-/// A frame that is not that of the axes.
+/// A frame that is not aligned with the axes.
 fn tilted() -> Frame {
     Frame::new(Vec3::new(0.3, 0.8, -0.4).normalize(), Vec3::new(1.0, 0.2, 0.1))
 }
@@ -31,13 +31,13 @@ fn lobe(surface: &dyn Surface, l: Vec3, frame: &Frame) -> Lobe {
     Lobe::new(surface, l, frame, TermSelection::All, &Progress::NONE).expect("not cancelled")
 }
 
-/// Where the lobe is highest.
+/// The direction in which the lobe is highest.
 fn peak(lobe: &Lobe) -> Vec3 {
     let highest = (0..lobe.ways.len()).max_by(|a, b| lobe.values[*a].total_cmp(&lobe.values[*b]));
     lobe.ways[highest.expect("not empty")]
 }
 
-/// The value of the surface in a direction: that of the triangle which the direction meets, as it is drawn.
+/// The value of the drawn surface in a direction, from the triangle that the direction meets.
 fn drawn(lobe: &Lobe, way: Vec3) -> Option<f64> {
     let point = |i: u32| lobe.ways[i as usize] * lobe.values[i as usize] as f32;
     lobe.triangles.iter().find_map(|corners| {
@@ -74,7 +74,7 @@ fn every_length_is_the_value_of_the_curves() {
             let right = Channel::Luminance.of(point.rgb);
             compared += 1;
             sum += (found - right).abs() / largest;
-            // On a steep flank, a little to the side is much along the ray.
+            // On a steep flank, a small step to the side is a large one along the ray.
             assert!(
                 (found - right).abs() < 0.07 * largest,
                 "{model}, {}°: {found}, not {right}",
@@ -83,7 +83,7 @@ fn every_length_is_the_value_of_the_curves() {
         }
         assert!(compared > 80, "{model}: {compared} angles");
         assert!(sum / f64::from(compared) < 0.01, "{model}: {sum} in all");
-        // At its own directions it is exact.
+        // At the sampled directions, it is exact.
         for (way, found) in lobe.ways.iter().zip(&lobe.values) {
             let right = Channel::Luminance.of(brdf_of(
                 surface.response(room(&frame, 50.0, 20.0), *way, &frame),
@@ -109,7 +109,7 @@ fn a_matte_lobe_is_half_a_sphere() {
     assert!(lobe.values.iter().all(|v| (v - f).abs() < 1e-6));
     let rim = lobe.ways.iter().map(|way| frame.n.dot(*way)).fold(f32::INFINITY, f32::min);
     assert!((0.0..0.002).contains(&rim), "it reaches down to the surface: {rim}");
-    // Round: no triangle is noticeably inside the sphere, and nothing was refined for it.
+    // The surface is round: no triangle is noticeably inside the sphere, and nothing was refined.
     for corners in &lobe.triangles {
         let middle = corners.iter().map(|i| lobe.ways[*i as usize]).sum::<Vec3>() / 3.0;
         assert!(middle.length() > 0.985, "{}", middle.length());
@@ -171,7 +171,7 @@ fn a_term_alone_has_a_lobe_of_its_own() {
     assert_eq!(of(TermSelection::Ambient).largest(), 0.0);
 }
 
-/// A surface that is no number on one side of the plane x = 0 of the room, and infinite at the normal.
+/// A surface that returns NaN on one side of the plane x = 0 of the room, and infinity at the normal.
 struct Broken {
     everywhere: bool,
 }
@@ -208,7 +208,7 @@ fn what_is_no_number_is_a_gap() {
     for corners in &some.triangles {
         assert!(corners.iter().all(|i| some.values[*i as usize].is_finite()));
     }
-    // The edge of the gap is found.
+    // The edge of the gap was found.
     let edge =
         some.triangles.iter().flatten().map(|i| some.ways[*i as usize].x).fold(f32::INFINITY, f32::min);
     assert!((-0.1..-0.04).contains(&edge), "{edge}");

@@ -5,14 +5,14 @@ use glam::{Vec2, Vec3};
 use super::{Above, DISCS, Disc, Hemisphere};
 use crate::{explain::rounded, lettering::Lettering, optics::colour::srgb_encode8};
 
-/// A picture with what it says.
+/// A picture with its description.
 #[derive(Clone, Debug)]
 pub struct HemispherePicture {
-    /// Width and height.
+    /// Width and height, in pixels.
     pub size: [u32; 2],
-    /// Its colours, row by row from the top.
+    /// Colours, row by row from the top.
     pub rgb8: Vec<u8>,
-    /// What it shows, in words.
+    /// Description in words.
     pub about: String,
 }
 
@@ -20,14 +20,14 @@ const GROUND: [u8; 3] = [24, 26, 30];
 const TEXT: [u8; 3] = [230, 232, 236];
 const WEAK: [u8; 3] = [160, 166, 174];
 const RIM: [u8; 3] = [96, 102, 112];
-/// The colours of V and of R, as the window has them.
+/// The colours of V and R, as in the window.
 const BLUE: [u8; 3] = [86, 180, 233];
 const VERMILION: [u8; 3] = [230, 110, 40];
 const YELLOW: [u8; 3] = [240, 228, 66];
 
-/// Pixels between the discs, and around them.
+/// Pixels between and around the discs.
 const GAP: u32 = 28;
-/// Above the discs and below them.
+/// Space above and below the discs, in pixels.
 const HEAD: u32 = 44;
 const FOOT: u32 = 122;
 /// Sizes of text.
@@ -35,7 +35,7 @@ const TITLE: f32 = 17.0;
 const SMALL: f32 = 13.0;
 
 impl Hemisphere {
-    /// What is seen in the disc at a place whose radius is at most 1.
+    /// The values in the disc at a position with a radius of at most 1.
     #[must_use]
     pub fn at(&self, place: Vec2) -> Option<Above> {
         let [x, y] = [place.x, -place.y].map(|v| (0.5 * (v + 1.0) * self.side as f32).floor());
@@ -46,7 +46,7 @@ impl Hemisphere {
         self.pixels[y as usize * self.side + x as usize]
     }
 
-    /// Of one of the discs, the value that is drawn white: all but the brightest hundredth of what is not dark are below.
+    /// The value drawn as white in one of the discs: the 99th percentile of the values that are not dark.
     #[must_use]
     pub fn white(&self, of: fn(&Above) -> Vec3) -> f32 {
         let mut all: Vec<_> = self.pixels.iter().flatten().map(|above| of(above).max_element()).collect();
@@ -85,7 +85,7 @@ impl Hemisphere {
             canvas.scale([left, HEAD + side + 14], side, &scale);
             whites.push(format!("white in “{}” is {scale}", disc.name));
         }
-        // From the pixels of the disc, which give two digits.
+        // Taken from the disc's pixels, which allow two digits.
         let integral = crate::explain::rounded_number_or_triple(self.integral, 2);
         let lines = [
             "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
@@ -103,7 +103,8 @@ impl Hemisphere {
         HemispherePicture { size, rgb8: canvas.rgb8, about }
     }
 
-    /// One of the discs: red, green, blue and opacity row by row from the top, white at [`white`](Self::white).
+    /// One of the discs: red, green, blue and opacity, row by row from the top, with white at
+    /// [`white`](Self::white).
     #[must_use]
     pub fn disc(&self, of: fn(&Above) -> Vec3) -> Vec<[u8; 4]> {
         let (white, middle) = (self.white(of), 0.5 * self.side as f32);
@@ -111,7 +112,7 @@ impl Hemisphere {
             let Some(above) = above else { return [0; 4] };
             let from = [i % self.side, i / self.side].map(|c| c as f32 + 0.5 - middle);
             let [r, g, b] = (of(above) / white).to_array().map(srgb_encode8);
-            // Soft at the rim, where a pixel is not all in the disc.
+            // Soft at the rim, where a pixel is only partly inside the disc.
             let inside = (middle - Vec2::from(from).length() + 0.5).clamp(0.0, 1.0);
             [r, g, b, (255.0 * inside).round() as u8]
         };
@@ -177,7 +178,7 @@ impl Canvas {
         }
     }
 
-    /// A bar from black to white, with the values at its ends.
+    /// A bar from black to white, labelled with the values at its ends.
     fn scale(&mut self, [left, top]: [u32; 2], width: u32, white: &str) {
         for x in 0..width {
             let code = srgb_encode8(x as f32 / (width - 1).max(1) as f32);

@@ -1,6 +1,6 @@
 //! The form `bevy`: a Cargo project with one `main.rs`, the shaders and the meshes of the scene.
 //!
-//! `program` writes `main.rs`, `words` turns values and names into Rust.
+//! `program` writes `main.rs`, `words` converts values and names to Rust.
 
 use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
 use crate::optics::tone::exposure_factor;
@@ -18,10 +18,10 @@ pub const BEVY: Form = Form {
     make,
 };
 
-/// The version of Bevy that the project is written for.
+/// The Bevy version of the project.
 const BEVY_VERSION: &str = "=0.19.1";
-/// The features of Bevy that the project needs. Sound, gamepads and Wayland would need packages of the system to be
-/// built; with X11 alone the window opens on Wayland too, by XWayland.
+/// The Bevy features that the project needs. Sound, gamepads and Wayland would need system packages to build;
+/// with X11 alone the window also opens on Wayland, through XWayland.
 const FEATURES: [&str; 14] = [
     "std",
     "async_executor",

@@ -105,7 +105,7 @@ use bevy::{
     );
 }
 
-/// A comment above a declaration, in lines that fit.
+/// A comment above a declaration, wrapped to the line width.
 fn doc(out: &mut String, text: &str, indent: &str, mark: &str) {
     const WIDTH: usize = 100;
     let mut line = String::new();
@@ -203,7 +203,7 @@ fn light_value(field: &LightField, words: &[u32]) -> String {
     }
 }
 
-/// The fields of a light, the same in all shaders; `None` if no shader has lights.
+/// The fields of a light, shared by all shaders; `None` if no shader has lights.
 fn light_fields<'a>(lit: &'a Lit) -> Option<&'a [LightField]> {
     lit.programs.first().map(|program| program.shader.light_fields.as_slice())
 }
@@ -212,7 +212,7 @@ fn type_name(program: &Program) -> String {
     camel(&program.name())
 }
 
-/// The material type of a program, and its implementation.
+/// Writes the material type of a program and its implementation.
 fn material_type(out: &mut String, lit: &Lit, program: &Program) {
     let (model, shading) = (program.model.declaration, program.shading.declaration);
     let name = type_name(program);
@@ -295,13 +295,13 @@ impl Material for {name} {{
     );
 }
 
-/// A struct of parameters.
+/// Writes a struct of parameters.
 fn parameters(out: &mut String, name: &str, all: &[Parameter], what: &str) {
     let _ = write!(out, "\n/// {what}\n#[derive(ShaderType, Clone, Copy, Debug)]\nstruct {name} {{\n");
     for p in all {
         let unit = match p.unit {
             "" => String::new(),
-            // They are decoded where they are given.
+            // The values are decoded where they are written.
             "sRGB" => ", linear".to_owned(),
             unit => format!(", {unit}"),
         };
@@ -316,12 +316,12 @@ fn parameters(out: &mut String, name: &str, all: &[Parameter], what: &str) {
     out.push_str("}\n");
 }
 
-/// The unit of a parameter behind its label.
+/// The unit of a parameter, appended to its label.
 fn unit(unit: &str) -> String {
     if unit.is_empty() { ".".to_owned() } else { format!(", {unit}.") }
 }
 
-/// The records of lights and curves.
+/// Writes the records of lights and curves.
 fn records(out: &mut String, lit: &Lit) {
     if let Some(fields) = light_fields(lit) {
         let _ = write!(
@@ -381,7 +381,7 @@ struct {} {{
     }
 }
 
-/// The name of the struct for curves of that length: with the number of harmonics where they have nothing else.
+/// The name of the struct for curves of this length, numbered by harmonics if they contain nothing else.
 fn curve_type(length: usize) -> String {
     if length.is_multiple_of(NODES) {
         format!("AlbedoCurve{}", length / NODES)
@@ -527,7 +527,7 @@ fn take_picture(
     );
 }
 
-/// The direction that is up in the picture: y, unless that is the direction of view.
+/// The up direction of the picture: y, unless that is the viewing direction.
 fn up(direction: Vec3) -> &'static str {
     match orientation(direction).y_axis {
         axis if axis.y > 1e-6 => "Vec3::Y",
@@ -536,7 +536,7 @@ fn up(direction: Vec3) -> &'static str {
     }
 }
 
-/// The systems that load the meshes and spawn the objects, one for each material type.
+/// Writes the systems that load the meshes and spawn the objects, one for each material type.
 fn setup(out: &mut String, lit: &Lit) {
     let mut names = Names::default();
     let meshes: Vec<_> = lit.meshes.iter().map(|m| names.unique(snake(&m.name))).collect();
@@ -550,7 +550,7 @@ fn setup(out: &mut String, lit: &Lit) {
     out.push_str(PLACE);
 }
 
-/// The system that loads shaders and meshes.
+/// Writes the system that loads shaders and meshes.
 fn load(out: &mut String, lit: &Lit, meshes: &[String]) {
     out.push_str(
         "
@@ -587,7 +587,7 @@ fn load(mut commands: Commands, assets: Res<AssetServer>, mut meshes: ResMut<Ass
     for (mesh, name) in lit.meshes.iter().zip(meshes) {
         let file = format!("\"../assets/meshes/{}.bin\"", mesh.name);
         let line = format!("        {name}: meshes.add(mesh(include_bytes!({file}))),");
-        // As rustfmt would have it.
+        // Formatted as by rustfmt.
         let line = if line.len() > 100 {
             format!("        {name}: meshes.add(mesh(include_bytes!(\n            {file}\n        ))),")
         } else {
@@ -598,7 +598,7 @@ fn load(mut commands: Commands, assets: Res<AssetServer>, mut meshes: ResMut<Ass
     out.push_str("    });\n}\n");
 }
 
-/// The system that spawns the objects of a material type.
+/// Writes the system that spawns the objects of a material type.
 fn spawn(out: &mut String, lit: &Lit, index: usize, program: &Program, meshes: &[String]) {
     let _ = write!(
         out,
@@ -717,10 +717,11 @@ fn values(out: &mut String, all: &[Parameter], material: &Material, encoding: En
     }
 }
 
-/// The macro with which the program tells of wrong usage; in one word it would look like a call of this program's.
+/// The macro with which the exported program reports wrong usage; written in one word it would look like a
+/// call in this program.
 const TELL: &str = concat!("eprint", "ln!");
 
-/// Decoding of colours.
+/// Conversion of colours.
 const SRGB: &str = "
 /// Linear light from an sRGB colour.
 fn srgb(red: u8, green: u8, blue: u8) -> Vec3 {
@@ -740,7 +741,7 @@ fn place(position: Vec3, degrees: Vec3, size: f32) -> Transform {
 }
 ";
 
-/// The attributes of vertices, and the functions that read and use them.
+/// Writes the attributes of vertices, and the functions that read and use them.
 fn meshes(out: &mut String, lit: &Lit) {
     let some = lit.programs.iter().any(Program::faces);
     let others = lit.programs.iter().any(|p| !p.faces());

@@ -1,4 +1,4 @@
-//! Names and values of a scene as Rust.
+//! Names and values of a scene, written as Rust.
 
 use glam::Vec3;
 
@@ -19,7 +19,7 @@ pub(super) fn package(stem: &str) -> String {
     }
 }
 
-/// Names that no package can have: the words of Rust, its crates, the folders of cargo, and what is used here.
+/// Names that a package cannot have: Rust keywords, standard crates, cargo's folders, and names used here.
 const RESERVED: &[&str] = &[
     "abstract",
     "alloc",
@@ -85,7 +85,7 @@ const RESERVED: &[&str] = &[
     "yield",
 ];
 
-/// A text as a Rust name in lower case; empty if nothing is left of it.
+/// A text as a lower-case Rust name; empty if nothing remains.
 pub(super) fn snake(text: &str) -> String {
     let mut name = String::new();
     for c in deunicode::deunicode(text).chars() {
@@ -96,17 +96,17 @@ pub(super) fn snake(text: &str) -> String {
         }
     }
     let name = name.trim_end_matches('_');
-    /// The longest name: longer ones are sentences.
+    /// Maximum length of a name: longer ones are sentences.
     const LONGEST: usize = 32;
     let name = name.get(..LONGEST).unwrap_or(name).trim_end_matches('_');
     if name.starts_with(|c: char| c.is_ascii_digit()) { format!("_{name}") } else { name.to_owned() }
 }
 
-/// A name in lower case as that of a type.
+/// Converts a lower-case name to a type name.
 pub(super) fn camel(snake: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
-        // Two underscores in a row tell apart what would look alike.
+        // Two underscores in a row distinguish names that would look alike.
         letters
             .next()
             .map_or_else(|| "_".to_owned(), |c| c.to_ascii_uppercase().to_string() + letters.as_str())
@@ -139,7 +139,7 @@ pub(super) fn kind(wgsl: &str) -> &'static str {
     }
 }
 
-/// The value of a parameter, and a comment where the number does not speak for itself.
+/// The value of a parameter, with a comment if the number is not self-explanatory.
 pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (String, Option<String>) {
     match (&p.kind, values.get(p)) {
         (ParameterKind::Colour { .. }, Value::Colour([r, g, b])) if encoding == Encoding::Srgb => {
@@ -158,12 +158,12 @@ pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (Stri
     }
 }
 
-/// The name of a field of a struct: that of the parameter, unless Rust has another use for the word.
+/// The name of a struct field: the parameter's name, unless it is a Rust keyword.
 pub(super) fn field(name: &str) -> String {
     if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
 }
 
-/// A text for comments: one line, without characters that a terminal or an editor would act on.
+/// A text for comments: one line, without control characters of terminals or editors.
 pub(super) fn comment(text: &str) -> String {
     let acts = |c: char| {
         c.is_control()
@@ -174,7 +174,7 @@ pub(super) fn comment(text: &str) -> String {
 
 /// A text as a Rust string.
 pub(super) fn string(text: &str) -> String {
-    // Debug writes control characters as escapes, and so must be those that turn the direction of text.
+    // Debug escapes control characters; those that change the text direction must be escaped too.
     let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let plain: String = text.chars().filter(|c| !turns(*c)).collect();
     format!("{plain:?}")

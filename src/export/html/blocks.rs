@@ -1,4 +1,4 @@
-//! Blocks of bytes for uniforms, each kept once.
+//! Blocks of bytes for uniforms, each stored once.
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value as Json, json};
@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 pub struct Blocks(Vec<Vec<u8>>);
 
 impl Blocks {
-    /// The index of a block.
+    /// Adds a block, unless it exists, and returns its index.
     pub fn add(&mut self, bytes: &[u8]) -> usize {
         self.0.iter().position(|known| known == bytes).unwrap_or_else(|| {
             self.0.push(bytes.to_vec());

@@ -1,4 +1,4 @@
-//! The scene as the page reads it.
+//! The scene in the form that the page reads.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -28,25 +28,25 @@ use crate::{
 /// The scene, and its meshes.
 #[derive(Debug)]
 pub struct Data {
-    /// All but the meshes.
+    /// Everything except the meshes.
     pub scene: Json,
-    /// The bytes of the meshes, one after the other.
+    /// The bytes of the meshes, concatenated.
     pub meshes: Vec<u8>,
-    /// Why a point has its colour, by the letters of the views; empty unless that was asked for.
+    /// Explanations of a point's colour, by the letters of the views; empty unless requested.
     pub points: Map<String, Json>,
-    /// The curves that its models calculate anew when a knob is turned.
+    /// The curves that the models recalculate when a parameter changes.
     pub script: String,
-    /// What differs from the picture in the lab: sentences.
+    /// Sentences about differences from the picture in the lab.
     pub notes: Vec<String>,
 }
 
-/// A sentence for each object whose normals come from its file: the page calculates all.
+/// A sentence for each object whose normals come from its file: the page calculates all normals.
 fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
     let Request { scene, registry, .. } = lit.request;
     lit.objects.iter().filter_map(move |drawn| {
         let object = &scene.objects[drawn.index];
         let shape = registry.shape(&object.object_type)?;
-        // Only files have normals of their own among what is built in; making all meshes again would take a while.
+        // Of the built-in shapes, only files have explicit normals; rebuilding all meshes would take a while.
         let from_file = |p: &Parameter| matches!(p.kind, ParameterKind::File { .. });
         shape.parameters.iter().any(from_file).then_some(())?;
         let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
@@ -57,14 +57,14 @@ fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
     })
 }
 
-/// What the views of a page share.
+/// Data shared by the views of a page.
 #[derive(Default)]
 struct Shared {
     texts: Texts,
     blocks: Blocks,
     meshes: Meshes,
     scripts: BTreeMap<&'static str, &'static str>,
-    /// Each once, in the order of the first view that has it.
+    /// Each note once, in the order of the views.
     notes: Vec<String>,
 }
 
@@ -81,7 +81,7 @@ impl Shared {
 /// Takes a scene apart for a page, with all its views.
 ///
 /// # Errors
-/// Parts that a page cannot hold.
+/// Returns an error for parts that a page cannot contain.
 pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError> {
     let Request { scene, registry, .. } = *request;
     let mut shared = Shared::default();
@@ -93,7 +93,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         let of_view = Request { scene: seen, ..*request };
         let made = view(&of_view, &mut shared, &|done, step| Ok(progress.step(0.9 * part(done), step)?));
         let mut json = match made {
-            // The others are worth having without it.
+            // The other views are useful without it.
             Err(ExportError::Refused(reasons)) if i > 0 => {
                 shared.note([format!("{named} is left out: {}.", reasons.join("; "))]);
                 continue;
@@ -156,7 +156,7 @@ fn view(
     let mut models = Vec::new();
     for (m, of_model) in lit.programs.iter().enumerate() {
         step(0.4 + 0.4 * m as f32 / lit.programs.len() as f32, "translating its shaders")?;
-        // Each shading model has materials of its own, but the objects are the same.
+        // Each shading model has separate materials, but the objects are the same.
         let at = lit.objects.iter().position(|drawn| lit.materials[drawn.material].program == m);
         let Some(at) = at else { continue };
         let mut programs = Vec::new();
@@ -189,7 +189,7 @@ fn view(
                 "mesh": mesh,
                 "matrix": drawn.room_from_object(request).to_cols_array(),
                 "values": values,
-                // As exported: knobs change the material, and any lobes give the right mean.
+                // As exported: parameters change the material, and the mean is right for any lobes.
                 "lobes": (!material.lobes.is_empty()).then(|| shared.blocks.add(&material.lobes)),
                 "curve": (!material.curve.is_empty()).then(|| shared.blocks.add(&material.curve)),
             })
@@ -222,7 +222,7 @@ fn shaded(scene: &Scene, shading: &ShadingEntry) -> Scene {
     scene
 }
 
-/// The meshes, and the bytes of all.
+/// The meshes, and their bytes.
 #[derive(Default)]
 struct Meshes {
     all: Vec<Json>,
@@ -237,7 +237,7 @@ impl Meshes {
         let mut of_objects = Vec::new();
         for drawn in &lit.objects {
             let object = &scene.objects[drawn.index];
-            // Known, or the scene could not have been taken apart.
+            // Known, since the scene could be taken apart.
             let Some(shape) = registry.shape(&object.object_type) else { continue };
             let key = (shape.key(&object.shape, object.tessellation), tangents);
             if let Some(index) = self.known.get(&key) {
@@ -308,21 +308,21 @@ fn model(
     })
 }
 
-/// The settings under which the specular response of a model is its lobe alone, with F = 1 and without multiple
-/// scattering: null for models without one.
+/// The settings under which the specular response of a model is its lobe alone, with F = 1 and without
+/// multiple scattering: null for models without such settings.
 fn lobe(entry: &ModelEntry) -> Json {
     let own = entry.lobe_of() == Some("microfacet") && entry.has_lobe();
     if own { json!({ "fresnel": "none", "multiple_scattering": "none" }) } else { Json::Null }
 }
 
-/// The model whose curves a page can calculate for this one, which has the same, and their twin.
+/// The model with the same curves that a page can calculate instead of this one, and the twin of its curves.
 fn twin<'a>(entry: &ModelEntry, registry: &'a Registry) -> Option<(&'static str, &'a ModelEntry, OnPages)> {
     let id = entry.lobe_of()?;
     let of = registry.model(id)?;
     (of.curves() == entry.curves()).then_some((id, of, of.on_pages()?))
 }
 
-/// The reason why no parameter of a model may change on a page; none if all may.
+/// The reason why a page cannot change any parameter of a model; `None` if it can.
 fn fixed(entry: &ModelEntry, registry: &Registry) -> Option<&'static str> {
     let none = entry.lobe_of().is_none() && entry.curves().is_empty();
     let follows = none || twin(entry, registry).is_some() || lobe(entry) != Json::Null;

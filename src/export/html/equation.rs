@@ -1,8 +1,8 @@
-//! Equations and symbols as HTML: letters slanted, words upright, indices and powers in their places.
+//! Equations and symbols as HTML: italic letters, upright words, subscripts and superscripts.
 
 use crate::text::mathematics::{Atom, parse, parse_symbol};
 
-/// A text with the signs escaped that HTML gives a meaning.
+/// A text with HTML's special characters escaped.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());

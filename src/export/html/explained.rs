@@ -1,4 +1,5 @@
-//! Why one point has its colour, as the page says it: a sentence, and the equation with its numbers, light by light.
+//! The explanation of a point's colour on the page: a sentence, and the equation with its numbers, light by
+//! light.
 
 use glam::Vec3;
 use serde_json::{Map, Value as Json, json};
@@ -18,30 +19,30 @@ use crate::{
     text::{listed, plural},
 };
 
-/// More lights are summed up.
+/// Maximum number of lights listed; the others are summed up.
 const MOST: usize = 8;
-/// Digits of values; those in equations have as many as it takes.
+/// Digits of values; equations have as many as needed.
 const DIGITS: usize = 3;
-/// Those under the pointer: as many as the command prints.
+/// Digits of the values under the pointer: as many as the command prints.
 const ALL: usize = 4;
 
-/// What a page has more that explains a point.
+/// The additional parts of a page with an explained point.
 #[derive(Debug, Default)]
 pub struct Parts {
-    /// The section of its panel.
+    /// HTML of the section in the panel.
     pub section: &'static str,
-    /// Its style.
+    /// The style sheet of the section.
     pub style: &'static str,
-    /// Its program.
+    /// The script of the section.
     pub script: &'static str,
     /// The element with the texts.
     pub data: String,
 }
 
-/// Those parts; all of them empty if there is no point.
+/// The additional parts; all empty without a point.
 ///
 /// # Errors
-/// If the texts cannot be compressed.
+/// Returns an error if the texts cannot be compressed.
 pub fn parts(points: &Map<String, Json>) -> Result<Parts, ExportError> {
     if points.is_empty() {
         return Ok(Parts::default());
@@ -55,11 +56,11 @@ pub fn parts(points: &Map<String, Json>) -> Result<Parts, ExportError> {
     })
 }
 
-/// Why a pixel of a scene has its colour: where it is, as tangents of the angles to the right and upwards from where the
-/// observer looks, and the text; and why that does not explain the picture, if so.
+/// The explanation of a pixel's colour: its position, as tangents of the angles to the right of and above the
+/// viewing direction, and the text; and the reason why this does not explain the picture, if any.
 ///
 /// # Errors
-/// If the pixel is not in the picture.
+/// Returns an error if the pixel is not in the picture.
 pub fn point(request: &Request, pixel: [u32; 2]) -> Result<(Json, Option<String>), ExportError> {
     let Request { scene, registry, size: (width, height), .. } = *request;
     // The page shows all terms.
@@ -74,7 +75,7 @@ pub fn point(request: &Request, pixel: [u32; 2]) -> Result<(Json, Option<String>
     Ok((json!({ "at": at, "html": html }), doubt))
 }
 
-/// The reason why an explanation is not that of the picture, if there is one.
+/// The reason why an explanation does not match the picture, if any.
 fn doubt(request: &Request, explanation: &Explanation) -> Option<String> {
     let trouble = explanation.seen.as_ref().and_then(|seen| seen.model.trouble.as_ref());
     let ignored: Vec<_> = ignored_edits(request.registry, request.scene).into_iter().collect();
@@ -100,12 +101,13 @@ fn ending(class: &str, text: &str, light: Vec3, error: Option<Vec3>) -> String {
     format!("<p class=\"{class}\"><span>{}</span> {}</p>", escaped(text), estimate(light, error))
 }
 
-/// Mathematics in which no line ends within the three numbers of a colour, unless they are longer than a line.
+/// Mathematics in which no line breaks within the three numbers of a colour, unless they are longer than a
+/// line.
 fn numbers(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
     while let Some((triple, end)) = triple_in(rest) {
-        // The sign of a product or a sum begins the new line with it.
+        // The sign of a product or a sum moves to the new line.
         let sign = ["× ", "+ ", "− "].into_iter().find(|sign| rest[..triple].ends_with(sign));
         let at = triple - sign.map_or(0, str::len);
         out += &equation(&rest[..at]);
@@ -115,7 +117,7 @@ fn numbers(text: &str) -> String {
     out + &equation(rest)
 }
 
-/// Where the first three numbers in brackets begin and end, with no index or power behind them.
+/// The range of the first three numbers in brackets that have no subscript or power.
 fn triple_in(text: &str) -> Option<(usize, usize)> {
     let mut begin = None;
     for (i, c) in text.char_indices() {
@@ -141,12 +143,12 @@ fn chip([r, g, b]: [u8; 3]) -> String {
     format!("<span class=\"chip\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>")
 }
 
-/// A sample of linear light, beyond the display's range cut off, with its numbers; crossed out where it is no number.
+/// A sample of linear light, clamped to the display's range, with its numbers; crossed out if not finite.
 fn colour(light: Vec3) -> String {
     estimate(light, None)
 }
 
-/// The same with no digit beyond the standard error, if there is one.
+/// A sample of linear light, with the digits that its standard error, if any, allows.
 fn estimate(light: Vec3, error: Option<Vec3>) -> String {
     let chip = if light.is_finite() {
         chip(light.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(srgb_encode8))
@@ -182,7 +184,7 @@ fn text(explanation: &Explanation, name: &dyn Fn(Selection) -> String, doubt: Op
     out
 }
 
-/// The lights at a point, the brightest first.
+/// Writes the lights at a point, the brightest first.
 fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> String) {
     match spot.place {
         Place::Pixel => {}
@@ -231,7 +233,8 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
     }
 }
 
-/// The equation for one light as it is written, with numbers, and its value; then the light to the observer.
+/// Writes the equation for one light: as written, with numbers, and its value; then the light to the
+/// observer.
 fn light(out: &mut String, seen: &Seen, lit: &Lit) {
     if let Some(remark) = lit.remark() {
         *out += &paragraph("summary", remark);
@@ -256,7 +259,7 @@ fn light(out: &mut String, seen: &Seen, lit: &Lit) {
     }
 }
 
-/// A line of the equation: as it is written, with numbers, and its value.
+/// A line of the equation: as written, with numbers, and its value.
 fn worked(line: &Line) -> String {
     let mut out = String::new();
     let class = term(line.term);

@@ -1,23 +1,23 @@
-//! What browsers take: the least that WebGPU promises without asking for more, and WebGL 2 on nearly every device. A
-//! page beyond it would only fail at its reader's.
+//! Limits of browsers: the minimum that WebGPU guarantees by default, and that of WebGL 2 on nearly every
+//! device. A page beyond these limits would only fail for its readers.
 
 use serde_json::Value as Json;
 
 use crate::{export::ExportError, shape::PolygonMesh};
 
-/// Bytes of one uniform buffer.
+/// Bytes in one uniform buffer.
 const UNIFORM: usize = 65_536;
 /// Uniform buffers of one shader.
 const UNIFORMS: usize = 12;
-/// Bytes of one buffer of vertices.
+/// Bytes in one vertex buffer.
 const VERTICES: usize = 1 << 28;
-/// Bytes of a vertex that knows its polygon: six attributes of three floats.
+/// Bytes of a vertex with data of its polygon: six attributes of three floats.
 const STRIDE: usize = 72;
 
-/// Refuses shaders whose uniforms a browser does not take.
+/// Checks that uniforms fit into a browser's buffers.
 ///
 /// # Errors
-/// The size and the limit.
+/// Returns an error with the size and the limit.
 pub fn uniforms<'a>(all: impl ExactSizeIterator<Item = (&'a str, usize)>) -> Result<(), ExportError> {
     if all.len() > UNIFORMS {
         let said = format!("a shader has {} uniform buffers, and browsers take {UNIFORMS}", all.len());
@@ -35,10 +35,10 @@ pub fn uniforms<'a>(all: impl ExactSizeIterator<Item = (&'a str, usize)>) -> Res
     Ok(())
 }
 
-/// Refuses a mesh with more vertices than a browser takes.
+/// Checks that the vertices of a mesh fit into a browser's buffer.
 ///
 /// # Errors
-/// The size and the limit.
+/// Returns an error with the size and the limit.
 pub fn mesh(polygons: &PolygonMesh) -> Result<(), ExportError> {
     vertices(polygons.polygons.iter().map(|polygon| polygon.corners().len()).sum())
 }
@@ -53,10 +53,10 @@ fn vertices(corners: usize) -> Result<(), ExportError> {
     )))
 }
 
-/// Refuses uniforms as they stand in the data of the page.
+/// Checks the uniforms listed in the data of the page.
 ///
 /// # Errors
-/// As [`uniforms`].
+/// See [`uniforms`].
 pub fn listed(all: &[Json]) -> Result<(), ExportError> {
     let size = |json: &Json| json["size"].as_u64().unwrap_or(u64::MAX) as usize;
     uniforms(all.iter().map(|json| (json["name"].as_str().unwrap_or_default(), size(json))))

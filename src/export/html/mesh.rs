@@ -1,13 +1,13 @@
-//! Meshes in few bytes: corners on a fine grid, differences of neighbours, small numbers in one byte. The page
-//! calculates normals and tangents from them as the program does (`js/mesh.js`).
+//! Compact encoding of meshes: vertices on a fine grid, differences between neighbours, small numbers in one
+//! byte. The page calculates normals and tangents from them as the program does (`js/mesh.js`).
 
 use glam::Vec3;
 
 use crate::shape::PolygonMesh;
 
-/// The steps of the grid from the centre to the farthest coordinate: finer than a thousandth of a pixel.
+/// Grid steps from the centre to the farthest coordinate: finer than a thousandth of a pixel.
 const STEPS: f32 = 524_288.0;
-/// The steps of the components of tangents, whose length is 1.
+/// Steps of the components of tangents, which have unit length.
 const TANGENT_STEPS: f32 = 2048.0;
 
 /// The numbers of a mesh, which `js/mesh.js` reads.
@@ -17,16 +17,17 @@ pub struct Packed {
     pub vertices: usize,
     /// The number of polygons.
     pub polygons: usize,
-    /// The length of one step of the grid.
+    /// The size of a grid step.
     pub step: f32,
     /// True if each polygon has a tangent.
     pub tangents: bool,
-    /// The columns one after the other: x, y and z of the vertices; how many corners the polygons have; their first,
-    /// second, third and fourth corners, each less the one before; x, y and z of their tangents.
+    /// The columns one after the other: x, y and z of the vertices; the number of corners of each polygon;
+    /// their first, second, third and fourth corners, each minus the one before; x, y and z of their
+    /// tangents.
     pub bytes: Vec<u8>,
 }
 
-/// Packs a mesh; `tangents` are needed by anisotropic models only.
+/// Packs a mesh; only anisotropic models need `tangents`.
 #[must_use]
 pub fn pack(mesh: &PolygonMesh, tangents: bool) -> Packed {
     let extent = mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
@@ -58,9 +59,10 @@ fn steps(vectors: &[Vec3], axis: usize, step: f32) -> Vec<i32> {
     vectors.iter().map(|v| (v[axis] / step).round() as i32).collect()
 }
 
-/// Writes a column: how often differences were taken, and then the differences, in bytes of 7 bits.
+/// Writes a column: the order of its differences, then the differences, in bytes of 7 bits.
 fn column(values: &[i32], to: &mut Vec<u8>) {
-    /// Surfaces are smooth: differences of differences are smaller, until rounding errors add up.
+    /// Maximum order. Surfaces are smooth: differences of differences are smaller, until rounding errors add
+    /// up.
     const MOST: usize = 3;
     let mut candidates = vec![values.to_vec()];
     for order in 0..MOST {
@@ -83,7 +85,7 @@ fn column(values: &[i32], to: &mut Vec<u8>) {
     }
 }
 
-/// Small numbers of either sign as small numbers: 0, −1, 1, −2 …
+/// Maps small signed numbers to small unsigned ones: 0, −1, 1, −2 …
 fn zigzag(value: i32) -> u32 {
     ((value << 1) ^ (value >> 31)) as u32
 }

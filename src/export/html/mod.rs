@@ -1,7 +1,7 @@
-//! The form `html`: a page that shows the scene in a browser, one file that needs nothing else.
+//! The form `html`: a page that shows the scene in a browser, in a single self-contained file.
 //!
-//! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the same translated to GLSL. Its texts are
-//! `page.html`, `page.css` and `js/`; this module puts the scene into them.
+//! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the WGSL translated to GLSL. Its
+//! texts are `page.html`, `page.css` and `js/`; this module inserts the scene.
 
 use std::io::Write as _;
 
@@ -30,14 +30,14 @@ pub const HTML: Form = Form {
     make,
 };
 
-/// Most bytes of a page: it is sent by mail, and opened on a phone.
+/// Maximum size of a page, in bytes: it is sent by mail, and opened on a phone.
 pub const LIMIT: usize = 300_000;
 
-/// The page, with places for the scene.
+/// The page, with placeholders for the scene.
 const PAGE: &str = include_str!("page.html");
-/// Its style.
+/// The style sheet of the page.
 const STYLE: &str = include_str!("page.css");
-/// Its program, in parts; each uses those before it.
+/// The scripts of the page; each uses those before it.
 const SCRIPT: &[&str] = &[
     include_str!("js/unpack.js"),
     include_str!("js/vector.js"),
@@ -54,7 +54,7 @@ const SCRIPT: &[&str] = &[
     include_str!("js/panel.js"),
     include_str!("js/main.js"),
 ];
-/// The end of the program, behind the curves of its models.
+/// The end of the script, after the curves of the models.
 const START: &str = "start();\n";
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
@@ -86,7 +86,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
 
-/// The sizes of the page, of its shaders and values, of its meshes, and of the name and the description of the scene.
+/// The sizes of the page, of its shaders and values, of its meshes, and of the scene's name and description.
 fn too_large(page: usize, [scene, meshes, words]: [usize; 3], several_views: bool) -> String {
     let kb = |bytes: usize| bytes.div_ceil(1000);
     let remedy = if words > scene.max(meshes) {
@@ -107,7 +107,7 @@ fn too_large(page: usize, [scene, meshes, words]: [usize; 3], several_views: boo
     )
 }
 
-/// Bytes as text, compressed as by zlib.
+/// Bytes as text, compressed in zlib format.
 fn packed(bytes: &[u8]) -> Result<String, ExportError> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     let compressed = encoder.write_all(bytes).and_then(|()| encoder.finish());
@@ -116,7 +116,7 @@ fn packed(bytes: &[u8]) -> Result<String, ExportError> {
         .map_err(|e| ExportError::refused(format!("it cannot be compressed: {e}")))
 }
 
-/// A text with its `{{places}}` filled. What is filled in is not looked at again.
+/// A text with its `{{placeholders}}` filled in. Inserted text is not searched again.
 fn filled(text: &str, places: &[(&str, &str)]) -> String {
     let mut filled = String::new();
     let mut parts = text.split("{{");

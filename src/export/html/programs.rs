@@ -14,19 +14,19 @@ use crate::export::{
 
 /// WebGL 2.
 const WEBGL: Version = Version::Embedded { version: 300, is_webgl: true };
-/// Appended to shaders that read a curve: it calculates the curve anew when a knob was moved.
+/// Appended to shaders that read a curve: it recalculates the curve when a parameter changes.
 const ALBEDO: &str = include_str!("albedo.wgsl");
-/// Its entry points.
+/// Entry points of [`ALBEDO`].
 const ALBEDO_ENTRY_POINTS: [(&str, ShaderStage); 2] =
     [("albedo_vertex", ShaderStage::Vertex), ("albedo_fragment", ShaderStage::Fragment)];
-/// Uniforms that differ between objects; the page writes them. The others are the same for all.
+/// Uniforms that differ between objects, written by the page. The others are shared by all.
 const OF_OBJECTS: [&str; 6] =
     ["parameters", "albedo_curve", "material_lobes", "shading_values", "view", "placement"];
 
 /// A shader and its uniforms.
 ///
 /// # Errors
-/// If it cannot be translated.
+/// Returns an error if the shader cannot be translated.
 pub fn program(
     lit: &Lit,
     drawn: &Drawn,

@@ -1,4 +1,4 @@
-//! Texts that have much in common: each part is kept once.
+//! Texts that have much in common: each part is stored once.
 
 use std::collections::HashMap;
 
@@ -12,8 +12,8 @@ pub struct Texts {
 }
 
 impl Texts {
-    /// Adds a text; it is the parts of these indices, one after the other. Shaders that differ in a model or a shading
-    /// model share most of their functions, and a function ends with a brace on its own line.
+    /// Adds a text, and returns the indices of the parts that it consists of. Shaders that differ in a model
+    /// or a shading model share most of their functions, and a function ends with a brace on its own line.
     pub fn add(&mut self, text: &str) -> Vec<usize> {
         let mut parts = Vec::new();
         let mut rest = text;

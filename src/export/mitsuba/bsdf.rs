@@ -1,10 +1,10 @@
-//! Reflection models with a counterpart in Mitsuba: those whose equations are the same there.
+//! Reflection models with a counterpart in Mitsuba: those with the same equations there.
 //!
-//! `diffuse` is Lambert. `roughconductor` is a microfacet lobe without a base, with Smith's separable masking and the
-//! exact Fresnel term of n + ik, which is that of a dielectric where k = 0. The diffuse part of `principled` is Burley's. What
-//! comes close without being the same is not claimed: the masking of `principled` differs from that of our
-//! metallic–roughness by up to half at grazing angles, and `roughplastic` lets light through its boundary by another
-//! law.
+//! `diffuse` is Lambert. `roughconductor` is a microfacet lobe without a base, with Smith's separable masking
+//! and the exact Fresnel term of n + ik, which is that of a dielectric where k = 0. The diffuse part of
+//! `principled` is Burley's. Models that are merely similar are refused: the masking of `principled` differs
+//! from that of our metallic–roughness by up to half at grazing angles, and `roughplastic` lets light through
+//! its boundary by another law.
 
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub(super) struct Material<'a> {
     pub(super) model: &'a ModelEntry,
     pub(super) values: &'a Values,
     pub(super) encoding: Encoding,
-    /// True if some of the lights is ambient.
+    /// True if any light is ambient.
     pub(super) ambient: bool,
 }
 
@@ -28,9 +28,9 @@ pub(super) struct Material<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bsdf {
     pub(super) xml: Xml,
-    /// True if it depends on the direction in which the surface is brushed.
+    /// True if it depends on the brush direction of the surface.
     pub(super) brushed: bool,
-    /// A difference that remains.
+    /// A remaining difference.
     pub(super) note: Option<&'static str>,
 }
 
@@ -40,10 +40,10 @@ impl Bsdf {
     }
 }
 
-/// A counterpart, or the reason why there is none.
+/// Returns the counterpart, or the reason why there is none.
 type Counterpart = fn(&Material) -> Result<Bsdf, String>;
 
-/// The models that have a counterpart, some of them for some of their parameters only.
+/// The models with a counterpart, in some cases only for certain parameters.
 const COUNTERPARTS: &[(&str, Counterpart)] = &[
     ("lambert", |m| Ok(diffuse(m.colour("base_colour")))),
     ("burley_diffuse", burley),
@@ -79,7 +79,7 @@ impl Material<'_> {
         self.model.parameter(name).map_or(Vec3::ZERO, |p| self.values.colour(p, self.encoding))
     }
 
-    /// The name of the option that is chosen.
+    /// The name of the selected option.
     fn choice(&self, name: &str) -> String {
         match self.model.parameter(name).map(|p| self.values.get(p)) {
             Some(Value::Choice(id)) => id.into_owned(),
@@ -92,7 +92,7 @@ fn diffuse(reflectance: Vec3) -> Bsdf {
     Bsdf::of(Xml::plugin("bsdf", "diffuse").rgb("reflectance", reflectance))
 }
 
-/// A model that is Lambert where one of its parameters is 0.
+/// A model that equals Lambert if one of its parameters is 0.
 fn matte(m: &Material, parameter: &str) -> Result<Bsdf, String> {
     if m.number(parameter) != 0.0 {
         return Err(format!("Mitsuba has a counterpart only where {parameter} is 0"));
@@ -101,7 +101,7 @@ fn matte(m: &Material, parameter: &str) -> Result<Bsdf, String> {
     Ok(diffuse(m.colour("base_colour")))
 }
 
-/// The same, with a factor, and with an ambient part that each light adds.
+/// Like [`matte`], with a factor, and with an ambient part that each light adds.
 fn matte_phong(m: &Material) -> Result<Bsdf, String> {
     if m.number("k_s") != 0.0 || m.number("k_a") != 0.0 {
         return Err("Mitsuba has a counterpart only where k_s and k_a are 0".to_owned());
@@ -112,8 +112,8 @@ fn matte_phong(m: &Material) -> Result<Bsdf, String> {
     Ok(diffuse(m.number("k_d") * m.colour("base_colour")))
 }
 
-/// `principled` without its specular part is Burley's diffuse BRDF in the form of 2015, which is that of 2012 multiplied
-/// out.
+/// `principled` without its specular part is Burley's diffuse BRDF in the form of 2015, the expanded form of
+/// that of 2012.
 fn burley(m: &Material) -> Result<Bsdf, String> {
     let xml = Xml::plugin("bsdf", "principled").rgb("base_color", m.colour("base_colour"));
     Ok(Bsdf::of(xml.float("roughness", m.number("roughness")).float("specular", 0.0)))
@@ -204,7 +204,7 @@ mod tests {
         assert!(of("microfacet", &metal, true).is_err());
     }
 
-    /// The ambient part of Phong's model is no albedo, and each light adds it.
+    /// The ambient part of Phong's model is not an albedo, and each light adds it.
     #[test]
     fn the_ambient_part_of_phong_is_refused() {
         let mut matte = vec![("k_s", Value::Number(0.0))];
@@ -214,7 +214,7 @@ mod tests {
         assert!(of("phong", &matte, true).is_err_and(|why| why.contains("ambient lights")));
     }
 
-    /// Lambert in disguise: the models say themselves that they are, where the parameter is 0.
+    /// Models equal to Lambert where the parameter is 0, as they declare themselves.
     #[test]
     fn matte_models_answer_as_lambert_does() {
         use crate::optics::Frame;

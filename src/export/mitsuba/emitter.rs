@@ -14,24 +14,24 @@ use crate::{
     scene::observer::orientation,
 };
 
-/// A light that shines.
+/// An active light.
 pub(super) struct Lamp<'a> {
     pub(super) entry: &'a LightEntry,
     pub(super) record: LightRecord,
     pub(super) values: &'a Values,
-    /// Its number, for names of files.
+    /// Index of the light, for file names.
     pub(super) number: usize,
 }
 
-/// The counterpart of a light: elements, and a file that they name.
+/// The counterpart of a light: elements, and a file that they reference.
 pub(super) struct Emitter {
     pub(super) xml: Vec<Xml>,
     pub(super) file: Option<File>,
-    /// True if it shines from all around: Mitsuba has room for one such.
+    /// True if it shines from all directions: Mitsuba allows one such emitter.
     pub(super) around: bool,
 }
 
-/// A counterpart, or the reason why there is none.
+/// Returns the counterpart, or the reason why there is none.
 type Counterpart = fn(&Lamp) -> Result<Emitter, String>;
 
 const COUNTERPARTS: &[(&str, Counterpart)] = &[
@@ -47,13 +47,13 @@ const COUNTERPARTS: &[(&str, Counterpart)] = &[
     ("environment", environment),
 ];
 
-/// The distance between the two sides of a light that shines to both, metres: in one plane, each would hide the other.
+/// Distance between the sides of a two-sided light, in metres: in one plane, each would hide the other.
 const APART: f32 = 1e-3;
 
-/// The distance of the sun, metres.
+/// Distance of the sun, in metres.
 const FAR: f32 = 1e5;
 
-/// The widest cone, degrees: the picture in which Mitsuba looks up the light of a cone has no end at 90°.
+/// Widest cone, in degrees: the texture in which Mitsuba looks up the light of a cone is unbounded at 90°.
 const WIDEST: f32 = 85.0;
 
 impl Lamp<'_> {
@@ -74,17 +74,18 @@ impl Lamp<'_> {
         self.entry.parameter(name).map_or(0.0, |p| self.values.number(p))
     }
 
-    /// The index of the option that is chosen.
+    /// The index of the selected option.
     fn choice(&self, name: &str) -> u32 {
         self.entry.parameter(name).map_or(0, |p| self.values.choice(p))
     }
 
-    /// A shape that shines with the luminance of the light.
+    /// A shape that emits the luminance of the light.
     fn shining(&self, shape: Xml) -> Xml {
         shining(shape, PI * self.power())
     }
 
-    /// A flat shape between −1 and 1 in x and y, with half of each side in the room; one for each side that shines.
+    /// A flat shape between −1 and 1 in x and y, given half of each side in the room; one for each emitting
+    /// side.
     fn flat(&self, shape: &str, [x, y]: [Vec3; 2]) -> Result<Emitter, String> {
         let LightRecord { position, direction, .. } = self.record;
         let two_sided = self.choice("two_sided") == 1;
@@ -100,7 +101,7 @@ impl Lamp<'_> {
     }
 }
 
-/// A shape that shines; by itself it is black.
+/// An emitting shape, whose surface is black otherwise.
 fn shining(shape: Xml, radiance: Vec3) -> Xml {
     let black = Xml::plugin("bsdf", "diffuse").rgb("reflectance", Vec3::ZERO);
     shape.with(black).with(Xml::plugin("emitter", "area").rgb("radiance", radiance))
@@ -114,7 +115,7 @@ fn all_around(xml: Xml) -> Result<Emitter, String> {
     Ok(Emitter { around: true, ..alone(xml)? })
 }
 
-/// `<point name="…" x="…" y="…" z="…"/>`, or a vector.
+/// A point, `<point name="…" x="…" y="…" z="…"/>`, or a vector.
 fn place(kind: &str, name: &str, Vec3 { x, y, z }: Vec3) -> Xml {
     Xml::element(format!("{kind} name=\"{name}\" x=\"{x}\" y=\"{y}\" z=\"{z}\""))
 }
@@ -155,7 +156,8 @@ fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
     alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
 }
 
-/// A disc so far away that it fills the same angle everywhere in the room. E lux are the luminance E/(π sin²(δ/2)).
+/// A disc so far away that it subtends the same angle everywhere in the room. E lux correspond to the
+/// luminance E/(π sin²(δ/2)).
 fn sun(lamp: &Lamp) -> Result<Emitter, String> {
     let LightRecord { direction, .. } = lamp.record;
     let radius = 0.5 * lamp.parameter("diameter").to_radians();
@@ -165,7 +167,7 @@ fn sun(lamp: &Lamp) -> Result<Emitter, String> {
     alone(shining(disk, lamp.power() / radius.sin().powi(2)))
 }
 
-/// Light from all around: the same everywhere, or a picture of it.
+/// Light from all directions: constant, or a picture.
 fn environment(lamp: &Lamp) -> Result<Emitter, String> {
     if lamp.choice("source") == 0 {
         return all_around(Xml::plugin("emitter", "constant").rgb("radiance", PI * lamp.power()));
@@ -177,13 +179,15 @@ fn environment(lamp: &Lamp) -> Result<Emitter, String> {
     Ok(Emitter { file: Some(File::new(path, panorama(&radiance))), ..all_around(map)? })
 }
 
-/// A picture of all directions as Mitsuba looks them up: columns go about the vertical from −z by +x, the first begins there; the
-/// middles of the first and the last row are straight above and below. Each pixel is a mean, so that edges are soft and not steps.
+/// A picture of all directions in Mitsuba's layout: columns run around the vertical from −z via +x, starting
+/// with the first; the centres of the first and last rows are straight above and below. Each pixel is a mean,
+/// so that edges are soft.
 fn panorama(radiance: &(impl Fn(Vec3) -> Vec3 + Sync)) -> Vec<u8> {
-    /// Pixels.
+    /// Width in pixels.
     const WIDTH: usize = 1024;
     const HEIGHT: usize = WIDTH / 2 + 1;
-    /// Points across a pixel: an even number, so that none lies on the horizon, which belongs to the ground alone.
+    /// Sample points across a pixel: an even number, so that none lies on the horizon, which belongs to the
+    /// ground alone.
     const FINE: usize = 4;
     let part = |i: usize| (i as f32 + 0.5) / FINE as f32;
     let pixel = |row: usize, column: usize| {
@@ -196,7 +200,7 @@ fn panorama(radiance: &(impl Fn(Vec3) -> Vec3 + Sync)) -> Vec<u8> {
         }
         sum / (FINE * FINE) as f32
     };
-    // The format begins with the lowest row.
+    // The format starts with the bottom row.
     let rows = (0..HEIGHT).into_par_iter().rev().map(|row| {
         let numbers = (0..WIDTH).flat_map(|column| pixel(row, column).to_array());
         numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>()
@@ -206,13 +210,14 @@ fn panorama(radiance: &(impl Fn(Vec3) -> Vec3 + Sync)) -> Vec<u8> {
     bytes
 }
 
-/// A surface with the albedo E answers to the radiance L from everywhere with E L, and to our ambient light I with E I.
+/// A surface with the albedo E responds to the radiance L from all directions with E L, and to our ambient
+/// light I with E I.
 fn ambient(lamp: &Lamp) -> Result<Emitter, String> {
     all_around(Xml::plugin("emitter", "constant").rgb("radiance", lamp.power()))
 }
 
-/// Mitsuba's cone fades linearly with the angle, ours by a cubic of its cosine. So that one has no soft edge, and our
-/// profile is a picture that it projects.
+/// Mitsuba's cone fades linearly with the angle, ours by a cubic of its cosine. The exported cone therefore
+/// has no soft edge, and projects our profile as a picture.
 fn spot(lamp: &Lamp) -> Result<Emitter, String> {
     let [angle, penumbra] = ["cone_angle", "penumbra"].map(|name| lamp.parameter(name));
     if angle > WIDEST {
@@ -244,7 +249,7 @@ fn spot(lamp: &Lamp) -> Result<Emitter, String> {
 
 /// The profile of a cone as a picture in the plane at distance 1, in the Portable FloatMap format.
 fn profile(angle: f32, penumbra: f32) -> Vec<u8> {
-    /// Pixels across half the picture's soft edge.
+    /// Pixels across half of the soft edge.
     const FINE: f32 = 64.0;
     let side = (FINE / penumbra).clamp(256.0, 2048.0) as usize;
     let mut bytes = format!("Pf\n{side} {side}\n-1.0\n").into_bytes();

@@ -4,12 +4,12 @@ use glam::{Vec2, Vec3};
 
 use crate::shape::PolygonMesh;
 
-/// What a mesh needs besides its positions.
+/// The data that a mesh needs besides its positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Surface {
-    /// True if it has the normals of its vertices; else each triangle is flat.
+    /// True if vertices have normals; otherwise each triangle is flat.
     pub(super) smooth: bool,
-    /// True if it has the direction in which it is brushed.
+    /// True if the surface has a brush direction.
     pub(super) brushed: bool,
 }
 
@@ -18,8 +18,8 @@ type Vertex = (Vec3, Vec3, Vec2);
 
 /// The PLY file of a mesh.
 ///
-/// The direction in which a surface is brushed is that of the texture coordinate u: each triangle has vertices of its own, with
-/// u along the mean of the tangents at its corners.
+/// The brush direction of a surface is that of the texture coordinate u: each triangle has separate vertices,
+/// with u along the mean of the tangents at its corners.
 pub(super) fn ply(mesh: &PolygonMesh, surface: Surface) -> Vec<u8> {
     let normals = if surface.smooth { mesh.vertex_normals() } else { Vec::new() };
     let vertex = |i: u32| {

@@ -1,5 +1,4 @@
-//! A scene for Mitsuba 3, a renderer that follows light through the room: a reference for pictures, and a witness for
-//! ours.
+//! A scene for Mitsuba 3, a path tracer: a reference for pictures, and an independent check of ours.
 //!
 //! Only what has the same equation there is exported; the rest is refused, all parts at once. Our lights multiply a
 //! response π f_r cos θ, and Mitsuba's multiply f_r cos θ, so lights from one direction are π times as strong there.
@@ -47,7 +46,7 @@ pub const FORM: Form = Form {
     make,
 };
 
-/// Shading models that interpolate, and those that show polygons.
+/// Shading models: true for those that interpolate, false for those that show polygons.
 const SHADING: &[(&str, bool)] =
     &[("gouraud", true), ("phong", true), ("flat", false), ("derivative", false)];
 
@@ -109,7 +108,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     Ok(Export { files, notes: notes.into_iter().collect() })
 }
 
-/// The lights that shine, each with its name.
+/// The active lights, each with its name.
 fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
     let Request { scene, registry, .. } = request;
     let mut emitters: Vec<(String, Emitter)> = Vec::new();
@@ -144,7 +143,7 @@ struct Counterpart<'a> {
     smooth: bool,
 }
 
-/// The objects that are shown.
+/// The visible objects.
 fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<'a>> {
     let Request { scene, registry, .. } = request;
     let encoding = scene.display.encoding;
@@ -209,7 +208,7 @@ fn sensor(request: &Request) -> Xml {
         )
 }
 
-/// Where the picture differs from that of the lab.
+/// The differences from the picture in the lab.
 fn differences(request: &Request) -> Vec<String> {
     let scene = request.scene;
     let shown = |id: &str| scene.shown().any(|object| scene.shading_model_of(object) == id);

@@ -1,4 +1,4 @@
-//! The writing of XML: elements within elements, indented.
+//! Writes XML: nested, indented elements.
 
 use std::fmt::Write as _;
 
@@ -6,10 +6,10 @@ use glam::{Mat4, Vec3};
 
 use crate::{files::printable, text::xml::comment};
 
-/// An element: a plugin or one of its properties, with elements and comments in it.
+/// An element: a plugin or one of its properties, containing elements and comments.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Xml {
-    /// `shape type="ply"`.
+    /// Name and attributes: `shape type="ply"`.
     open: String,
     within: Vec<Xml>,
 }
@@ -30,28 +30,28 @@ impl Xml {
         Self { open: format!("!-- {} --", harmless(text)), within: Vec::new() }
     }
 
-    /// The element with one more in it.
+    /// The element with a child added.
     pub(super) fn with(mut self, child: Self) -> Self {
         self.within.push(child);
         self
     }
 
-    /// The element with a comment in it.
+    /// The element with a comment added.
     pub(super) fn says(self, text: &str) -> Self {
         self.with(Self::comment(text))
     }
 
-    /// The element with a property: `<float name="fov" value="45"/>`.
+    /// The element with a property added: `<float name="fov" value="45"/>`.
     pub(super) fn set(self, kind: &str, name: &str, value: &str) -> Self {
         self.with(Self::element(format!("{kind} name=\"{name}\" value=\"{value}\"")))
     }
 
-    /// The same with a number.
+    /// The element with a number added.
     pub(super) fn float(self, name: &str, value: f32) -> Self {
         self.set("float", name, &number(value))
     }
 
-    /// The same with a colour, or with three numbers for red, green and blue.
+    /// The element with a colour, or three numbers for red, green and blue, added.
     pub(super) fn rgb(self, name: &str, value: Vec3) -> Self {
         self.set("rgb", name, &triple(value))
     }
@@ -80,17 +80,17 @@ impl Xml {
     }
 }
 
-/// A text that does not end a comment.
+/// A text that cannot end a comment.
 fn harmless(text: &str) -> String {
     comment(&printable(text))
 }
 
-/// A number that is read back exactly.
+/// A number with the digits to restore it exactly.
 pub(super) fn number(value: f32) -> String {
     format!("{value}")
 }
 
-/// A place in the room.
+/// A transformation in the room.
 pub(super) fn to_world(matrix: Mat4) -> Xml {
     let rows: Vec<_> = matrix.transpose().to_cols_array().iter().map(f32::to_string).collect();
     let matrix = Xml::element(format!("matrix value=\"{}\"", rows.join(" ")));

@@ -1,33 +1,33 @@
-//! The declarations of a WGSL text, and those of them that a program uses.
+//! The declarations in a WGSL text, and the ones that a program uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::shader::definitions::block_comment;
 
-/// A declaration at the top level of a text.
+/// A top-level declaration in a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// The name that it declares.
+    /// The declared name.
     pub name: String,
-    /// Its text, with the comments directly above it.
+    /// The text, with the comments directly above it.
     pub text: String,
 }
 
 impl Item {
-    /// The names in it that may be those of other items. A name after a dot is that of a field.
+    /// The names in it that may refer to other items. A name after a dot is a field.
     fn uses(&self) -> BTreeSet<&str> {
         words(&self.text).into_iter().filter(|(_, field)| !field).map(|(word, _)| word).collect()
     }
 }
 
-/// The declarations of a text, in its order. Comments that stand by themselves are left out, as is anything that is no
+/// The declarations in a text, in order. Free-standing comments are dropped, and so is anything that is not a
 /// declaration.
 #[must_use]
 pub fn items(text: &str) -> Vec<Item> {
     let bytes = text.as_bytes();
     let mut items = Vec::new();
     let mut at = 0;
-    // Where the comments directly above the next declaration begin.
+    // The start of the comments directly above the next declaration.
     let mut begin = None;
     while at < bytes.len() {
         let rest = &text[at..];
@@ -50,7 +50,7 @@ pub fn items(text: &str) -> Vec<Item> {
                 items.push(Item { name: name.to_owned(), text: own.trim_end().to_owned() });
             }
             at = end;
-            // The end of its line does not part it from comments below.
+            // The end of its line does not separate it from comments below.
             at += text[at..].find(|c: char| c != ' ').unwrap_or(0);
             at += usize::from(text[at..].starts_with('\n'));
         }
@@ -58,7 +58,7 @@ pub fn items(text: &str) -> Vec<Item> {
     items
 }
 
-/// The end of the declaration with which a text begins: its semicolon, or its closing brace.
+/// The end of the declaration at the start of a text: its semicolon, or its closing brace.
 fn end_of(text: &str) -> usize {
     let mut depth = 0_usize;
     let mut at = 0;
@@ -73,7 +73,7 @@ fn end_of(text: &str) -> usize {
             continue;
         }
         if rest.starts_with("#{") {
-            // A name that the preprocessor of Bevy replaces.
+            // A name replaced by Bevy's preprocessor.
             at += rest.find('}').map_or(rest.len(), |i| i + 1);
             continue;
         }
@@ -94,7 +94,7 @@ fn end_of(text: &str) -> usize {
     text.len()
 }
 
-/// The name that a declaration declares.
+/// The name declared by a declaration.
 fn declared(text: &str) -> Option<&str> {
     let mut all = words(text).into_iter().map(|(word, _)| word);
     let keyword = all.find(|word| ["fn", "struct", "const", "var", "alias", "override"].contains(word))?;
@@ -129,13 +129,13 @@ fn words(text: &str) -> Vec<(&str, bool)> {
     found
 }
 
-/// The names of fields that some text reads or writes.
+/// The names of fields that any of the texts reads or writes.
 #[must_use]
 pub fn fields<'a>(texts: impl IntoIterator<Item = &'a str>) -> BTreeSet<&'a str> {
     texts.into_iter().flat_map(words).filter(|(_, field)| *field).map(|(word, _)| word).collect()
 }
 
-/// Drops what the roots do not need, directly or by way of others.
+/// Drops everything that the roots do not need, directly or indirectly.
 pub fn retain_used(sections: &mut [Vec<Item>], roots: &[&str]) {
     let mut needed: BTreeSet<String> = BTreeSet::new();
     {

@@ -1,5 +1,5 @@
-//! The shader of one model and one shading model for the lights of one scene: the texts that run on screen, without the
-//! tables that serve any scene, and without what the scene does not use.
+//! The shader of one reflection model and one shading model for the lights of one scene: the source used on
+//! screen, without the tables for arbitrary scenes, and without the parts that the scene does not use.
 
 use std::{collections::BTreeSet, fmt::Write as _};
 
@@ -34,21 +34,21 @@ use crate::{
 pub mod items;
 mod wrapper;
 
-/// Those that take a shader.
+/// The program that will use a shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Host {
-    /// Any program: the shader stands alone, and ends with the colour for the display.
+    /// Any program: the shader is self-contained, and returns the colour for the display.
     Alone {
-        /// The curve from light to display.
+        /// Tone mapping.
         tone: ToneMapping,
-        /// The encoding of colours.
+        /// Encoding of colours.
         encoding: Encoding,
     },
-    /// A program with Bevy, which has the camera, and maps tones after the shader.
+    /// A Bevy program, which provides the camera, and applies tone mapping after the shader.
     Bevy {
-        /// The factor of the exposure.
+        /// Factor of the exposure.
         exposure: f32,
-        /// The encoding of colours.
+        /// Encoding of colours.
         encoding: Encoding,
     },
 }
@@ -56,38 +56,39 @@ pub enum Host {
 /// A finished shader.
 #[derive(Clone, Debug)]
 pub struct Shader {
-    /// The WGSL.
+    /// WGSL source.
     pub text: String,
-    /// The fields of `Light` in it.
+    /// The fields of its `Light`.
     pub light_fields: Vec<LightField>,
-    /// True if it reads `albedo_curve`.
+    /// True if the shader reads `albedo_curve`.
     pub reads_curve: bool,
-    /// True if it reads `shading_values`, the parameters of the shading model.
+    /// True if the shader reads `shading_values`, the parameters of the shading model.
     pub reads_shading: bool,
-    /// True if it reads `lamp_numbers`, the numbers of the lights' files.
+    /// True if the shader reads `lamp_numbers`, the numbers of the lights' files.
     pub reads_lamps: bool,
-    /// True if it reads `material_lobes`, the lobes of the material.
+    /// True if the shader reads `material_lobes`, the lobes of the material.
     pub reads_lobes: bool,
     /// True if an edited light loop reads more of `illumination` than the lights.
     pub reads_header: bool,
 }
 
-/// The samples of light with extent that a shader takes for each pixel, or for each vertex or polygon.
+/// Number of samples of light with extent that a shader takes for each pixel, or for each vertex or polygon.
 pub const LIGHT_SAMPLES: u32 = 64;
 
 /// The index of the section of the light loop, before those of the light types.
 const LIGHT_LOOP: usize = 3;
 
-/// A part of the text under one heading.
+/// A part of the source under one heading.
 struct Section {
     heading: String,
     items: Vec<Item>,
 }
 
-/// What a model and a shading model need for the lights of a scene.
+/// The shader of a reflection model and a shading model for the lights of a scene.
 ///
 /// # Errors
-/// If the texts cannot be joined: only by `#import`s that lead nowhere, which drawing reports too.
+/// Returns an error if the sources cannot be combined: only for unresolved `#import`s, which drawing reports
+/// too.
 pub fn compose(
     lights: &Lights,
     registry: &Registry,
@@ -133,13 +134,13 @@ pub fn compose(
     sections.push(Section { heading, items: items(&response) });
     let mut vocabulary = Vec::new();
     for source in OPTICS.iter().chain([&SHADING, &LIGHTS, &ALBEDO]) {
-        // The record of a light is made for the scene.
+        // The record of a light is generated for the scene.
         let all = items(&text(sources, source)?);
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
     }
     vocabulary.extend(items(&named_curves(model)));
     if lights.has_extent() {
-        // GLSL for WebGL 2 has no function that reverses bits.
+        // GLSL for WebGL 2 lacks a function that reverses bits.
         let sampling = text(sources, &SAMPLING)?.replace("reverseBits(", "bits_reversed(");
         vocabulary.extend(items(&(sampling + BITS_REVERSED)));
     }
@@ -156,7 +157,7 @@ pub fn compose(
     Ok(shader)
 }
 
-/// Refuses texts that declare a name twice: custom models may use names that only exports have.
+/// Refuses sources that declare a name twice: custom models may use names that exist only in exports.
 fn unique(sections: &[Section]) -> Result<(), ExportError> {
     let mut known = BTreeSet::new();
     let twice = sections.iter().flat_map(|s| &s.items).find(|item| !known.insert(item.name.as_str()));
@@ -168,10 +169,10 @@ fn unique(sections: &[Section]) -> Result<(), ExportError> {
     })
 }
 
-/// The most bytes that WebGPU promises for a uniform.
+/// Maximum size of a uniform guaranteed by WebGPU, in bytes.
 const UNIFORM_BYTES: usize = 65_536;
 
-/// Refuses what no uniform holds.
+/// Refuses data that does not fit into a uniform.
 fn fits(what: &str, bytes: usize, remedy: &str) -> Result<(), ExportError> {
     if bytes <= UNIFORM_BYTES {
         return Ok(());
@@ -181,18 +182,18 @@ fn fits(what: &str, bytes: usize, remedy: &str) -> Result<(), ExportError> {
     )))
 }
 
-/// The declarations of `lights.wgsl` that are made for each scene.
+/// The declarations of `lights.wgsl` that are generated for each scene.
 const MADE: [&str; 3] = ["Light", "Illumination", "MAX_LIGHTS"];
 
 fn credit(name: &str, what: &str, source: &str, summary: &str) -> String {
     let name = if name.to_lowercase().contains(what) { name.to_owned() } else { format!("{name} {what}") };
-    // Some sources begin with a code of the requirements.
+    // Some sources begin with the code of a requirement.
     let source = source.strip_prefix("CA ").and_then(|rest| Some(rest.split_once(": ")?.1)).unwrap_or(source);
     let source = if source.is_empty() { String::new() } else { format!(" ({source})") };
     format!("{name}{source}.\n{summary}")
 }
 
-/// The text of a source, after those that it imports.
+/// The text of a source, after the sources that it imports.
 fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
     let mut composer = Composer::new(sources);
     composer.source(source);
@@ -202,7 +203,7 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
     }
 }
 
-/// A text without the codes of the requirements that comments name: `(CA DD7)`, `, CA DD9)`.
+/// A text without codes of requirements in comments: `(CA DD7)`, `, CA DD9)`.
 fn without_codes(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
@@ -218,13 +219,14 @@ fn without_codes(text: &str) -> String {
     out
 }
 
-/// The place of the first code in a comment: with its brackets, or with the comma before it.
+/// The range of the first code in a comment: with its brackets, or with the comma before it.
 fn code(line: &str) -> Option<(usize, usize)> {
     let whole = line.find(" (CA ").and_then(|at| Some((at, line[at..].find(')')? + 1)));
     whole.or_else(|| line.find(", CA ").and_then(|at| Some((at, line[at..].find(')')?))))
 }
 
-/// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
+/// The light loop, with a fixed number of lights and all terms. From the built-in loop, parts that the scene
+/// does not need are removed.
 fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let (mut joined, mut simpler) = (String::new(), SIMPLER);
@@ -246,7 +248,7 @@ fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError>
     Ok(joined)
 }
 
-/// Parts of the built-in light loop, and what they are without a choice of terms.
+/// Parts of the built-in light loop, and their replacements if all terms are shown.
 const SIMPLER: &[(&str, &str)] = &[
     (" `illumination`, `parameters` and `observer_position` come from the wrapper.", ""),
     (
@@ -259,7 +261,7 @@ const SIMPLER: &[(&str, &str)] = &[
     ("    let selection = illumination.terms;\n", ""),
     ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
 ];
-/// What is known of the scene, for any light loop.
+/// Expressions known for the scene, in any light loop.
 const KNOWN: &[(&str, &str)] = &[
     ("min(illumination.count, MAX_LIGHTS)", "LIGHT_COUNT"),
     ("illumination.count", "LIGHT_COUNT"),
@@ -269,7 +271,7 @@ const KNOWN: &[(&str, &str)] = &[
     ("illumination.first_sample + ", ""),
     ("illumination.first_sample", "0u"),
 ];
-/// The part of the light loop that tells uniform light from other light.
+/// The part of the light loop that distinguishes uniform light from other light.
 const EITHER: &str = "        var terms: Terms;
         if arriving.everywhere != 0u {
             terms = Terms(ambient_response(v, frame, parameters), vec3(0.0), vec3(0.0));
@@ -277,10 +279,10 @@ const EITHER: &str = "        var terms: Terms;
             terms = response(arriving.l, v, frame, parameters);
         }
 ";
-/// The same where there is no uniform light.
+/// The replacement of that part without uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
 
-/// A number with its bits in the opposite order.
+/// A number with its bits reversed.
 const BITS_REVERSED: &str = "fn bits_reversed(number: u32) -> u32 {
     var x = (number >> 16u) | (number << 16u);
     x = ((x & 0xff00ff00u) >> 8u) | ((x & 0x00ff00ffu) << 8u);
@@ -290,7 +292,7 @@ const BITS_REVERSED: &str = "fn bits_reversed(number: u32) -> u32 {
 }
 ";
 
-/// The functions that hand a light to its type.
+/// The functions that dispatch a light to its type.
 fn dispatch(lights: &Lights) -> String {
     let mut text = "// The light that arrives at a point of the room from one light.\n".to_owned();
     for twin in Twin::all(false) {
@@ -308,7 +310,7 @@ fn dispatch(lights: &Lights) -> String {
     text
 }
 
-/// A function that hands lights with or without extent to their types; others are dark there.
+/// A function that dispatches lights with or without extent to their types; others are dark there.
 fn function(text: &mut String, lights: &Lights, twin: &Twin, name: &str, extent: bool) {
     let [taken, _] = twin.more;
     let _ = writeln!(text, "fn {name}(light: Light, p: vec3<f32>{taken}) -> {} {{", twin.result);
@@ -329,7 +331,7 @@ fn function(text: &mut String, lights: &Lights, twin: &Twin, name: &str, extent:
     let _ = writeln!(text, "        default: {{ return {rest}; }}\n    }}\n}}");
 }
 
-/// The inputs of the shader: their types, their bindings, and the functions that read them.
+/// The inputs of the shader: their types, bindings, and the functions that read them.
 fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Host) -> String {
     let group = wrapper::group(host);
     let count = lights.rows.len();
@@ -420,12 +422,12 @@ fn illumination_number(i: u32) -> f32 {{
     text
 }
 
-/// Drops what is not used, then makes the record of a light of the fields that are.
+/// Drops unused parts, then builds the record of a light from the fields that are left.
 fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
     let (headings, mut all): (Vec<_>, Vec<_>) = sections.into_iter().map(|s| (s.heading, s.items)).unzip();
     retain_used(&mut all, &["vertex", "fragment"]);
-    // In the light loop and the light types, a field is one of a light, or has the name of one. They are the same for all
-    // models of a scene, and so is the record.
+    // In the light loop and the light types, a field name refers to a light, or equals the name of a light's
+    // field. Both are the same for all models of a scene, and so is the record.
     let handling = LIGHT_LOOP..LIGHT_LOOP + 1 + lights.types.len();
     let texts: Vec<_> = all[handling].iter().flatten().map(|item| item.text.as_str()).collect();
     let used = fields(texts.iter().copied());
@@ -449,7 +451,7 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
         (has("albedo_curve"), has("shading_values"), has("lamp_numbers"));
     let reads_lobes = has("material_lobes");
     let mut text = wrapper::prelude(host).to_owned();
-    // Inputs first.
+    // Inputs come first.
     for section in [1, 0].into_iter().chain(2..all.len()) {
         if all[section].is_empty() {
             continue;
@@ -470,7 +472,7 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
     Shader { text, light_fields, reads_curve, reads_shading, reads_lamps, reads_lobes, reads_header }
 }
 
-/// A line for a comment, cut at spaces so that it stays within the width of the files.
+/// A line for a comment, wrapped at spaces to the line width of the files.
 fn wrapped(line: &str) -> Vec<String> {
     /// Characters in a line.
     const WIDTH: usize = 96;
@@ -491,10 +493,10 @@ fn wrapped(line: &str) -> Vec<String> {
     lines
 }
 
-/// The checked module of a shader that stands alone.
+/// The validated module of a self-contained shader.
 ///
 /// # Errors
-/// If it is no valid WGSL, which drawing would have reported.
+/// Returns an error for invalid WGSL, which drawing would have reported.
 pub fn module(text: &str) -> Result<(Module, ModuleInfo), ExportError> {
     let module = naga::front::wgsl::parse_str(text)
         .map_err(|e| ExportError::refused(format!("its shader is not valid: {}", e.emit_to_string(text))))?;

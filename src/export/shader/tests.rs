@@ -71,7 +71,8 @@ fn parts_that_a_scene_does_not_need_are_left_out() {
     assert!(text.contains("ambient_response") && text.contains("light_type"), "{text}");
 }
 
-/// Light with extent is sampled, each type is asked for its own lights only, and nothing of it is left without it.
+/// Light with extent is sampled, each type handles only its own lights, and a scene without such light
+/// contains none of this code.
 #[test]
 fn light_with_extent_is_sampled_where_there_is_some() {
     let registry = Registry::builtin();
@@ -158,7 +159,7 @@ fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
 fn the_record_of_a_light_is_the_same_for_all_models_of_a_scene() {
     let mut registry = Registry::builtin();
     let wgsl = registry.model("phong").expect("is").declaration.wgsl;
-    // A comment on a Light beside a field of its name.
+    // A comment on a Light next to a field with that name.
     let mut text = wgsl.text.to_owned();
     text.push_str("// No Light.\nfn unused_position(f: Corner) -> vec3<f32> { return f.position; }\n");
     text = text.replace("-> Terms {", "-> Terms { var corner: Corner; _ = unused_position(corner);");

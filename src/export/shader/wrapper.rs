@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Host;
 use crate::optics::{colour::Encoding, tone::ToneMapping};
 
-/// What stands before everything else.
+/// The text before everything else.
 pub(super) fn prelude(host: Host) -> &'static str {
     match host {
         Host::Alone { .. } => "",
@@ -26,8 +26,8 @@ pub(super) fn group(host: Host) -> &'static str {
     }
 }
 
-/// The entry points, and the bindings that they alone need; with `faces`, vertices know their polygon; with `samples`, pixels have
-/// a seed.
+/// The entry points and the bindings used only by them; with `faces`, vertices contain data of their polygon;
+/// with `samples`, pixels have a seed.
 pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
     let mut text = String::new();
     let (input, placed, eye, clip) = match host {
@@ -135,7 +135,7 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {{
     text
 }
 
-/// From light to the colour of the pixel.
+/// The conversion from light to the colour of the pixel.
 fn display(host: Host) -> String {
     match host {
         Host::Alone { tone: ToneMapping::None, encoding: Encoding::Off } => {

@@ -1,5 +1,4 @@
-//! Mistakes in a condition that was read: quantities that do not exist, types that do not fit, values that they
-//! never have.
+//! Checks a parsed condition: unknown quantities, wrong types, and values that cannot occur.
 
 use super::{
     Condition, Expression, Operand, Sign, Term, Value,
@@ -17,7 +16,7 @@ use crate::{
 };
 
 impl Condition {
-    /// Every mistake, by its byte, for a scene in which the step begins.
+    /// All mistakes, by byte, for the scene in which the step begins.
     pub(in crate::lesson) fn problems(
         &self,
         scene: &Scene,
@@ -66,7 +65,7 @@ impl Condition {
     }
 }
 
-/// The comparisons in an expression, and true for each that is to hold, false for each that is not to.
+/// The comparisons in an expression: true for those that should hold, false for those that should not.
 fn comparisons(expression: &Expression, wanted: bool) -> Vec<(&Expression, bool)> {
     match expression {
         Expression::All(parts) | Expression::Any(parts) => {
@@ -77,7 +76,7 @@ fn comparisons(expression: &Expression, wanted: bool) -> Vec<(&Expression, bool)
     }
 }
 
-/// The mistake in a comparison of two types.
+/// The mistake in a comparison between two types.
 fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -> Option<(usize, String)> {
     let has_order = !matches!(sign, Sign::Equal | Sign::NotEqual);
     for (operand, kind) in [(left, a), (right, b)] {
@@ -99,7 +98,7 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
     })
 }
 
-/// A text that a quantity never has.
+/// A text that is not a possible value of a quantity.
 fn spelling(
     quantity: &Operand,
     text: &Operand,
@@ -151,7 +150,7 @@ fn spelling(
     Some((text.at, format!("{name} is never {}{all}{near}", quoted(written))))
 }
 
-/// The names of the objects as the probe has them.
+/// The names of the objects, as in the probe.
 fn object_names(scene: &Scene) -> Vec<String> {
     let name = |(i, object): (usize, &crate::scene::Object)| {
         object.name.clone().unwrap_or_else(|| format!("object {}", i + 1))
@@ -159,7 +158,7 @@ fn object_names(scene: &Scene) -> Vec<String> {
     scene.objects.iter().enumerate().map(name).collect()
 }
 
-/// The type of an operand, or why it does not exist.
+/// The type of an operand, or the reason why it does not exist.
 fn kind(
     operand: &Operand,
     scene: &Scene,
@@ -191,7 +190,7 @@ fn kind(
     }
 }
 
-/// The type of a knob.
+/// The type of a parameter.
 fn of_knob(
     name: &str,
     scene: &Scene,
@@ -213,7 +212,7 @@ fn of_knob(
                 let shading = registry.shading_model(scene.shading_model_of(object))?;
                 let shape = registry.shape(&object.object_type)?;
                 let mut all = model.parameters.iter().chain(shading.parameters).chain(shape.parameters);
-                // A task may be to choose another model first.
+                // The task may begin with choosing another model.
                 Some(all.any(|p| p.name == name) || registry.material_parameter(name).is_some())
             }),
             Some(Selection::Light(i)) => scene.lights.get(i).and_then(|light| {

@@ -1,11 +1,11 @@
-//! Expressions decided: yes, no, or neither where a quantity has no value.
+//! Evaluates expressions: true, false, or undecided if a quantity has no value.
 
 use super::{Expression, Operand, Sign, Term, Value, quantity::Asked};
 
-/// The value of a quantity, or why it has none.
+/// Returns the value of a quantity, or the reason why it has none.
 type Ask<'a> = dyn Fn(&Asked) -> Result<Value, String> + 'a;
 
-/// Numbers that differ by less are equal: scenes have 32 bits, people write a few digits.
+/// Tolerance of equality: scenes have 32-bit numbers, and people write few digits.
 const EQUAL: f64 = 1e-5;
 
 fn value(operand: &Operand, ask: &Ask) -> Result<Value, String> {
@@ -30,7 +30,7 @@ fn compare(left: &Value, sign: Sign, right: &Value) -> Option<bool> {
         }
         (Value::Text(a), Value::Text(b)) => a == b,
         (Value::Truth(a), Value::Truth(b)) => a == b,
-        // Refused when the lesson is read, unless the scene has changed its shape since.
+        // Refused when the lesson is read, unless the scene has changed its structure since.
         _ => return None,
     };
     match sign {
@@ -40,7 +40,7 @@ fn compare(left: &Value, sign: Sign, right: &Value) -> Option<bool> {
     }
 }
 
-/// True if an expression holds, false if it does not; none if that is undecided.
+/// True if an expression holds, false if it does not; `None` if undecided.
 pub(super) fn holds(expression: &Expression, ask: &Ask) -> Option<bool> {
     match expression {
         Expression::All(parts) => join(parts, false, ask),
@@ -56,7 +56,7 @@ pub(super) fn holds(expression: &Expression, ask: &Ask) -> Option<bool> {
     }
 }
 
-/// One part that is `decisive` decides; otherwise all must be known.
+/// A single `decisive` part decides; otherwise all parts must be known.
 fn join(parts: &[Expression], decisive: bool, ask: &Ask) -> Option<bool> {
     let mut unknown = false;
     for part in parts {
@@ -69,12 +69,12 @@ fn join(parts: &[Expression], decisive: bool, ask: &Ask) -> Option<bool> {
     (!unknown).then_some(!decisive)
 }
 
-/// The reason of the first quantity without a value.
+/// The reason why a quantity has no value, for the first such quantity.
 pub(super) fn missing(expression: &Expression, ask: &Ask) -> Option<String> {
     operands(expression).into_iter().find_map(|operand| value(operand, ask).err())
 }
 
-/// All operands, in the order of the text.
+/// All operands, in textual order.
 pub(super) fn operands(expression: &Expression) -> Vec<&Operand> {
     match expression {
         Expression::All(parts) | Expression::Any(parts) => parts.iter().flat_map(operands).collect(),

@@ -1,6 +1,6 @@
-//! The facts that are known when a step begins, and the tasks that are done before they begin.
+//! The facts known when a step begins, to find tasks that are already done.
 //!
-//! A learner is taken to change only what the conditions of the tasks before have named.
+//! The learner is assumed to change only values named in the conditions of earlier tasks.
 
 use super::{
     Condition, Term,
@@ -22,23 +22,23 @@ pub struct Knowledge {
     pub plots: bool,
     pub explain: bool,
     pub active: bool,
-    /// The values of the scene that the learner may have changed.
+    /// Values of the scene that the learner may have changed.
     changed: Vec<Changed>,
 }
 
 /// A value of the scene that the learner may have changed.
 #[derive(Clone, Debug)]
 enum Changed {
-    /// By its path.
+    /// The value at this path.
     At(Path),
-    /// By the last key of its path, wherever it is.
+    /// Values whose path ends with this key.
     Key(String),
-    /// Any.
+    /// Any value.
     All,
 }
 
 impl Changed {
-    /// True if a value at that path may have changed.
+    /// True if the value at a path may have changed.
     fn concerns(&self, path: &Path) -> bool {
         match self {
             Self::All => true,
@@ -48,39 +48,39 @@ impl Changed {
     }
 }
 
-/// True if one path leads into the other, or both count or change a list.
+/// True if one path contains the other, or if both count or change the same list.
 fn overlap(a: &Path, b: &Path) -> bool {
     let (a, b) = (a.segments(), b.segments());
     a.iter().zip(b).all(|(a, b)| a == b) || (a.first() == b.first() && is_count(a) != is_count(b))
 }
 
-/// True for the number of entries of a list.
+/// True for the path to the number of entries of a list.
 fn is_count(path: &[Segment]) -> bool {
     matches!(path, [_, Segment::Key(count)] if count == "count")
 }
 
-/// True if a path has this key, last or before its entries.
+/// True if a path ends with this key, or has it before an index.
 fn names(path: &Path, name: &str) -> bool {
     path.segments().iter().any(|segment| matches!(segment, Segment::Key(key) if key == name))
 }
 
 impl Knowledge {
-    /// What is known on entering a lesson.
+    /// The facts known on entering a lesson.
     pub(in crate::lesson) fn at_the_beginning() -> Self {
         Self { channel: true, terms: true, active: true, ..Self::default() }
     }
 
-    /// Nothing is known.
+    /// No known facts.
     pub(in crate::lesson) fn lost() -> Self {
         Self { changed: vec![Changed::All], ..Self::default() }
     }
 
-    /// Everything in the scene is as the lesson has it.
+    /// Records that the lesson opened a scene: all its values are known.
     pub(in crate::lesson) fn scene_opened(&mut self) {
         self.changed.clear();
     }
 
-    /// The values at a path, and within it, are as the lesson has them.
+    /// Records that the lesson set the values at and below a path.
     pub(in crate::lesson) fn scene_set(&mut self, path: &Path) {
         let set = path.segments();
         self.changed.retain(|changed| match changed {
@@ -89,7 +89,7 @@ impl Knowledge {
         });
     }
 
-    /// The learner has done the task of a step.
+    /// Records that the learner has done the task of a step.
     pub(in crate::lesson) fn done(&mut self, until: &Condition, is_find: bool) {
         // Clicks select.
         self.selection = None;
@@ -111,7 +111,7 @@ impl Knowledge {
                     self.changed.push(Changed::Key("reflection_model".to_owned()))
                 }
                 ("window.shading_model", _) => self.changed.push(Changed::Key("shading_model".to_owned())),
-                // What is found changes nothing; what is done may change anything.
+                // Finding something changes nothing; doing something may change anything.
                 (name, _) if !is_find && !name.starts_with("window.") => self.changed.push(Changed::All),
                 _ => {}
             }
@@ -153,7 +153,7 @@ impl Knowledge {
 }
 
 impl Condition {
-    /// True if it surely holds when the step begins.
+    /// True if the condition certainly holds when the step begins.
     pub(in crate::lesson) fn holds_at_once(&self, situation: &Situation, known: &Knowledge) -> bool {
         let ask = |asked: &Asked| {
             if known.of(asked) { asked.value(situation) } else { Err(String::new()) }

@@ -20,7 +20,7 @@ use quantity::Asked;
 
 use super::Situation;
 
-/// A condition. One that was read holds the text as written.
+/// A condition, including its text as written.
 #[derive(Clone)]
 pub struct Condition {
     text: Arc<str>,
@@ -39,7 +39,7 @@ impl PartialEq for Condition {
     }
 }
 
-/// An expression that holds, does not hold, or has no value.
+/// An expression that is true, false or undecided.
 #[derive(Debug)]
 enum Expression {
     All(Vec<Expression>),
@@ -70,7 +70,7 @@ enum Value {
     Truth(bool),
 }
 
-/// How two values are compared.
+/// The operator of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     Less,
@@ -82,7 +82,7 @@ enum Sign {
 }
 
 impl Sign {
-    /// The comparison that holds where this one does not.
+    /// The operator that holds exactly if this one does not.
     fn opposite(self) -> Self {
         match self {
             Self::Less => Self::GreaterOrEqual,
@@ -94,7 +94,7 @@ impl Sign {
         }
     }
 
-    /// The same comparison with its sides exchanged.
+    /// The operator with its sides exchanged.
     fn mirrored(self) -> Self {
         match self {
             Self::Less => Self::Greater,
@@ -110,7 +110,7 @@ impl Condition {
     /// Reads a condition.
     ///
     /// # Errors
-    /// The byte of the first mistake, and a sentence.
+    /// Returns the byte of the first mistake, and a sentence.
     pub fn parse(text: &str) -> Result<Self, (usize, String)> {
         Ok(Self { text: text.into(), expression: Arc::new(parse::expression(text)?) })
     }
@@ -121,13 +121,15 @@ impl Condition {
         &self.text
     }
 
-    /// True if it holds. It takes up to some milliseconds, so ask when something changed, not in every frame.
+    /// True if the condition holds. This may take a few milliseconds, so call it when something changed, not
+    /// in every frame.
     #[must_use]
     pub fn holds(&self, situation: &Situation) -> bool {
         evaluate::holds(&self.expression, &|asked| asked.value(situation)) == Some(true)
     }
 
-    /// The reason why it cannot be decided, if so, as in "nothing is pinned": that of the first quantity without a value.
+    /// The reason why the condition is undecided, if it is, as in "nothing is pinned": that of the first
+    /// quantity without a value.
     #[must_use]
     pub fn missing(&self, situation: &Situation) -> Option<String> {
         let value = |asked: &Asked| asked.value(situation);

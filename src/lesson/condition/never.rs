@@ -1,9 +1,9 @@
-//! Comparisons that never hold, whatever the learner does: a number beyond the range of its quantity.
+//! Comparisons that can never hold: numbers beyond the range of a quantity.
 
 use super::{Operand, Sign, Term, Value, quantity::Argument, subject};
 use crate::{registry::Registry, text::detailed};
 
-/// The byte of the number that a quantity never reaches, and a sentence.
+/// The byte of a number that a quantity cannot reach, and a sentence.
 pub(super) fn beyond(
     left: &Operand,
     sign: Sign,

@@ -1,4 +1,4 @@
-//! From text to an expression.
+//! Parses expressions.
 
 use super::{Expression, Operand, Sign, Term, Value, quantity};
 use crate::{
@@ -25,11 +25,11 @@ struct Parser<'a> {
     next: usize,
     at: usize,
     token: Token<'a>,
-    /// The comparisons so far.
+    /// Number of comparisons so far.
     comparisons: usize,
 }
 
-/// Reads an expression; the byte of the first mistake, and a sentence.
+/// Parses an expression, or returns the byte of the first mistake, and a sentence.
 pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
     let mut parser = Parser { text, next: 0, at: 0, token: Token::End, comparisons: 0 };
     parser.advance()?;
@@ -46,7 +46,7 @@ pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
     }
 }
 
-/// The end of the word at the beginning of a text: a path, with an argument in brackets.
+/// The length of the word at the start of a text: a path, with an argument in brackets.
 fn word(text: &str) -> usize {
     let mut inside = None;
     for (i, c) in text.char_indices() {
@@ -160,7 +160,7 @@ impl<'a> Parser<'a> {
         Ok((Token::Number(value), end))
     }
 
-    /// Refuses a unit in words, with its sign: `20 degrees`, `20deg`.
+    /// Refuses a unit given as a word or a symbol: `20 degrees`, `20deg`.
     fn unit(&self, written: &str, after: &str, length: usize) -> Result<(), Failure> {
         let joined = written.trim_start_matches(|c: char| !c.is_ascii_alphabetic());
         let spaced = after.trim_start_matches(' ');

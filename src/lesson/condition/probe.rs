@@ -8,9 +8,9 @@ use crate::{
     text::plural,
 };
 
-/// The weight from which a pixel is near a vertex.
+/// Minimum weight of a vertex near which a pixel lies.
 const NEAR: f32 = 0.6;
-/// Vertices that are almost as bright as the brightest are as good.
+/// Fraction of the highest brightness at which a vertex counts as brightest.
 const ALMOST: f32 = 0.999;
 
 /// The explanation of the pinned pixel.
@@ -33,13 +33,13 @@ pub(super) fn object(s: &Situation) -> Result<String, String> {
     Ok(part.name.clone().unwrap_or_else(|| format!("object {}", part.index + 1)))
 }
 
-/// The point seen at the pixel, wherever the shading model evaluates the equation.
+/// The point visible at the pixel, wherever the shading model evaluates the equation.
 fn point<'a>(s: &Situation<'a>) -> Result<&'a Spot, String> {
     let seen = seen(s)?;
     seen.per_pixel.as_ref().or(seen.spots.first()).ok_or_else(|| "the pinned pixel has no light".to_owned())
 }
 
-/// The brightest light at that point for which `of` gives something.
+/// The brightest light at that point for which `of` returns a value.
 fn light<'a, T>(s: &Situation<'a>, of: impl Fn(&'a Lit) -> Option<T>) -> Result<T, String> {
     let lights = point(s)?.brightest();
     lights.into_iter().find_map(of).ok_or_else(|| "no light with a direction shines there".to_owned())
@@ -62,7 +62,7 @@ pub(super) fn light_distance(s: &Situation) -> Result<f64, String> {
         .map_err(|_| "no light with a position shines there".to_owned())
 }
 
-/// True if the specular term is brighter than the diffuse one: at the points of evaluation, by their weights.
+/// True if the specular term is brighter than the diffuse term at the evaluated points, by weight.
 pub(super) fn is_highlight(s: &Situation) -> Result<bool, String> {
     let seen = seen(s)?;
     let mut sums = [0.0f32; 2];

@@ -1,4 +1,4 @@
-//! The quantities of conditions: one entry each, with its meaning and the way to its value.
+//! The quantities of conditions: one entry each, with the meaning and the calculation.
 
 use std::sync::Arc;
 
@@ -26,12 +26,12 @@ pub enum Kind {
     Text,
     /// True or false.
     Truth,
-    /// That of the value in the scene, or of the parameter.
+    /// The type of the value in the scene, or of the parameter.
     Various,
 }
 
 impl Kind {
-    /// Its word for people.
+    /// The display name of the type.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,7 +43,7 @@ impl Kind {
     }
 }
 
-/// The argument behind the name of a quantity.
+/// The argument of a quantity.
 #[derive(Debug, PartialEq)]
 pub(super) enum Argument {
     None,
@@ -51,25 +51,25 @@ pub(super) enum Argument {
     Path(Path),
     /// The name of a parameter.
     Name(String),
-    /// An angle, degrees.
+    /// An angle in degrees.
     Angle(f64),
 }
 
 /// A quantity that conditions compare.
 #[derive(Debug)]
 pub struct Quantity {
-    /// Its name; words in capitals stand for others.
+    /// Name; words in capitals are placeholders.
     pub name: &'static str,
-    /// The type of its value.
+    /// Type of the value.
     pub kind: Kind,
-    /// Its meaning, with its unit.
+    /// Meaning, with its unit.
     pub meaning: &'static str,
-    /// The texts that it may have, if there are few.
+    /// Possible texts, if there are few.
     pub(super) texts: fn(&Registry) -> Vec<&'static str>,
     value: fn(&Situation, &Argument) -> Result<Value, String>,
 }
 
-/// A quantity that a condition asks for.
+/// A quantity in a condition.
 #[derive(Debug)]
 pub(super) struct Asked {
     pub(super) quantity: &'static Quantity,
@@ -77,12 +77,12 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Its value, or why it has none.
+    /// The value of the quantity, or the reason why it has none.
     pub(super) fn value(&self, situation: &Situation) -> Result<Value, String> {
         (self.quantity.value)(situation, &self.argument)
     }
 
-    /// The part of its name before the first dot.
+    /// The part of the name before the first dot.
     pub(super) fn group(&self) -> &'static str {
         self.quantity.name.split('.').next().unwrap_or_default()
     }
@@ -206,9 +206,9 @@ quantities! {
     |s, _| with_surface(s, |surface, _, _| Ok(albedo(surface, &ANGLES)));
 }
 
-/// The angle of the light in the curves of conditions, degrees.
+/// Angle of the light in the curves of conditions, in degrees.
 const INCIDENCE: f64 = 30.0;
-/// The viewers of the largest albedo, degrees.
+/// Angles of the viewer for the largest albedo, in degrees.
 const ANGLES: [f64; 8] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0];
 
 /// The selected object.
@@ -249,7 +249,7 @@ fn peak(surface: &dyn Surface) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The largest directional albedo of the channels and of viewers at these angles.
+/// The largest directional albedo over the colour channels and these viewing angles.
 fn albedo(surface: &dyn Surface, angles: &[f64]) -> f64 {
     let views: Vec<_> = angles.iter().map(|angle| direction(*angle, 0.0)).collect();
     let integrated = directional_in_batches(&views, |pairs| {
@@ -261,7 +261,7 @@ fn albedo(surface: &dyn Surface, angles: &[f64]) -> f64 {
     albedos.iter().map(|albedo| albedo.max_element()).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The knobs of the picture: they are there whatever is selected.
+/// Parameters of the display, which exist whatever is selected.
 pub(super) const DISPLAY: [&str; 3] = ["exposure", "tone_mapping", "encoding"];
 
 /// The value of a parameter of the selected part.
@@ -286,7 +286,7 @@ fn knob(s: &Situation, name: &str) -> Result<Value, String> {
     found.map_err(|_| format!("what is selected has no {name}"))
 }
 
-/// The quantity of a word in a condition; the byte of a mistake in the word, and a sentence.
+/// The quantity of a word in a condition, or the byte of a mistake in the word, and a sentence.
 pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
     let find = |name: &str| QUANTITIES.iter().find(|q| q.name == name);
     let of = |name: &str, argument| find(name).map(|quantity| Asked { quantity, argument });
@@ -331,7 +331,7 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
     }
 }
 
-/// The type of a parameter for comparisons; none for those that have several numbers.
+/// The type of a parameter for comparisons; `None` for those with several numbers.
 pub(super) fn kind_of_parameter(kind: &ParameterKind) -> Option<Kind> {
     match kind {
         ParameterKind::Number { .. } | ParameterKind::Integer { .. } => Some(Kind::Number),

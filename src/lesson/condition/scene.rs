@@ -1,4 +1,4 @@
-//! Values of a scene by their paths, as in a scene file with every default written out.
+//! Values of a scene by path, as in a scene file with every default written out.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -16,10 +16,10 @@ use crate::{
 /// The word for the number of entries of a list.
 const COUNT: &str = "count";
 
-/// The value at a path, for comparisons; or why there is none.
+/// The value at a path, for comparisons, or the reason why it has none.
 pub(super) fn value(scene: &Scene, path: &Path, registry: &Registry) -> Result<Value, String> {
     match json_at(scene, path, registry)? {
-        // Scenes have 32 bits: 0.1 is to be 0.1, and not its nearest neighbour.
+        // Scenes have 32-bit numbers: 0.1 should be 0.1, not its nearest neighbour.
         Json::Number(number) => {
             let value = number.as_f64().unwrap_or(f64::NAN);
             Ok(Value::Number(if number.is_f64() {
@@ -36,7 +36,7 @@ pub(super) fn value(scene: &Scene, path: &Path, registry: &Registry) -> Result<V
     }
 }
 
-/// The value at a path; null where a scene may give one and this one does not.
+/// The value at a path; null for an optional value that the scene does not have.
 pub(super) fn json_at(scene: &Scene, path: &Path, registry: &Registry) -> Result<Json, String> {
     let segments = path.segments();
     let [Segment::Key(first), rest @ ..] = segments else {
@@ -62,7 +62,7 @@ pub(super) fn json_at(scene: &Scene, path: &Path, registry: &Registry) -> Result
     }
 }
 
-/// Follows a path in a value.
+/// Follows a path within a value.
 fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
     let mut at = from.to_owned();
     for step in path {
@@ -97,7 +97,7 @@ fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
     Ok(json)
 }
 
-/// Writes the values of all parameters, given or not.
+/// Writes the values of all parameters, given or default.
 fn fill<'p>(
     map: &mut Map<String, Json>,
     values: &Values,
@@ -108,7 +108,7 @@ fn fill<'p>(
     }
 }
 
-/// Writes a value unless there is one.
+/// Writes a value unless one exists.
 fn default(map: &mut Map<String, Json>, key: &str, value: Json) {
     map.entry(key).or_insert(value);
 }
@@ -213,7 +213,7 @@ fn variant(scene: &Scene, index: usize, registry: &Registry) -> Json {
     ] {
         default(&mut map, key, Json::Null);
     }
-    // What a variant does not give is inherited: null, and not the default.
+    // A value missing from a variant is inherited: null, not the default.
     let mut material = match map.remove("material") {
         Some(Json::Object(map)) => map,
         _ => Map::new(),

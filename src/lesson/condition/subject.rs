@@ -1,4 +1,4 @@
-//! The quantities of conditions as people speak of them: their names in a sentence, their units, their ranges.
+//! The wording for quantities of conditions: names in a sentence, units, ranges.
 
 use super::quantity::{Argument, Asked};
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
 #[derive(Debug)]
 pub(super) struct Subject {
     pub(super) name: String,
-    /// Written behind its numbers.
+    /// Unit written after the numbers.
     pub(super) unit: &'static str,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Subject {
 const RGB: [&str; 3] = ["red", "green", "blue"];
 const XYZ: [&str; 3] = ["x", "y", "z"];
 
-/// The name in a sentence, the unit, and the least and largest value of the quantities that are numbers.
+/// Name in a sentence, unit, minimum and maximum of the numeric quantities.
 const NUMBERS: &[(&str, &str, &str, [f64; 2])] = &[
     ("window.selected_index", "the number of the selected part", "", [1.0, f64::INFINITY]),
     ("window.views", "the number of views", "", [1.0, 4.0]),
@@ -42,7 +42,7 @@ const NUMBERS: &[(&str, &str, &str, [f64; 2])] = &[
     ("curve.largest_albedo", "the largest albedo", "", [0.0, f64::INFINITY]),
 ];
 
-/// The sentences for quantities that are true or false: that it is not true, that it is.
+/// Sentences for Boolean quantities: one for false, one for true.
 const TRUTHS: &[(&str, &str, &str)] = &[
     ("window.shows_term_alone", "all terms are shown", "one term is shown alone"),
     ("window.explain", "the panel Explain is not in sight", "the panel Explain is in sight"),
@@ -66,13 +66,13 @@ const TRUTHS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// The sentence that says which of true and false a quantity is, if it has one of its own.
+/// The sentence for a Boolean quantity with this value, if it has a special one.
 pub(super) fn truth(asked: &Asked, value: bool) -> Option<&'static str> {
     let found = TRUTHS.iter().find(|(name, ..)| *name == asked.quantity.name);
     found.map(|(_, not, is)| if value { *is } else { *not })
 }
 
-/// The least and the largest value of a quantity that is a number, if they are known.
+/// The minimum and maximum of a numeric quantity, if known.
 pub(super) fn range(asked: &Asked, registry: &Registry) -> Option<[f64; 2]> {
     match &asked.argument {
         Argument::None | Argument::Angle(_) => {
@@ -90,7 +90,7 @@ pub(super) fn range(asked: &Asked, registry: &Registry) -> Option<[f64; 2]> {
     }
 }
 
-/// The range of the numbers of a parameter.
+/// The range of a parameter's numbers.
 fn of_kind(kind: &ParameterKind) -> Option<[f64; 2]> {
     let decimal = |v: f32| v.to_string().parse().unwrap_or_else(|_| f64::from(v));
     match kind {
@@ -105,14 +105,14 @@ fn of_kind(kind: &ParameterKind) -> Option<[f64; 2]> {
     }
 }
 
-/// The parameter of that name, of a material, a light or a shape.
+/// The parameter with this name, of a material, a light or a shape.
 fn parameter<'r>(name: &str, registry: &'r Registry) -> Option<&'r Parameter> {
     let lights = registry.lights().iter().flat_map(|entry| entry.parameters);
     let shapes = registry.shapes().iter().flat_map(|entry| entry.parameters);
     registry.material_parameters().chain(lights).chain(shapes).find(|p| p.name == name)
 }
 
-/// The subject of sentences about a quantity.
+/// The subject for sentences about a quantity.
 pub(super) fn of(asked: &Asked, situation: &Situation) -> Subject {
     let registry = situation.registry;
     match &asked.argument {
@@ -132,7 +132,7 @@ pub(super) fn of(asked: &Asked, situation: &Situation) -> Subject {
     }
 }
 
-/// A value of the scene by the last words of its path, and the part that it belongs to if there are several.
+/// A value of the scene by the last words of its path, and its part of the scene if there are several.
 fn of_path(path: &[Segment], scene: &Scene, registry: &Registry) -> Subject {
     let mut subject = match path {
         [Segment::Key(list), Segment::Key(count)] if count == "count" => {
@@ -173,7 +173,7 @@ fn of_path(path: &[Segment], scene: &Scene, registry: &Registry) -> Subject {
     subject
 }
 
-/// A key of scene files, or the name of a parameter.
+/// A key of scene files, or a parameter name.
 fn key(name: &str, registry: &Registry) -> Subject {
     let plain = || name.replace('_', " ");
     match parameter(name, registry) {

@@ -14,7 +14,7 @@ use crate::{
     scene::Scene,
 };
 
-/// The default scene under Blinn–Phong with this exponent.
+/// The default scene with Blinn–Phong and this exponent.
 fn scene(alpha: i64) -> Scene {
     let mut scene = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
     scene.objects[0].material.set("alpha", Given::Integer(alpha));
@@ -107,7 +107,7 @@ fn curves_follow_the_parameters_of_the_selected_object() {
     let mut matte = Scene::default();
     matte.objects[0].material.set("base_colour", Given::Colour([90, 200, 40]));
     let matte = situation(&matte, &registry);
-    // Lambert reflects its colour, whatever the angle.
+    // Lambert reflects the same colour at every angle.
     let object = &matte.scene.objects[0];
     let entry = registry.model("lambert").expect("built in");
     let colour = object.material.colour(entry.parameter("base_colour").expect("has one"), Encoding::Srgb);
@@ -218,11 +218,11 @@ fn a_highlight_is_where_the_specular_term_wins() {
             }
         }
     }
-    // Near the half vector, and nowhere else.
+    // Only near the half vector.
     assert!(angles[0] > 3.0 && angles[0] < 30.0 && angles[1] > 3.0, "{angles:?}");
 }
 
-/// Conditions that cannot be read: the condition, the byte, and the beginning of the sentence.
+/// Conditions that cannot be parsed: the condition, the byte, and the beginning of the sentence.
 const BROKEN: &[(&str, usize, &str)] = &[
     ("", 0, "expected a quantity or a value, not the end"),
     ("knob.alpha <", 12, "expected a quantity or a value, not the end"),
@@ -270,7 +270,7 @@ fn broken_conditions_say_where_and_why() {
     for deep in ["(".repeat(5000), "not ".repeat(5000)] {
         assert!(Condition::parse(&deep).is_err_and(|(_, what)| what.contains("24 levels")));
     }
-    // Long is not deep, but evaluating takes time for each.
+    // Long is not deep, but every comparison takes time.
     let long = |n: usize| Condition::parse(&vec!["knob.alpha < 3"; n].join(" and "));
     assert!(long(16).is_ok());
     assert!(long(17).is_err_and(|(at, what)| at == 16 * 19 && what.contains("at most 16 comparisons")));
@@ -279,7 +279,7 @@ fn broken_conditions_say_where_and_why() {
     assert!(named(1000).is_err_and(|(at, what)| at == 1000 && what.contains("more than 1000 characters")));
 }
 
-/// Conditions that make no sense in the default scene, with its object selected.
+/// Conditions that make no sense in the default scene with its object selected.
 const SENSELESS: &[(&str, usize, &str)] = &[
     ("scene.objects[3].size > 1", 0, "there is no objects[3]: the scene has 1 object"),
     ("scene.objects[0].sise > 1", 0, "objects[0] has no \"sise\"; did you mean \"size\"?"),
@@ -349,7 +349,7 @@ fn senseless_conditions_say_where_and_why() {
     let room = condition("curve.peak > 1").problems(&scene, Some(Selection::Room), &registry);
     assert_eq!(room.len(), 1);
     assert!(condition("curve.peak > 1").problems(&scene, None, &registry).is_empty());
-    // The ends of ranges can be reached, a learner may add objects, and what is never true may be excluded.
+    // The ends of ranges can be reached, a learner may add objects, and impossible values may be excluded.
     for sound in [
         "probe.red = 255 and probe.n_dot_l <= -1 and probe.luminance = 0 and knob.k_d >= 1 and knob.alpha > 9e9",
         "probe.object = \"tomato\" or probe.object = \"object 2\"",
@@ -380,7 +380,7 @@ fn the_part_that_fails_is_said_with_its_value() {
     scene.objects[0].material.set("base_colour", Given::Colour([230, 68, 30]));
     let situation = situation(&scene, &registry);
     for (text, said) in [
-        // Numbers, with their units and as many digits as tell them from their bound.
+        // Numbers, with their units and the digits needed to distinguish them from their limit.
         ("knob.alpha > 50", "the shininess α is 15; it must be above 50"),
         ("50 < knob.alpha", "the shininess α is 15; it must be above 50"),
         ("not knob.alpha <= 50", "the shininess α is 15; it must be above 50"),
@@ -397,10 +397,10 @@ fn the_part_that_fails_is_said_with_its_value() {
         ),
         ("scene.lights[0].position[2] < 0", "z of the position is 9; it must be below 0"),
         ("scene.objects.count = 2", "the number of objects is 1; it must be higher"),
-        // A number that must be met is the solution.
+        // A number that must be met exactly is the solution.
         ("knob.k_s = 0", "the specular coefficient k_s is 0.5; it must be lower"),
         ("knob.alpha != 15", "the shininess α is 15; it must be another number"),
-        // Names, without the one that is wanted.
+        // Names, without the required one.
         ("window.reflection_model = \"phong\"", "the reflection model is Blinn–Phong"),
         ("scene.objects[0].shading_model = \"flat\"", "the shading model is Gouraud"),
         (
@@ -448,7 +448,7 @@ fn the_part_that_fails_is_said_with_its_value() {
         width.starts_with("the width of the highlight is ") && width.ends_with("°; it must be below 20°"),
         "{width}"
     );
-    // Of several parts the one is named.
+    // Only one of several parts is named.
     let mut two = scene.clone();
     two.objects.push(two.objects[0].clone());
     two.objects[1].name = Some("ball".to_owned());
@@ -476,7 +476,7 @@ fn the_pinned_pixel_says_how_near_it_is() {
         said("probe.n_dot_l > 0.98"),
         format!("N·L is {}; it must be above 0.98", (cosine * 1e3).round() / 1e3)
     );
-    // A bound so near that three digits do not tell it.
+    // A limit so close that three digits cannot distinguish it.
     let near = cosine + 1e-6;
     let close = said(&format!("probe.n_dot_l > {near}"));
     let shown: f64 =

@@ -1,4 +1,4 @@
-//! The part of a condition that fails, in a sentence with its present value.
+//! The part of a condition that fails, as a sentence with its present value.
 
 use std::{cell::RefCell, collections::HashMap};
 
@@ -16,12 +16,12 @@ use crate::{
     text::{path::Segment, shortened},
 };
 
-/// The most alternatives that are named.
+/// Maximum number of alternatives named.
 const MOST: usize = 3;
 
 impl Condition {
-    /// The first part that fails, as in "N·L is 0.975; it must be above 0.98"; none if the condition holds. Of alternatives
-    /// it names each. It does not give a solution away that is a name or one number.
+    /// The first part that fails, as in "N·L is 0.975; it must be above 0.98"; `None` if the condition holds.
+    /// Names every alternative. Does not reveal a solution that is a name or a single number.
     #[must_use]
     pub fn unmet(&self, situation: &Situation) -> Option<String> {
         let state = State { situation, known: RefCell::default() };
@@ -47,7 +47,7 @@ impl State<'_> {
     }
 }
 
-/// The reasons why an expression is not what is wanted of it, true or false: one, or those of alternatives.
+/// The reasons why an expression does not have the wanted value: one, or one for each alternative.
 fn reasons(expression: &Expression, wanted: bool, state: &State) -> Vec<String> {
     match (expression, wanted) {
         (Expression::Not(part), _) => reasons(part, !wanted, state),
@@ -80,7 +80,7 @@ fn value(operand: &Operand, state: &State) -> Result<Value, String> {
     }
 }
 
-/// That a quantity is true, or that it is false.
+/// States that a quantity is true, or that it is false.
 fn truth(operand: &Operand, state: &State) -> String {
     let situation = state.situation;
     let Term::Quantity(asked) = &operand.what else { return "this can never be done".to_owned() };
@@ -123,7 +123,7 @@ fn comparison(left: &Operand, sign: Sign, right: &Operand, state: &State) -> Str
     }
 }
 
-/// That a number is too small, too large, or not the one that is wanted.
+/// States that a number is too small, too large, or not the required one.
 fn number(
     asked: &Asked,
     now: f64,
@@ -162,7 +162,7 @@ fn number(
     format!("{} is {}; it must be {must}", subject.name, unit(digits(now, bound)))
 }
 
-/// A number with three digits, or with as many more as tell it from another.
+/// A number with three digits, or with as many as needed to distinguish it from another.
 fn digits(number: f64, other: f64) -> String {
     let rounded = |after: usize| format!("{number:.after$e}").parse().unwrap_or(number);
     let apart =
@@ -170,12 +170,12 @@ fn digits(number: f64, other: f64) -> String {
     plain((2..8).map(rounded).find(apart).unwrap_or(number))
 }
 
-/// A number as people write it.
+/// A number in plain notation.
 fn plain(number: f64) -> String {
     number.to_string().replace('-', "−")
 }
 
-/// The present value of a quantity that is a text.
+/// The present value of a text quantity.
 fn text(asked: &Asked, now: &str, situation: &Situation) -> String {
     let registry = situation.registry;
     let model = || registry.model(now).map_or(now, |entry| entry.declaration.name);

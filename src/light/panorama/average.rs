@@ -1,4 +1,4 @@
-//! The pixels of a file, checked, and averaged down to the picture that renderers see.
+//! Checks the pixels of a file, and averages them down to the resolution of the renderers.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,14 +6,14 @@ use glam::{DVec3, Vec3};
 
 use crate::optics::colour::LUMINANCE;
 
-/// The most columns of a picture in a file; half as many rows.
+/// Maximum number of columns in a file's picture, and twice that of rows.
 pub const MAX_FILE_COLUMNS: usize = 8192;
-/// The most columns that renderers see; half as many rows.
+/// Maximum number of columns for renderers, and twice that of rows.
 pub const MAX_COLUMNS: usize = 1024;
-/// The largest value of a pixel, cd/m²: the sun has 1.6 × 10⁹.
+/// Maximum value of a pixel, cd/m²: the sun has 1.6 × 10⁹.
 pub const MAX_LUMINANCE: f32 = 1e12;
 
-/// Below this integral of the luminance, a picture is dark: shader processors may take smaller numbers for zero.
+/// Integral of the luminance below which a picture counts as dark: GPUs may flush smaller numbers to zero.
 const DARK: f64 = 1e-30;
 
 /// Collects the pixels of a file in any order.
@@ -21,19 +21,19 @@ const DARK: f64 = 1e-30;
 pub(super) struct Average {
     /// Columns and rows.
     size: [usize; 2],
-    /// For each column of the file, the columns in which it counts, and its weights.
+    /// For each column of the file, the target columns to which it contributes, and its weights.
     columns: Vec<[(usize, f64); 2]>,
-    /// The same for rows.
+    /// For each row of the file, the target rows to which it contributes, and its weights.
     rows: Vec<[(usize, f64); 2]>,
     sums: Vec<DVec3>,
-    /// Values of the file times this are cd/m².
+    /// Factor from values in the file to cd/m².
     scale: DVec3,
-    /// The first illegal value: row, column and message.
+    /// The first invalid value: row, column and message.
     problem: Option<(usize, usize, String)>,
 }
 
 impl Average {
-    /// The average for a file with that many columns and rows, no pixel of which is known yet.
+    /// An empty average for a file with these numbers of columns and rows.
     pub(super) fn new(width: usize, height: usize) -> Result<Self, String> {
         let [most, half] = [MAX_FILE_COLUMNS, MAX_FILE_COLUMNS / 2];
         if height == 0 || width > most || height > half || width != 2 * height {
@@ -54,12 +54,12 @@ impl Average {
         })
     }
 
-    /// The same for a file whose values times `scale` are cd/m².
+    /// The average for a file whose values times `scale` are cd/m².
     pub(super) fn scaled(self, scale: DVec3) -> Self {
         Self { scale, ..self }
     }
 
-    /// Counts a pixel of the file; those outside are ignored.
+    /// Adds a pixel of the file; ignores pixels outside.
     pub(super) fn add(&mut self, column: usize, row: usize, colour: [f32; 3]) {
         let (Some(columns), Some(rows)) = (self.columns.get(column), self.rows.get(row)) else { return };
         let colour = DVec3::from_array(colour.map(f64::from)) * self.scale;
@@ -115,8 +115,8 @@ impl Average {
     }
 }
 
-/// For each of `from` equal parts of a whole, those of the `to` ≤ `from` equal parts of it that it lies in, and its share of
-/// them. `measure` is the size of a range in units of 1/(`from` × `to`) of the whole.
+/// For each of `from` equal parts of a whole, the overlapping ones of the `to` ≤ `from` equal parts of it,
+/// and its share in them. `measure` is the size of a range in units of 1/(`from` × `to`) of the whole.
 fn shares(from: usize, to: usize, measure: impl Fn(usize, usize) -> f64) -> Vec<[(usize, f64); 2]> {
     let share = |begin: usize, end: usize, i: usize| {
         if begin < end { measure(begin, end) / measure(i * from, (i + 1) * from) } else { 0.0 }
@@ -131,13 +131,14 @@ fn shares(from: usize, to: usize, measure: impl Fn(usize, usize) -> f64) -> Vec<
     (0..from).map(part).collect()
 }
 
-/// The solid angle between two polar angles over 2π: the difference of their cosines. The angles are in units of π/`n`.
+/// The solid angle between two polar angles, divided by 2π: the difference of their cosines. The angles are
+/// in units of π/`n`.
 fn band(from: usize, to: usize, n: usize) -> f64 {
     let unit = 0.5 * PI / n as f64;
     2.0 * ((from + to) as f64 * unit).sin() * ((to - from) as f64 * unit).sin()
 }
 
-/// The share of a sum before each of its summands, and 1 at the end; equal shares if all are zero.
+/// The cumulative share of a sum before each of its terms, and 1 at the end; equal shares if all are zero.
 fn cumulative(summands: &[f64]) -> impl Iterator<Item = f32> {
     let total: f64 = summands.iter().sum();
     let mut before = 0.0;

@@ -1,8 +1,9 @@
-//! Panoramas: pictures of the surroundings, which give the light from every direction and pick directions by it.
+//! Panoramas: pictures of the surroundings, which provide the light from every direction and
+//! importance-sample directions.
 //!
-//! Pictures are equirectangular, seen from inside: the top row looks up (+y), the middle along −z, and +x is to the right
-//! of the middle. A pixel is constant over its solid angle; nothing is interpolated, so that the probability density of a
-//! direction is exact.
+//! Pictures are equirectangular, seen from inside: the top row looks up (+y), the middle along −z, and +x is
+//! to the right of the middle. A pixel is constant over its solid angle; nothing is interpolated, so that the
+//! probability density of a direction is exact.
 
 use std::f32::consts::{PI, TAU};
 
@@ -15,17 +16,18 @@ mod read;
 
 pub use average::{MAX_COLUMNS, MAX_FILE_COLUMNS, MAX_LUMINANCE};
 
-/// Pictures of surroundings in Radiance's and OpenEXR's formats, told apart by their first bytes. Their values are cd/m²,
-/// linear Rec. 709. Of one, renderers read
+/// Pictures of surroundings in the Radiance and OpenEXR formats, distinguished by their first bytes. The
+/// values are cd/m², linear Rec. 709. Renderers read
 ///
 /// 1. the number of columns, of rows, and the integral of the luminance over all directions (0: sample uniformly);
 /// 2. one number more than there are rows: the share of rows above, from 0 to 1;
 /// 3. for each row one number more than there are columns: the share of the pixels to the left, from 0 to 1;
 /// 4. red, green and blue of each pixel, row by row.
 ///
-/// The shares are of luminance times solid angle. Pictures with more than [`MAX_COLUMNS`] columns are averaged down to that
-/// many, each pixel counted by its solid angle, so that all numbers are 8.4 MB: graphics cards guarantee a buffer of
-/// 128 MiB for all files of a scene, and both renderers then see the same light.
+/// The shares are of luminance times solid angle. Pictures with more than [`MAX_COLUMNS`] columns are
+/// averaged down to that number, each pixel weighted by its solid angle, so that all numbers take 8.4 MB:
+/// graphics cards guarantee a buffer of 128 MiB for all files of a scene, and both renderers see the same
+/// light.
 pub static FORMAT: FileFormat = FileFormat {
     name: "an equirectangular Radiance (.hdr) or OpenEXR (.exr) picture",
     extensions: &["hdr", "exr"],
@@ -34,23 +36,23 @@ pub static FORMAT: FileFormat = FileFormat {
     shipped: &[("room.hdr", include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/room.hdr")))],
 };
 
-/// A picture as [`FORMAT`] gives it.
+/// A picture in the layout of [`FORMAT`].
 #[derive(Clone, Copy, Debug)]
 pub struct Panorama<'a> {
     columns: usize,
     rows: usize,
-    /// The integral of the luminance over all directions.
+    /// Integral of the luminance over all directions.
     total: f32,
-    /// The shares of the rows above.
+    /// Shares of the rows above.
     above: &'a [f32],
-    /// The shares of the pixels to the left, row by row.
+    /// Shares of the pixels to the left, row by row.
     left: &'a [f32],
     /// Red, green and blue, row by row.
     pixels: &'a [f32],
 }
 
 impl<'a> Panorama<'a> {
-    /// The picture in the numbers of a file; none if they are not from one.
+    /// The picture in the numbers of a file; `None` if they are invalid.
     #[must_use]
     pub fn new(numbers: &'a [f32]) -> Option<Self> {
         let [columns, rows, total, rest @ ..] = numbers else { return None };
@@ -68,7 +70,8 @@ impl<'a> Panorama<'a> {
     #[must_use]
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let sin = direction.x.hypot(direction.z);
-        // As in the shader: the column in the middle at the poles, and the last one straight behind, whatever the sign of zero.
+        // As in the shader: the middle column at the poles, and the last one straight behind, whatever the
+        // sign of zero.
         let phi = if sin < 1e-7 { 0.0 } else { (direction.x + 0.0).atan2(-direction.z) };
         let across = 0.5 + phi / TAU;
         let down = sin.atan2(direction.y) / PI;
@@ -84,7 +87,8 @@ impl<'a> Panorama<'a> {
         (radiance, self.pdf_of(radiance))
     }
 
-    /// The probability density of a direction in [`sample`](Self::sample), sr⁻¹: in proportion to its luminance.
+    /// The probability density of a direction in [`sample`](Self::sample), sr⁻¹: proportional to its
+    /// luminance.
     #[must_use]
     pub fn pdf(&self, direction: Vec3) -> f32 {
         self.seen(direction).1
@@ -94,7 +98,7 @@ impl<'a> Panorama<'a> {
         if self.total == 0.0 { 0.5 / TAU } else { luminance(radiance) / self.total }
     }
 
-    /// A direction for a point of the unit square, with the light from there and the probability density.
+    /// A direction for a point of the unit square, with its light and probability density.
     #[must_use]
     pub fn sample(&self, u: Vec2) -> (Vec3, Vec3, f32) {
         let (row, v) = place(self.above, u.y);
@@ -104,13 +108,13 @@ impl<'a> Panorama<'a> {
         let sin = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
         let phi = TAU * (column as f32 + s) / self.columns as f32;
         let direction = Vec3::new(-sin * phi.sin(), cos, sin * phi.cos());
-        // A direction at an edge may count to the next pixel by rounding: its own light and density belong together.
+        // A direction at an edge may be rounded into the next pixel: its light and density belong together.
         let (radiance, pdf) = self.seen(direction);
         (direction, radiance, pdf)
     }
 }
 
-/// The last bin that begins at `u` or before, and the place of `u` within it.
+/// The last bin that begins at or before `u`, and the position of `u` within it.
 fn place(begins: &[f32], u: f32) -> (usize, f32) {
     // The largest number below 1.
     let u = u.clamp(0.0, 1.0 - 0.5 * f32::EPSILON);

@@ -1,10 +1,11 @@
-//! Radiance and OpenEXR pictures, read by the crates `image` and `exr` within limits of size, memory and time.
+//! Reads Radiance and OpenEXR pictures with the crates `image` and `exr`, limiting size, memory and time.
 //!
-//! Beyond the limits of [`Average::new`] and of the size of a file: the head of a Radiance file has at most [`MAX_HEAD`]
-//! bytes; an OpenEXR file has at most [`MAX_LAYERS`] layers with at most [`MAX_CHANNELS`] channels each, and its blocks
-//! (tiles, or lines compressed together) have at most [`MAX_BLOCK_BYTES`] bytes and are at most [`MAX_BLOCKS`].
-//! Besides the file and the numbers, reading takes 12 bytes for each pixel of a Radiance file, and a block of an OpenEXR file
-//! as it is and unfolded, by at most 64 times.
+//! In addition to the limits of [`Average::new`] and of the file size: the header of a Radiance file has at
+//! most [`MAX_HEAD`] bytes; an OpenEXR file has at most [`MAX_LAYERS`] layers with at most [`MAX_CHANNELS`]
+//! channels each, and at most [`MAX_BLOCKS`] blocks (tiles, or lines compressed together) of at most
+//! [`MAX_BLOCK_BYTES`] bytes. Besides the file and the numbers, reading takes 12 bytes for each pixel of a
+//! Radiance file, and a block of an OpenEXR file both compressed and decompressed, the latter at most 64
+//! times as large.
 
 use std::io::{Cursor, Read as _};
 
@@ -28,18 +29,18 @@ use crate::{
 const RADIANCE: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 const OPEN_EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 
-/// The most bytes of the head of a Radiance file.
+/// Maximum size of the header of a Radiance file, in bytes.
 const MAX_HEAD: usize = 64 << 10;
 const MAX_LAYERS: usize = 64;
 const MAX_CHANNELS: usize = 16;
 const MAX_BLOCK_BYTES: usize = 16 << 20;
 const MAX_BLOCKS: usize = 1 << 18;
 
-/// Red, green, blue and white of Rec. 709 as OpenEXR has them, x and y.
+/// Red, green, blue and white of Rec. 709 as in OpenEXR, x and y.
 const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
-    // Decoders may panic on what nobody thought of.
+    // Decoders may panic on unforeseen input.
     let read = caught::catch(|| decode(bytes)?.numbers());
     let read = read.unwrap_or_else(|_| {
         Err("its pixels are not what its head says; it must be written again".to_owned())
@@ -57,7 +58,7 @@ fn decode(bytes: &[u8]) -> Result<Average, String> {
     }
 }
 
-/// A Radiance picture without its first word.
+/// Reads a Radiance picture after its first word.
 fn radiance(rest: &[u8]) -> Result<Average, String> {
     let head = &rest[..rest.len().min(MAX_HEAD)];
     let end = head.windows(2).position(|two| two == b"\n\n").map(|at| at + 2);
@@ -136,7 +137,8 @@ fn broken(error: &exr::error::Error) -> String {
     }
 }
 
-/// The average of the layer that is read, the first one with red, green and blue, if the file keeps to the limits.
+/// The average for the layer that is read, the first one with red, green and blue, if the file respects the
+/// limits.
 fn within_limits(layers: &[Header]) -> Result<Average, String> {
     if layers.len() > MAX_LAYERS {
         let count = plural(layers.len(), "layer");

@@ -43,7 +43,7 @@ fn hdr(width: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Vec<u8> {
     bytes
 }
 
-/// An OpenEXR file with a layer of these pixels.
+/// An OpenEXR file with one layer of these pixels.
 fn exr(
     size: [usize; 2],
     encoding: Encoding,
@@ -66,18 +66,18 @@ where
     bytes
 }
 
-/// Numbers that differ from pixel to pixel, all of which Radiance's format can hold.
+/// Numbers that differ from pixel to pixel, all representable in Radiance's format.
 fn pattern(column: usize, row: usize) -> [f32; 3] {
     [128 + (7 * column + 3 * row) % 128, 128, 128 + row].map(|n| n as f32 / 64.0)
 }
 
-/// A direction, all equally likely.
+/// A uniformly distributed direction.
 fn any_direction(seed: &mut u64) -> Vec3 {
     let [u, v] = [random(seed), random(seed)].map(f64::from);
     direction(u, (1.0 - 2.0 * v).acos() / PI)
 }
 
-/// The direction of a place in the picture, from 0 to 1 across and down.
+/// The direction of a position in the picture, from 0 to 1 across and down.
 fn direction(across: f64, down: f64) -> Vec3 {
     let (phi, theta) = (TAU * (across - 0.5), PI * down);
     glam::DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()).as_vec3()
@@ -93,7 +93,8 @@ fn a_uniform_picture_has_the_density_of_the_sphere() {
         assert_eq!(picture.radiance(d), Vec3::new(2.0, 3.0, 4.0));
         assert!((4.0 * PI * f64::from(picture.pdf(d)) - 1.0).abs() < 1e-6);
     }
-    // Without sin θ, the wrong twin, half of the points would be within 45° of the poles; there is 1 − cos 45°.
+    // Without sin θ, the wrong twin, half of the points would be within 45° of the poles instead of 1 − cos
+    // 45°.
     let count = 20_000;
     let near_poles = (0..count)
         .filter(|i| {
@@ -114,7 +115,7 @@ fn the_top_looks_up_the_middle_along_minus_z_and_the_right_along_x() {
     let numbers = numbers(8, |column, row| [column as f32, row as f32, 1.0]);
     let picture = Panorama::new(&numbers).expect("a picture");
     let at = |x: f32, y: f32, z: f32| picture.radiance(Vec3::new(x, y, z).normalize()).truncate();
-    // A little to the right of the middle, and a little below it.
+    // Slightly to the right of and below the centre.
     assert_eq!(at(0.1, -0.1, -1.0), Vec2::new(4.0, 2.0));
     assert_eq!(at(-0.1, 0.1, -1.0), Vec2::new(3.0, 1.0));
     // The wrong twin is the mirrored picture.
@@ -131,7 +132,7 @@ fn the_top_looks_up_the_middle_along_minus_z_and_the_right_along_x() {
             assert_eq!(at(tiny, -1.0, other).y, 3.0);
         }
     }
-    // The directions that are sampled have the same order as the pixels.
+    // The sampled directions have the same order as the pixels.
     for i in 0..8 {
         for j in 0..4 {
             let d = direction((f64::from(i) + 0.5) / 8.0, (f64::from(j) + 0.5) / 4.0);
@@ -140,7 +141,7 @@ fn the_top_looks_up_the_middle_along_minus_z_and_the_right_along_x() {
     }
 }
 
-/// A dark room with a bright window and a dim lamp at the ceiling.
+/// A dark room with a bright window and a dim lamp on the ceiling.
 fn contrasts(column: usize, row: usize) -> [f32; 3] {
     match (column, row) {
         (20..24, 12..17) => [3000.0, 4000.0, 5000.0],
@@ -151,8 +152,8 @@ fn contrasts(column: usize, row: usize) -> [f32; 3] {
     }
 }
 
-/// Pearson's statistic of samples over its number of degrees of freedom, for cells of 8 × 8 pixels, where `expected` is the
-/// density for each direction.
+/// Pearson's statistic of samples divided by its degrees of freedom, for cells of 8 × 8 pixels, where
+/// `expected` is the density for each direction.
 fn chi_squared(picture: &Panorama, expected: impl Fn(Vec3) -> f64) -> f64 {
     let count = 40_000;
     let mut seen = [[0.0; 8]; 4];
@@ -215,7 +216,7 @@ fn samples_are_as_dense_as_the_density_says() {
 
 #[test]
 fn points_stay_in_their_pixel_and_fill_it() {
-    // All light is in one pixel.
+    // All the light is in one pixel.
     let numbers = numbers(16, |column, row| if (column, row) == (5, 2) { [1.0; 3] } else { [0.0; 3] });
     let picture = Panorama::new(&numbers).expect("a picture");
     let solid = TAU / 16.0 * ((PI / 4.0).cos() - (PI * 3.0 / 8.0).cos());
@@ -270,7 +271,7 @@ fn both_formats_keep_their_pixels() {
     let plain = || LayerAttributes::named("main");
     let read = |bytes: &[u8]| (FORMAT.read)(bytes).map_err(|problem| problem.message);
     assert_eq!(read(&hdr(32, pattern)).as_ref(), Ok(&expected));
-    // Too narrow for runs.
+    // Too narrow for run-length encoding.
     assert_eq!(read(&hdr(4, pattern)), Ok(numbers(4, pattern)));
     for encoding in [
         Encoding::UNCOMPRESSED,
@@ -288,7 +289,7 @@ fn both_formats_keep_their_pixels() {
     .concat();
     let picture = read(&file).expect("legal");
     assert_eq!(picture[picture.len() - 3..], [4.0, 2.0, 1.0]);
-    // OpenEXR says how much light 1 is.
+    // OpenEXR states how much light 1 is.
     let own = LayerAttributes { white_luminance: Some(100.0), ..plain() };
     let picture = read(&exr([2, 1], Encoding::FAST_LOSSLESS, own, |_, _| [1.0, 0.5, 2.0])).expect("legal");
     assert_eq!(picture[picture.len() - 3..], [100.0, 50.0, 200.0]);
@@ -296,7 +297,7 @@ fn both_formats_keep_their_pixels() {
 
 #[test]
 fn a_smaller_picture_has_the_light_of_the_larger_one() {
-    // More light near the pole, where rows differ most in solid angle.
+    // More light near the pole, where the solid angles of rows differ most.
     let steep = |row: usize| [1.0, 2.0, if row < 4 { 1000.0 * (4 - row) as f32 } else { 1.0 }];
     let light = |width: usize| {
         let numbers = numbers(width, |_, row| steep(row * 4096 / width));
@@ -317,11 +318,12 @@ fn a_smaller_picture_has_the_light_of_the_larger_one() {
         })
         .sum();
     assert!((found / exact - 1.0).abs().max_element() < 1e-6, "{found} {exact}");
-    // By hand: the four rows at the pole have solid angles of 1 : 3 : 5 : 7. The wrong twin, each row counted once, is 2500.
+    // By hand: the four rows at the pole have solid angles in the ratio 1 : 3 : 5 : 7. The wrong twin, each
+    // row counted once, gives 2500.
     let numbers = numbers(4096, |_, row| steep(row));
     let top = Panorama::new(&numbers).expect("a picture").radiance(Vec3::Y).z;
     assert!((top - (4000.0 + 3.0 * 3000.0 + 5.0 * 2000.0 + 7.0 * 1000.0) / 16.0).abs() < 0.1, "{top}");
-    // Widths that are no multiple.
+    // Widths that are not multiples.
     let wide = self::numbers(1502, |column, _| [if column == 740 { 1502.0 } else { 0.0 }, 1.0, 1.0]);
     let picture = Panorama::new(&wide).expect("a picture");
     let row: Vec<_> = picture.pixels[..3 * MAX_COLUMNS].chunks(3).collect();
@@ -331,7 +333,7 @@ fn a_smaller_picture_has_the_light_of_the_larger_one() {
     assert_eq!(row.iter().filter(|pixel| pixel[0] > 0.0).count(), 2);
 }
 
-/// The functions of the shader, run on the CPU: direction or point to four numbers.
+/// The shader's functions, run on the CPU: from a direction or point to four numbers.
 fn wgsl(text: &str, function: &str, numbers: &[f32]) -> impl Fn(&[f32]) -> [f32; 4] {
     let mut sources = Sources::default();
     // The built-in text is found without a copy.
@@ -373,7 +375,7 @@ fn illumination_number(i: u32) -> f32 {{
     }
 }
 
-/// The share of directions and of points for which the shader differs.
+/// The fraction of directions and of points for which the shader differs.
 fn differences(text: &str, numbers: &[f32]) -> [f64; 2] {
     let picture = Panorama::new(numbers).expect("a picture");
     let [seen, sampled] = ["seen", "sampled"].map(|function| wgsl(text, function, numbers));
@@ -399,10 +401,10 @@ fn differences(text: &str, numbers: &[f32]) -> [f64; 2] {
 #[test]
 fn the_shader_sees_and_samples_the_same() {
     let panorama = PANORAMA.text;
-    // Larger ones are too large for what the CPU interprets.
+    // Larger ones are too large for the interpreter on the CPU.
     let contrasts = || numbers(40, |column, row| contrasts(column * 8 / 5, row * 8 / 5));
     for numbers in [contrasts(), numbers(32, pattern), numbers(16, |_, _| [0.0; 3])] {
-        // At the edges of pixels rounding decides.
+        // At the edges of pixels, rounding decides.
         let wrong = differences(panorama, &numbers);
         assert!(wrong.iter().all(|wrong| *wrong < 1e-3), "{wrong:?}");
     }
@@ -427,7 +429,7 @@ fn the_shader_sees_and_samples_the_same() {
     }
 }
 
-/// What is said of a file.
+/// The error message for a file.
 fn said(bytes: &[u8]) -> String {
     let start = Instant::now();
     let problem = (FORMAT.read)(bytes).expect_err("it is refused");
@@ -493,7 +495,7 @@ fn illegal_openexr_files_are_told_what_is_wrong() {
         let bytes = exr([8, 4], fast, plain(), marked(value));
         assert_eq!(said(&bytes), format!("the pixel in column 4, row 2 has green {shown}; {rule}"));
     }
-    // Of several, the first is told, whatever the order in the file.
+    // The first of several is reported, whatever the order in the file.
     let bytes =
         exr([64, 32], fast, plain(), |column, row| [if column + row > 70 { f32::NAN } else { 0.0 }; 3]);
     assert_eq!(said(&bytes), format!("the pixel in column 64, row 9 has red NaN; {rule}"));
@@ -627,7 +629,7 @@ fn broken_files_are_answered_quickly_and_without_a_panic() {
     assert!(refused > 500, "{refused}");
 }
 
-/// A block of runs that would unfold to much more than the picture has.
+/// A run-length block that would decompress to much more than the picture contains.
 #[test]
 fn what_unfolds_to_too_much_is_refused() {
     let whole = exr([32, 16], Encoding::FAST_LOSSLESS, LayerAttributes::named("main"), |_, _| [1.0; 3]);
@@ -664,15 +666,15 @@ fn only_files_within_the_folder_are_read() {
         let said = problem(name).expect(name);
         assert!(said.contains(expected) && said.contains(name), "{said}");
     }
-    // Somebody chose it, and its name says nothing about its format.
+    // Somebody chose it, and its name does not indicate the format.
     let chosen = NamedFile::chosen("good.exr", outside.path(), &FORMAT);
     assert_eq!((chosen.problem(), chosen.numbers().as_deref()), (None, Some(&*numbers(8, pattern))));
     let device = NamedFile::chosen("/dev/zero", Path::new("/"), &FORMAT).problem().expect("no file");
     assert!(device.contains("a device"), "{device}");
 }
 
-/// The room of the shipped picture: 6 m wide, 8 m long and 3 m high, seen from its middle. To the left is a window, at the
-/// ceiling behind a lamp.
+/// The room of the shipped picture: 6 m wide, 8 m long and 3 m high, seen from its centre. A window is on the
+/// left, a lamp on the ceiling behind.
 fn room(d: glam::DVec3) -> glam::DVec3 {
     use glam::DVec3;
     let half = DVec3::new(3.0, 1.5, 4.0);
@@ -693,10 +695,10 @@ fn room(d: glam::DVec3) -> glam::DVec3 {
     DVec3::new(0.5, 0.48, 0.44) * (0.8 + 0.2 * y)
 }
 
-/// The picture that ships is the one calculated here.
+/// The shipped picture equals the one calculated here.
 #[test]
 fn the_shipped_picture_is_the_calculated_room() {
-    // Of the numbers of a default, the CPU interprets at most 4096.
+    // The CPU interprets at most 4096 numbers of a default.
     const WIDTH: usize = 40;
     let calculated = hdr(WIDTH, |column, row| {
         let sum: glam::DVec3 = (0..64)
@@ -720,7 +722,7 @@ fn the_shipped_picture_is_the_calculated_room() {
     assert!(numbers.len() <= 4096, "{}", numbers.len());
     let picture = Panorama::new(&numbers).expect("a picture");
     let brightness = |x: f32, y: f32, z: f32| luminance(picture.radiance(Vec3::new(x, y, z).normalize()));
-    // The window is to the left, the lamp above and behind, the floor darker than the ceiling.
+    // The window is on the left, the lamp above and behind, the floor darker than the ceiling.
     assert!(brightness(-3.0, 0.3, 0.0) > 9.0 && brightness(3.0, 0.3, 0.0) < 1.0);
     assert!(brightness(0.0, 1.5, 2.0) > 10.0 && brightness(0.0, 1.5, -2.0) < 1.0);
     assert!(brightness(1.0, -1.5, 0.0) < brightness(1.0, 1.5, 0.0));

@@ -1,4 +1,4 @@
-//! The integral over the directions to the light: cells, halved where the error is largest.
+//! The integral over the directions to the light, over cells that are halved where the error is largest.
 
 use std::f64::consts::PI;
 
@@ -6,26 +6,26 @@ use glam::{DVec3, Vec3};
 
 use crate::optics::Terms;
 
-/// The largest absolute error of [`directional`](super::directional).
+/// Maximum absolute error of [`directional`](super::directional).
 pub const ACCURACY: f64 = 1e-4;
 
 /// The relative error that rounding in a response causes in the value of a cell: a smaller error is no reason to halve
 /// the cell.
 const ROUNDING: f64 = 3e-5;
 
-/// The first cells of an integral, and its tolerance.
+/// The initial cells of an integral, and its tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
-    /// Azimuths of the first cells in half vectors and in lights, from that of the view.
+    /// Azimuths of the initial cells in half vectors and in lights, relative to that of the view.
     azimuths: Vec<f64>,
     /// Cells in t between two azimuths.
     rings: usize,
     /// 2 if the azimuths are one half of a symmetric circle.
     symmetry: f64,
-    /// The sum of the estimated errors of the cells of an integral, diffuse and specular separately. The estimates are
-    /// those of the lower-degree rule, and far above the error of the higher.
+    /// The sum of the estimated errors of all cells of an integral, diffuse and specular separately. The
+    /// estimates are those of the lower-degree rule, and far above the error of the higher.
     tolerance: f64,
-    /// Most cells of an integral.
+    /// Maximum number of cells of an integral.
     cells: usize,
 }
 
@@ -82,7 +82,7 @@ struct Cell {
     half: [f64; 2],
     value: DVec3,
     error: f64,
-    /// The coordinate along which it is halved.
+    /// The coordinate along which the cell is halved.
     axis: usize,
 }
 
@@ -113,7 +113,7 @@ const POINTS: [[f64; 2]; 17] = {
     ]
 };
 
-/// Weights of a point in the rules of degree 7 and 5, by its place in [`POINTS`]; each sums to 1.
+/// Weights of a point in the rules of degree 7 and 5, by its index in [`POINTS`]; each sums to 1.
 fn weights(point: usize) -> (f64, f64) {
     match point {
         0 => (-3816.0 / 19683.0, -971.0 / 729.0),
@@ -136,7 +136,7 @@ impl Cell {
         }
     }
 
-    /// The first cells of a view.
+    /// The initial cells of a view.
     fn first(v: DVec3, plan: &Plan) -> Vec<Self> {
         let theta_v = v.x.hypot(v.y).atan2(v.z);
         let mut cells = Vec::new();
@@ -186,7 +186,7 @@ impl Cell {
         (turned.as_vec3(), area)
     }
 
-    /// Receives the answers at the points of the rule.
+    /// Stores the responses at the points of the rule.
     fn take(&mut self, values: &[DVec3; 17]) {
         let mut low = DVec3::ZERO;
         self.value = DVec3::ZERO;
@@ -232,7 +232,7 @@ impl View {
     }
 }
 
-/// The albedos for views, with a plan for each.
+/// The albedos for views, each with a plan.
 pub(super) fn integrate<E>(
     views: &[(Vec3, Plan)],
     mut ask: impl FnMut(&[(Vec3, Vec3)], &mut Vec<Terms>) -> Result<(), E>,
@@ -240,7 +240,7 @@ pub(super) fn integrate<E>(
     struct Task<'a> {
         view: View,
         plan: &'a Plan,
-        /// Those from `fresh` on have no answers yet.
+        /// The cells; those from `fresh` on have no responses yet.
         cells: Vec<Cell>,
         fresh: usize,
     }
@@ -288,7 +288,7 @@ pub(super) fn integrate<E>(
                 task.fresh = task.cells.len();
                 continue;
             }
-            // The fewest cells that hold all but half of the tolerable error, within the space available.
+            // The fewest cells with all but half of the tolerable error, within the available space.
             task.cells.sort_unstable_by(|a, b| a.error.total_cmp(&b.error));
             let room = task.plan.cells - task.cells.len();
             let mut halved = Vec::new();

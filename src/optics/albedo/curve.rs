@@ -22,7 +22,7 @@ fn node(i: usize, azimuth: f64) -> Vec3 {
     DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), mu).as_vec3()
 }
 
-/// The albedos at the nodes in one azimuth of the view, accurate enough for pictures.
+/// The albedos at the nodes for one azimuth of the view, accurate enough for pictures.
 pub(super) fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [DVec3; NODES] {
     let views: [_; NODES] = std::array::from_fn(|i| (node(i, azimuth), plan.clone()));
     let Ok(albedos) = integrate(&views, |pairs, answers| {
@@ -123,7 +123,7 @@ impl LobeAlbedo {
         Self::from_nodes(nodes(response, 0.0, &Plan::isotropic()).map(|e| e.x as f32))
     }
 
-    /// The same for an anisotropic lobe.
+    /// The albedo of an anisotropic lobe from its response with F = 1.
     #[must_use]
     pub fn anisotropic(response: impl Fn(Vec3, Vec3) -> f32) -> Self {
         let response = |l, v| Terms { specular: Vec3::splat(response(l, v)), ..Terms::default() };

@@ -1,9 +1,9 @@
 //! Directional albedo: the fraction of uniform light that a surface sends towards the viewer,
 //! `E(v) = ∫ f_r(l, v) cos θ_l dω_l = (1/π) ∫ response dω_l`, over the hemisphere above the surface.
 //!
-//! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] gives the same as a function of
-//! the view, for pictures; [`LobeAlbedo`] covers a specular lobe alone, with a Fresnel factor of 1, for compensation of
-//! multiple scattering. A [`NamedCurve`] holds any others that a model needs.
+//! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] stores the result as a
+//! function of the view, for pictures; [`LobeAlbedo`] covers a specular lobe alone, with a Fresnel factor of
+//! 1, for compensation of multiple scattering. A [`NamedCurve`] stores any other curve that a model needs.
 //!
 //! Twin: `assets/shaders/optics/albedo.wgsl`, which reads the curves but does not calculate them.
 //!
@@ -39,7 +39,7 @@ pub use named::{Albedos, Lines, NamedCurve, Spacing, lobe_albedos};
 /// batches. Zero for a viewer below the surface.
 ///
 /// # Errors
-/// Any error of `ask`.
+/// Returns any error of `ask`.
 pub fn directional_in_batches<E>(
     views: &[Vec3],
     mut ask: impl FnMut(&[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,

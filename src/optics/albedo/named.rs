@@ -12,20 +12,20 @@ use crate::optics::Terms;
 /// hemisphere `mean_NAME()`; those of [`Spacing::Values`] are `value_NAME(i)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NamedCurve {
-    /// A word that may stand in the name of a function.
+    /// A name that can be part of a function name.
     pub name: &'static str,
-    /// The places of its nodes.
+    /// Positions of the nodes.
     pub spacing: Spacing,
 }
 
-/// The places of the nodes of a [`NamedCurve`] and the way between them.
+/// The positions of the nodes of a [`NamedCurve`], and the interpolation between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
-    /// [`NODES`] nodes at `μ = (i/15)³` and the cubic between them, as of [`Albedos`].
+    /// [`NODES`] nodes at `μ = (i/15)³`, with cubic interpolation, as in [`Albedos`].
     Cubic,
-    /// That many nodes at even distances from 0 to 1 and straight lines between them, as of [`Lines`]. At least 2.
+    /// This many equidistant nodes from 0 to 1, with linear interpolation, as in [`Lines`]. At least 2.
     Linear(usize),
-    /// No curve: that many quadruples, read by their index, such as numbers that take long to calculate.
+    /// Not a curve: this many quadruples, read by index, such as numbers that take long to calculate.
     Values(usize),
 }
 
@@ -39,7 +39,7 @@ impl NamedCurve {
         }
     }
 
-    /// The number of quadruples in a row: the nodes and, of a curve, the mean.
+    /// The number of quadruples in a row: the nodes and, for a curve, the mean.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self.spacing {
@@ -72,7 +72,7 @@ impl Albedos {
         weights.iter().zip(&self.nodes[i..]).map(|(weight, node)| *weight * *node).sum()
     }
 
-    /// Their means.
+    /// The means of the albedos.
     #[must_use]
     pub fn mean(&self) -> Vec4 {
         self.mean
@@ -85,8 +85,8 @@ impl Albedos {
     }
 }
 
-/// The albedos of two isotropic lobes that differ in their Fresnel term alone, from their responses `π f_r(l, v) cos θ_l`
-/// in the local frame (normal +z, tangent +x): one integration for both.
+/// The albedos of two isotropic lobes that differ only in their Fresnel term, from their responses `π f_r(l,
+/// v) cos θ_l` in the local frame (normal +z, tangent +x): one integration for both.
 #[must_use]
 pub fn lobe_albedos(response: impl Fn(Vec3, Vec3) -> [f32; 2]) -> [LobeAlbedo; 2] {
     let response = |l, v| {
@@ -97,7 +97,7 @@ pub fn lobe_albedos(response: impl Fn(Vec3, Vec3) -> [f32; 2]) -> [LobeAlbedo; 2
     [LobeAlbedo::from_nodes(both.map(|e| e.x as f32)), LobeAlbedo::from_nodes(both.map(|e| e.y as f32))]
 }
 
-/// Four numbers at N cosines at even distances, linear between them: the values of a [`NamedCurve`] with
+/// Four numbers at N equidistant cosines, with linear interpolation: the values of a [`NamedCurve`] with
 /// [`Spacing::Linear`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines<const N: usize> {
@@ -130,7 +130,7 @@ impl<const N: usize> Lines<N> {
     #[must_use]
     pub fn mean(&self) -> Vec4 {
         let step = ((N - 1) as f32).recip();
-        // Of a line from b to c over [x, x + h]: 2 ∫ f μ dμ = h (b (x + h/3) + c (x + 2h/3)).
+        // For a line from b to c over [x, x + h]: 2 ∫ f μ dμ = h (b (x + h/3) + c (x + 2h/3)).
         let piece = |(i, ends): (usize, &[Vec4])| {
             let x = i as f32 * step;
             step * (ends[0] * (x + step / 3.0) + ends[1] * (x + step * (2.0 / 3.0)))

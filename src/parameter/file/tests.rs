@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// How often the files of the test were read.
+/// The number of times that the test's files were read.
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 static FORMAT: FileFormat = FileFormat {
     name: "a file of bytes",

@@ -1,5 +1,6 @@
-//! Triangles to pixels, by the rules of graphics hardware: corners snapped to 1/256 pixel, exact edge functions in
-//! integers, the top-left rule, so that triangles sharing an edge leave no gap and hit no sample twice.
+//! Rasterises triangles by the rules of graphics hardware: corners snapped to 1/256 pixel, exact edge
+//! functions in integers, the top-left rule, so that triangles sharing an edge leave no gap and hit no sample
+//! twice.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -9,10 +10,10 @@ mod tile;
 
 pub(super) use tile::{TILE, Tile};
 
-/// Steps per pixel of the grid that corners are snapped to.
+/// Steps per pixel of the grid to which corners are snapped.
 pub(super) const SUBPIXEL: i64 = 256;
 
-/// The largest distance of a corner from the middle of the picture before the triangle is clipped, in pixels.
+/// Maximum distance of a corner from the centre of the picture before the triangle is clipped, in pixels.
 /// Bounds the products of the edge functions well within 64 bits.
 const GUARD: f32 = 32_768.0;
 
@@ -21,11 +22,12 @@ const GUARD: f32 = 32_768.0;
 pub(super) struct Screen {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Distance of the sample positions' grid lines, and the first line, in 1/256 pixel.
+    /// Spacing of the grid lines of sample positions, and the first line, in 1/256 pixel.
     grid: (i64, i64),
-    /// The centre of the only pixel that is drawn, if it is only one, in 1/256 pixel.
+    /// The centre of the only pixel drawn, if there is only one, in 1/256 pixel.
     only: Option<[i64; 2]>,
-    /// The planes with all visible points on their positive side: near, and far beyond the four sides of the picture.
+    /// Planes with all visible points on their positive sides: near, and far beyond the four sides of the
+    /// picture.
     planes: [Vec4; 5],
 }
 
@@ -43,7 +45,7 @@ impl Screen {
         Self { width, height, grid: if samples == 4 { (64, 32) } else { (256, 128) }, only: None, planes }
     }
 
-    /// The same screen for one pixel alone, with one sample.
+    /// The screen restricted to one pixel, with one sample.
     pub(super) fn of_pixel(width: usize, height: usize, pixel: [usize; 2]) -> Self {
         let centre = pixel.map(|c| c as i64 * SUBPIXEL + SUBPIXEL / 2);
         Self { only: Some(centre), ..Self::new(width, height, 1) }
@@ -84,13 +86,13 @@ pub(super) fn frustum(clip_from_room: &Mat4) -> [Vec4; 5] {
     [w - z, w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length())
 }
 
-/// A corner in clip space and on the screen. If it cannot be projected directly (behind the near plane, or far
-/// outside), its triangles go through the clipper.
+/// A corner in clip space and on the screen. If it cannot be projected directly (because it is behind the
+/// near plane, or far outside), its triangles are clipped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) clip: Vec4,
     screen: Option<[i64; 2]>,
-    /// One bit for each side of the picture beyond which it lies.
+    /// One bit for each side of the picture beyond which the corner lies.
     beyond: u8,
 }
 
@@ -122,17 +124,17 @@ impl Placed {
     }
 }
 
-/// Twice the signed area; negative for anticlockwise corners as seen, y pointing down.
+/// Twice the signed area; negative for corners that appear anticlockwise, with y pointing down.
 fn doubled_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// A triangle on the screen, corners clockwise as seen.
+/// A triangle on the screen, with corners that appear clockwise.
 #[derive(Clone, Debug)]
 pub(super) struct Triangle {
     corners: [[i64; 2]; 3],
     area: i64,
-    /// `1 / w` at the corners: linear on the screen; greater is nearer.
+    /// `1 / w` at the corners: linear on the screen; larger is nearer.
     inverse_w: [f32; 3],
     varyings: [Varying; 3],
     face_normal: Vec3,
@@ -211,7 +213,8 @@ fn mix(a: &Varying, b: &Varying, t: f32) -> Varying {
 }
 
 impl Triangle {
-    /// The pixels that it may touch: first and last column, first and last row; `None` if it lies outside the picture.
+    /// The pixels that the triangle may touch: first and last column, first and last row; `None` if it is
+    /// outside the picture.
     pub(super) fn bounds(&self, screen: &Screen) -> Option<[usize; 4]> {
         let range = |axis: usize, size: usize| {
             let values = self.corners.map(|c| c[axis]);
@@ -224,13 +227,13 @@ impl Triangle {
         Some([left, right, top, bottom])
     }
 
-    /// The values interpolated with perspective correction at the point with the given weights of the corners
-    /// on the screen.
+    /// The values interpolated with perspective correction at the point with these weights of the corners on
+    /// the screen.
     fn varying(&self, mut weights: [f32; 3]) -> Varying {
         let mut scaled: [f32; 3] = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
         let mut sum: f32 = scaled.iter().sum();
         if sum < 1e-3 * self.inverse_w.iter().copied().fold(f32::INFINITY, f32::min) {
-            // The pixel's centre is outside the triangle and beyond its horizon: stay within.
+            // The pixel's centre is outside the triangle and beyond its horizon: stay inside.
             weights = weights.map(|w| w.clamp(0.0, 1.0));
             scaled = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
             sum = scaled.iter().sum();
@@ -239,7 +242,7 @@ impl Triangle {
     }
 }
 
-/// The values at a point of a triangle, by the weights of its second and its third corner.
+/// The values at a point of a triangle, by the weights of its second and third corners.
 pub(super) fn between([p, q, r]: &[Varying; 3], [b, c]: [f32; 2], tangents: bool) -> Varying {
     // Relative to the first corner, so that a value equal at all three stays exact.
     let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;

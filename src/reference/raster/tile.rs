@@ -1,4 +1,4 @@
-//! The samples of one tile of the picture, and drawing triangles into them.
+//! The samples of one tile of the picture, into which triangles are drawn.
 
 use glam::{Vec3, Vec4};
 
@@ -8,7 +8,7 @@ use crate::{
     shading::{Lighting, Shading},
 };
 
-/// Edge of a tile in pixels.
+/// Edge length of a tile, in pixels.
 pub(in crate::reference) const TILE: usize = 32;
 
 /// Sample positions within a pixel, in 1/256: the centre, or the standard four (Vulkan 1.3,
@@ -38,8 +38,8 @@ impl<const S: usize, const E: usize> Tile<S, E> {
         Self { nearness: vec![[0.0; S]; E * E], colour: vec![[Vec3::ZERO; S]; E * E] }
     }
 
-    /// Draws the part of a triangle that lies in the tile whose first pixel is `origin`. The colour is
-    /// calculated at the pixel's centre, once for all its samples.
+    /// Draws the part of a triangle inside the tile whose first pixel is `origin`. The colour is calculated
+    /// at the pixel's centre, once for all its samples.
     pub(in crate::reference) fn draw(
         &mut self,
         triangle: &Triangle,
@@ -67,7 +67,7 @@ impl<const S: usize, const E: usize> Tile<S, E> {
             let d = edges[e].1;
             samples.map(|s| d[0] * (s[1] - 128) - d[1] * (s[0] - 128))
         });
-        // The largest values of the edge functions at any sample of a pixel, relative to its centre.
+        // The maxima of the edge functions over all samples of a pixel, relative to its centre.
         let most: [i64; 3] = std::array::from_fn(|e| offsets[e].iter().copied().max().unwrap_or(0));
         let step: [i64; 3] = std::array::from_fn(|e| -edges[e].1[1] * SUBPIXEL);
         let per_area = 1.0 / triangle.area as f64;
@@ -133,7 +133,8 @@ impl<const S: usize, const E: usize> Tile<S, E> {
         }
     }
 
-    /// Shows lights at the samples where they are nearer than what was drawn; where nothing was, those infinitely far away.
+    /// Draws lights at the samples where they are nearer than anything drawn before; infinitely distant ones
+    /// where there is nothing.
     pub(in crate::reference) fn show(&mut self, lights: &mut Part) {
         let samples = const { positions::<S>() }.map(|at| at.map(|c| c as f32 / SUBPIXEL as f32));
         for (i, (nearness, colour)) in self.nearness.iter_mut().zip(&mut self.colour).enumerate() {
@@ -219,7 +220,7 @@ mod tests {
     fn a_fan_hits_every_sample_inside_exactly_once() {
         fn check<const S: usize>() {
             let screen = Screen::new(64, 64, S);
-            // Corners partly on sample positions, where the top-left rule decides.
+            // Some corners are on sample positions, where the top-left rule decides.
             let ring = [
                 [0.0, 0.0],
                 [20.5, 0.0],
@@ -236,7 +237,8 @@ mod tests {
                     .collect();
                 let counts = hits::<S>(&fan, &screen);
                 assert!(counts.iter().all(|&n| n == 1), "{centre:?}");
-                // The wrong twin: moving one corner of one triangle slightly leaves gaps or hits twice.
+                // The wrong twin: slightly moving one corner of one triangle leaves gaps or hits samples
+                // twice.
                 let mut wrong = fan;
                 wrong[0] = on_screen([[centre[0] + 2.0, centre[1] + 1.0], ring[0], ring[1]]);
                 assert!(hits::<S>(&wrong, &screen).iter().any(|&n| n != 1));

@@ -7,7 +7,7 @@ fn settings() -> Settings {
     Settings { width: SIZE[0], height: SIZE[1], samples: 1, ..Settings::default() }
 }
 
-/// A cube of 2 m, seen from the front and a little from above and from the right.
+/// A cube of 2 m, seen from the front and slightly from above and from the right.
 fn cube() -> Scene {
     let cube =
         Object { object_type: "cube".to_owned(), size: 2.0, tessellation: Some(1), ..Object::default() };
@@ -33,7 +33,7 @@ fn of_a_cube_nine_edges_and_seven_corners_are_in_sight() {
     let edges = wires(&scene, DebugChannel::Wireframe);
     assert!((length(&edges) - 18.0).abs() < 0.3, "{}", length(&edges));
     assert_eq!((edges.drawn, edges.objects, edges.remark()), (1, 1, None));
-    // No diagonals: every line runs along an axis, and none ends at the corner that is hidden.
+    // No diagonals: every line runs along an axis, and none ends at the hidden corner.
     for line in &edges.lines {
         let along = (line.ends[1] - line.ends[0]).normalize().abs();
         assert!(along.max_element() > 0.999, "{line:?}");
@@ -49,7 +49,7 @@ fn of_a_cube_nine_edges_and_seven_corners_are_in_sight() {
         let code = (255.0 * (0.5 + 0.5 * right)).round();
         assert_eq!(*colour, code.to_array().map(|c| c as u8));
     }
-    // A wrong twin: the same, seen from the other side, shows other corners.
+    // A wrong twin: seen from the other side, the cube shows other corners.
     let eye = Vec3::new(3.0, 3.0, 1.0);
     let behind = Observer { position: eye, direction: Vec3::splat(5.0) - eye, field_of_view: 45.0 };
     let other = wires(&Scene { observer: behind, ..scene }, DebugChannel::Vertices);
@@ -69,7 +69,7 @@ fn what_stands_before_an_object_hides_its_lines() {
     let seen: f32 = both.lines.iter().filter(of_first).map(|l| l.ends[0].distance(l.ends[1])).sum();
     assert!((0.3 * alone..0.95 * alone).contains(&seen), "{seen} of {alone}");
     assert_eq!((both.drawn, both.objects), (2, 2));
-    // Behind the eye there is nothing to see.
+    // Nothing is visible behind the eye.
     scene.observer.direction = -scene.observer.direction;
     assert!(wires(&scene, DebugChannel::Wireframe).lines.is_empty());
 }
@@ -93,7 +93,7 @@ fn a_sphere_shows_its_nearer_side_only() {
         let normal = (dot.at - Vec3::splat(5.0)).normalize();
         assert!(normal.dot((eye - dot.at).normalize()) > -0.15, "{dot:?}");
     }
-    // Normals are as long in the picture, however far the sphere is.
+    // Normals have the same length in the picture, however far the sphere is.
     let pixels = |scene: &Scene| {
         let clip = clip_from_room(&scene.observer, 16.0 / 9.0);
         let place = |p: Vec3| on_screen(clip * p.extend(1.0), SIZE.map(|side| side as f32)).expect("ahead");
@@ -158,7 +158,7 @@ fn lines_are_smooth_and_stay_in_the_picture() {
     assert_eq!([row(4), row(5), row(6)], [0, 200, 0]);
     let sum = |rgb8: &[u8]| rgb8.iter().map(|c| u32::from(*c)).sum::<u32>();
     let level = sum(&rgb8);
-    // As dark at an angle as along the rows: so much per length.
+    // Equally dark at an angle and along the rows, per length.
     let mut slanted = vec![0; 3 * 20 * 10];
     let mut canvas = Canvas { rgb8: &mut slanted, size: [20, 10] };
     canvas.line([Vec2::new(0.0, 0.0), Vec2::new(20.0, 10.0)], 0.5, [200; 3], 1.0);

@@ -1,4 +1,4 @@
-//! Checks of meshes: what both renderers rely on.
+//! Checks meshes for the properties on which both renderers rely.
 
 use std::collections::HashMap;
 
@@ -6,13 +6,13 @@ use glam::Vec3;
 
 use crate::shape::PolygonMesh;
 
-/// The largest deviation of the extent from 1, and of the centre from the origin.
+/// Maximum deviation of the extent from 1, and of the centre from the origin.
 pub const TOLERANCE: f32 = 1e-3;
 
-/// The first reason why a mesh cannot be drawn, or not as a scene asks for it.
+/// Checks that a mesh can be drawn as a scene requests it.
 ///
 /// # Errors
-/// That reason, with what would be right.
+/// Returns the first problem, and what would be right.
 pub fn check(mesh: &PolygonMesh) -> Result<(), String> {
     let count = mesh.positions.len();
     if count == 0 || mesh.polygons.is_empty() {
@@ -59,7 +59,7 @@ pub fn check(mesh: &PolygonMesh) -> Result<(), String> {
 /// The edges of all polygons by their ends, in the order of the corners, each with its polygon.
 ///
 /// # Errors
-/// If two polygons run along an edge in the same direction.
+/// Returns an error if two polygons run along an edge in the same direction.
 fn edges(mesh: &PolygonMesh) -> Result<HashMap<(u32, u32), usize>, String> {
     let mut edges = HashMap::with_capacity(4 * mesh.polygons.len());
     for (i, polygon) in mesh.polygons.iter().enumerate() {
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use crate::{parameter::Values, registry::Registry, shape::mesh::Polygon};
 
-    /// The problem of the cube after a change.
+    /// The problem found in a cube after a change.
     fn said(change: impl FnOnce(&mut PolygonMesh)) -> String {
         let mut mesh = Registry::builtin().shape("cube").expect("built in").mesh(&Values::default(), 1);
         change(&mut mesh);

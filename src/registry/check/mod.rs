@@ -1,4 +1,4 @@
-//! Checks of what is registered. Each names what is wrong and what would be right; the caller adds the type and its id.
+//! Checks of registered types. Each names the error and the remedy; the caller adds the type and its id.
 
 pub mod mesh;
 pub(crate) mod wgsl;
@@ -24,10 +24,10 @@ type Check = Result<(), String>;
 
 /// The units of light types.
 const UNITS: [&str; 4] = ["cd", "lx", "cd/m²", "×"];
-/// A light and an object of a scene file, in messages.
+/// Names of a light and an object of a scene file in messages.
 const LIGHT: &str = "a light";
 const OBJECT: &str = "an object";
-/// The names of the literals of JSON.
+/// JSON's literals.
 const JSON_WORDS: [&str; 3] = ["true", "false", "null"];
 
 fn ensure(right: bool, otherwise: impl FnOnce() -> String) -> Check {
@@ -45,7 +45,7 @@ fn name(name: &str) -> Check {
     })
 }
 
-/// Checks an id and the name shown to people.
+/// Checks an id and a display name.
 pub(super) fn identity(id: &str, shown: &str) -> Check {
     name(id).map_err(|what| format!("the id {what}"))?;
     ensure(!shown.trim().is_empty(), || "the name is empty; it is what people read in lists".to_owned())
@@ -56,8 +56,8 @@ fn positive(what: &str, number: f32) -> Check {
     ensure(number.is_finite() && number > 0.0, || format!("{what} is {number}, but must be greater than 0"))
 }
 
-/// Checks declarations of parameters; `reserved` are the other keys of the part of a scene that they stand in, and
-/// `files` is true if they may be files.
+/// Checks declarations of parameters; `reserved` are the other keys of their part of the scene, and `files`
+/// is true if they may be files.
 pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files: bool) -> Check {
     let mut known = HashSet::new();
     for p in all {
@@ -160,7 +160,8 @@ fn labels(all: &[Parameter]) -> Check {
     })
 }
 
-/// Checks the parameters of a reflection or shading model: in materials, those of one name are one parameter.
+/// Checks the parameters of a reflection or shading model: in materials, parameters with the same name are
+/// shared.
 fn of_material(
     all: &[Parameter],
     others: impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone,
@@ -181,7 +182,7 @@ fn of_material(
     labels(all)
 }
 
-/// Checks that parameters fit, and have the types of those of the same names in others of their sort.
+/// Checks parameters, and that their types equal those of parameters with the same names in similar parts.
 fn shared(
     all: &[Parameter],
     sort: &str,
@@ -304,8 +305,8 @@ pub(super) fn object_type(registry: &Registry, entry: &ShapeEntry) -> Check {
     })
 }
 
-/// Checks the meshes of an object type: at both ends of its tessellations and at the default, and each parameter at both
-/// ends of its range.
+/// Checks the meshes of an object type: at both ends of its tessellations and at the default, and with each
+/// parameter at both ends of its range.
 pub(super) fn meshes(entry: &ShapeEntry) -> Check {
     let d = entry.declaration;
     let check = |values: &Values, tessellation: u32| {

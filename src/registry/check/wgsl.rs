@@ -1,5 +1,5 @@
-//! Checks of the WGSL of models, shading models and light types: the functions that must be there, their signatures, and
-//! everything that naga refuses, at its place in the author's file.
+//! Checks the WGSL of models, shading models and light types: required functions, their signatures, and
+//! everything that naga rejects, located in the author's file.
 
 use std::sync::LazyLock;
 
@@ -31,7 +31,7 @@ pub(crate) struct Function {
 }
 
 impl Function {
-    /// The mistake, and its byte if that is known, when a text lacks the function.
+    /// The error if a text lacks the function, and its byte, if known.
     pub(crate) fn missing(&self, text: &str) -> Option<(Option<usize>, String)> {
         let Self { name, signature } = self;
         if definition(text, name).is_some() {
@@ -47,7 +47,7 @@ impl Function {
         ))
     }
 
-    /// The problem of a file that lacks the function.
+    /// Reports a file that lacks the function.
     fn required(&self, source: &Source, sources: &Sources) -> Result<(), Box<ShaderProblem>> {
         let text = sources.text(source);
         match self.missing(text) {
@@ -68,7 +68,7 @@ impl Function {
     }
 }
 
-/// `response` of models.
+/// The function `response` of models.
 pub(crate) static RESPONSE: LazyLock<Function> = LazyLock::new(|| {
     function("response", "(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms")
 });
@@ -77,7 +77,7 @@ fn function(name: &str, signature: &str) -> Function {
     Function { name: name.to_owned(), signature: signature.to_owned() }
 }
 
-/// The functions of a model.
+/// The required functions of a model.
 fn of_model(model: &ModelEntry) -> Vec<Function> {
     let mut all = vec![RESPONSE.clone()];
     if model.declaration.ambient == Ambient::Formula {
@@ -86,13 +86,13 @@ fn of_model(model: &ModelEntry) -> Vec<Function> {
     all
 }
 
-/// The functions of a light type.
+/// The required functions of a light type.
 fn of_light(light: &LightEntry) -> Vec<Function> {
     let twins = Twin::all(light.declaration.extent).iter();
     twins.map(|twin| function(&twin.of(light), &twin.signature(light))).collect()
 }
 
-/// The functions of a shading model.
+/// The required functions of a shading model.
 fn of_shading() -> [Function; 2] {
     [
         function("shade_vertex", "(corner: Corner) -> Varying"),
@@ -100,17 +100,17 @@ fn of_shading() -> [Function; 2] {
     ]
 }
 
-/// Checks the WGSL of a model by itself.
+/// Checks the WGSL of a model on its own.
 ///
 /// # Errors
-/// Its first problem.
+/// Returns the first problem.
 pub(crate) fn model(sources: &Sources, model: &ModelEntry) -> Result<Module, Box<ShaderProblem>> {
     let source = &model.declaration.wgsl;
     let all = of_model(model);
     all.iter().try_for_each(|function| function.required(source, sources))?;
     let composed = compose_evaluation(sources, model);
     let module = validate(&composed).map_err(|found| {
-        // The caller of the model is not the culprit.
+        // The caller of the model is not to blame.
         let called = found.file == crate::shader::compose::EVALUATE.path;
         called.then(|| all[0].otherwise(source, sources)).flatten().unwrap_or(found)
     })?;
@@ -120,16 +120,16 @@ pub(crate) fn model(sources: &Sources, model: &ModelEntry) -> Result<Module, Box
     }
 }
 
-/// Checks the WGSL of a light type by itself.
+/// Checks the WGSL of a light type on its own.
 ///
 /// # Errors
-/// Its first problem.
+/// Returns the first problem.
 pub(crate) fn light(sources: &Sources, light: &LightEntry) -> Result<Module, Box<ShaderProblem>> {
     let source = &light.declaration.wgsl;
     let all = of_light(light);
     all.iter().try_for_each(|function| function.required(source, sources))?;
     validate(&compose_light(sources, light)).map_err(|found| {
-        // The caller of the light type is not the culprit: it names the function in its line.
+        // The caller of the light type is not to blame: its line names the function.
         let called = found.file.starts_with('(');
         let named = || all.iter().find(|function| found.source.contains(&function.name));
         let caller = called.then(|| named().or(all.first())).flatten();
@@ -137,10 +137,10 @@ pub(crate) fn light(sources: &Sources, light: &LightEntry) -> Result<Module, Box
     })
 }
 
-/// Checks the WGSL of a shading model together with a model.
+/// Checks the WGSL of a shading model together with a reflection model.
 ///
 /// # Errors
-/// Its first problem.
+/// Returns the first problem.
 pub(crate) fn shading(
     sources: &Sources,
     shading: &ShadingEntry,
@@ -159,8 +159,8 @@ pub(crate) fn shading(
     })
 }
 
-/// Names the author's file where a problem of a composed source shows in another one: a function of another crate that
-/// is missing, or has another signature.
+/// Names the author's file if a problem in a composed source appears elsewhere: a function from another crate
+/// that is missing, or has another signature.
 pub(crate) fn blamed(
     problem: Box<ShaderProblem>,
     registry: &Registry,
@@ -223,7 +223,7 @@ mod tests {
         }
     }
 
-    /// The problem of a file edited so.
+    /// The problem of a file after this edit.
     fn problem(path: &str, from: &str, to: &str) -> String {
         let registry = Registry::builtin();
         let lambert = registry.model("lambert").expect("built in");

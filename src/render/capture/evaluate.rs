@@ -1,5 +1,4 @@
-//! Evaluating a model's WGSL in a compute pass: the GPU's answer to the same question that the Rust
-//! function answers.
+//! Evaluates a model's WGSL in a compute pass: the GPU's counterpart of the Rust function.
 
 use bevy::render::{
     render_resource::{
@@ -26,11 +25,11 @@ use crate::{
     shader::{check, compose::Sources},
 };
 
-/// The response of a model to pairs of directions (to the light, to the viewer) in the local frame
-/// (normal +z, tangent +x), calculated by its WGSL on the GPU. The texts are those of `sources`.
+/// The response of a model to pairs of directions (to the light, to the viewer) in the local frame (normal
+/// +z, tangent +x), calculated by its WGSL on the GPU. The shader texts come from `sources`.
 ///
 /// # Errors
-/// Without a driver, or when the model's WGSL is not valid.
+/// Returns an error without a driver, or if the model's WGSL is invalid.
 pub fn evaluate(
     sources: &Sources,
     model: &ModelEntry,
@@ -46,11 +45,11 @@ pub fn evaluate(
     evaluator.evaluate(pairs)
 }
 
-/// The directional albedos of a model for views in the local frame, by its WGSL on the GPU: where to
-/// ask is decided here, the responses come from there, and are added up here in 64 bits.
+/// The directional albedos of a model for views in the local frame, by its WGSL on the GPU: the directions
+/// are chosen here, the responses come from the GPU, and are summed here in 64 bits.
 ///
 /// # Errors
-/// As [`evaluate`].
+/// Returns the errors of [`evaluate`].
 pub fn albedos(
     sources: &Sources,
     model: &ModelEntry,
@@ -66,7 +65,7 @@ pub fn albedos(
     evaluator.albedos(views)
 }
 
-/// The parameters of a model as its shader reads them. The response asks for the lobe, not for the albedo.
+/// The parameters of a model in the layout of its shader. The response needs the lobe, but not the albedo.
 fn row(device: &RenderDevice, model: &ModelEntry, values: &Values, encoding: Encoding) -> Buffer {
     device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("row"),
@@ -75,17 +74,17 @@ fn row(device: &RenderDevice, model: &ModelEntry, values: &Values, encoding: Enc
     })
 }
 
-/// Bytes of `Pair` in `evaluate.wgsl`: two vec3, each padded to 16.
+/// Size of `Pair` in `evaluate.wgsl`, in bytes: two vec3, each padded to 16.
 const PAIR_BYTES: usize = 32;
-/// Bytes of `Terms` in `terms.wgsl`: three vec3, each padded to 16.
+/// Size of `Terms` in `terms.wgsl`, in bytes: three vec3, each padded to 16.
 const ANSWER_BYTES: usize = 48;
 
-/// Pairs of a batch, so that the bound on time is one on a part of the work.
+/// Number of pairs in a batch, so that the time limit applies to a part of the work.
 const BATCH: usize = 1 << 16;
-/// The longest that a batch may take; a slow model takes a second on two cores.
+/// Maximum duration of a batch; a slow model takes a second on two cores.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A model on the GPU, ready to be asked again and again with one set of parameters after the other.
+/// A model on the GPU that can be evaluated repeatedly with different parameters.
 pub struct Evaluator {
     model: ModelEntry,
     device: RenderDevice,
@@ -102,7 +101,7 @@ impl Evaluator {
     /// The model with its default parameters.
     ///
     /// # Errors
-    /// Without a driver, or when the model's WGSL is not valid.
+    /// Returns an error without a driver, or if the model's WGSL is invalid.
     pub fn new(sources: &Sources, model: &ModelEntry) -> Result<Self, GpuError> {
         let composed = compose_evaluation(sources, model);
         check::validate(&composed).map_err(GpuError::Invalid)?;
@@ -157,7 +156,7 @@ impl Evaluator {
         Ok(evaluator)
     }
 
-    /// Answers with these parameters from now on.
+    /// Sets the parameters for subsequent evaluations.
     pub fn set(&mut self, values: &Values, encoding: Encoding) {
         self.row = row(&self.device, &self.model, values, encoding);
         self.on_cpu = self.model.is_interpreted().then(|| self.model.instantiate(values, encoding));
@@ -166,7 +165,7 @@ impl Evaluator {
     /// The responses to pairs of directions, in as many passes as they need.
     ///
     /// # Errors
-    /// When the answers cannot be copied from the GPU, or when the model does not come to an end.
+    /// Returns an error if the results cannot be copied from the GPU, or if the model does not terminate.
     pub fn evaluate(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
         let limit = self.device.limits().max_storage_buffer_binding_size as usize / ANSWER_BYTES;
         let mut answers = Vec::with_capacity(pairs.len());
@@ -179,12 +178,12 @@ impl Evaluator {
         Ok(answers)
     }
 
-    /// The directional albedos for views, as [`albedos`] has them.
+    /// The directional albedos for views, as in [`albedos`].
     ///
     /// # Errors
-    /// As [`evaluate`](Self::evaluate).
+    /// Returns the errors of [`evaluate`](Self::evaluate).
     pub fn albedos(&self, views: &[Vec3]) -> Result<Vec<DVec3>, GpuError> {
-        /// The most views with batches in memory at a time.
+        /// Maximum number of views with batches in memory at a time.
         const VIEWS: usize = 64;
         let mut albedos = Vec::with_capacity(views.len());
         for views in views.chunks(VIEWS) {
@@ -269,7 +268,7 @@ mod tests {
         let pairs = vec![(Vec3::Z, Vec3::new(0.6, 0.0, 0.8)); BATCH + 1];
         assert_eq!(evaluator.evaluate(&pairs).expect("in time").len(), pairs.len());
         evaluator.patience = Duration::from_micros(1);
-        // On a busy machine the work may be done before anybody waits for it, but not again and again.
+        // On a busy machine the work may be done before anybody waits for it, but not repeatedly.
         let late = (0..10).find_map(|_| evaluator.evaluate(&pairs).err()).expect("no driver is as fast");
         assert!(matches!(late, GpuError::Stuck(_)), "{late}");
     }

@@ -65,7 +65,7 @@ pub enum GpuError {
          one that needs no GPU, or use `--renderer cpu`, which needs no driver"
     )]
     NoAdapter,
-    /// Nothing came out in time.
+    /// No picture was ready in time.
     #[error(
         "the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`"
     )]
@@ -73,16 +73,16 @@ pub enum GpuError {
     /// A shader could not be compiled.
     #[error("a shader could not be compiled: {0}")]
     Shader(String),
-    /// A shader is wrong, and where is known.
+    /// A shader is invalid, at a known position.
     #[error("a shader is not valid: {0}")]
     Invalid(Box<ShaderProblem>),
-    /// A model does not come to an end, as the CPU found before the GPU was asked.
+    /// A model does not terminate, as the CPU found before the GPU was used.
     #[error(transparent)]
     Endless(#[from] Endless),
-    /// The GPU does not come to an end.
+    /// The GPU does not finish.
     #[error("the GPU did not finish within {0:?}; a loop in a shader may have no end")]
     Stuck(Duration),
-    /// There is no room for the meshes.
+    /// The meshes do not fit into memory.
     #[error("{0}, or use `--renderer cpu`, which needs less memory")]
     Memory(String),
     /// The picture could not be copied from the GPU.
@@ -90,17 +90,17 @@ pub enum GpuError {
     Copy(String),
 }
 
-/// Facts about the adapter that draws.
+/// Information about the adapter that draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterFacts {
-    /// The name that the driver gives, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
+    /// Name given by the driver, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
     pub name: String,
-    /// True if it is a program on the CPU.
+    /// True for a software renderer on the CPU.
     pub software: bool,
 }
 
-/// True if this machine may have a hardware GPU, judged by the device nodes that drivers make: the
-/// cheap sign that decides whether `--renderer auto` looks for an adapter at all.
+/// True if this machine may have a hardware GPU, judging by the device nodes created by drivers: the cheap
+/// test that decides whether `--renderer auto` looks for an adapter at all.
 #[must_use]
 pub fn may_have_hardware() -> bool {
     if !cfg!(target_os = "linux") {
@@ -112,10 +112,10 @@ pub fn may_have_hardware() -> bool {
     render_node || Path::new("/dev/nvidiactl").exists() || Path::new("/dev/dxg").exists()
 }
 
-/// The adapter that would draw, without starting anything: a hardware one if there is one.
+/// The adapter that would draw, without starting anything: a hardware adapter if there is one.
 ///
 /// # Errors
-/// [`GpuError::NoAdapter`] when there is none at all.
+/// Returns [`GpuError::NoAdapter`] if there is no adapter at all.
 pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends();
@@ -130,8 +130,8 @@ pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
         .ok_or(GpuError::NoAdapter)
 }
 
-/// The graphics interfaces that are used: `WGPU_BACKEND` when set, else Vulkan on Linux (asking for
-/// OpenGL as well would print noise on machines without it) and everything elsewhere.
+/// The graphics APIs to use: `WGPU_BACKEND` if set; otherwise Vulkan on Linux (requesting OpenGL as well
+/// would print warnings on machines without it) and all elsewhere.
 #[must_use]
 pub fn backends() -> Backends {
     Backends::from_env().unwrap_or(if cfg!(target_os = "linux") {
@@ -141,13 +141,13 @@ pub fn backends() -> Backends {
     })
 }
 
-/// The settings of the renderer, for windows and without.
+/// The settings of the renderer, with or without windows.
 #[must_use]
 pub fn wgpu_settings() -> WgpuSettings {
     WgpuSettings { backends: Some(backends()), ..WgpuSettings::default() }
 }
 
-/// The device of this process. All renderers without a window share it: making one takes longer than
+/// The device of this process. All renderers without a window share it: creating one takes longer than
 /// drawing a picture.
 pub(super) fn device() -> Result<RenderResources, GpuError> {
     static DEVICE: OnceLock<Option<RenderResources>> = OnceLock::new();
@@ -160,10 +160,10 @@ pub(super) fn device() -> Result<RenderResources, GpuError> {
         .ok_or(GpuError::NoAdapter)
 }
 
-/// The content of the target.
+/// The contents of the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// For people: tone mapped, sRGB-encoded, 8 bits.
+    /// For display: tone mapped, sRGB-encoded, 8 bits.
     Display,
     /// Linear 32-bit floats, unclamped, for measurements. One sample per pixel.
     Linear,
@@ -185,15 +185,14 @@ impl Output {
     }
 }
 
-/// The longest that a first picture may take; software Vulkan compiles shaders for a few seconds at
-/// most.
+/// Maximum duration of a first picture; software Vulkan compiles shaders for a few seconds at most.
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A renderer that draws scenes into an image, frame by frame.
 pub struct GpuRenderer {
     pub(super) app: App,
     pub(super) target: Handle<Image>,
-    /// The background and the graph of the camera, if the last picture took several batches.
+    /// The background and the render graph of the camera, if the last picture took several batches.
     pub(super) batched: Option<(ClearColorConfig, CameraRenderGraph)>,
     staging: Option<Buffer>,
     output: Output,
@@ -205,15 +204,16 @@ impl GpuRenderer {
     /// Starts a renderer for pictures of one size. `samples` is 1 or 4; [`Output::Linear`] has 1.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] when there is no driver.
+    /// Returns [`GpuError::NoAdapter`] without a driver.
     pub fn new(width: u32, height: u32, samples: u8, output: Output) -> Result<Self, GpuError> {
         Self::extended(width, height, samples, output, |_| {})
     }
 
-    /// As [`new`](Self::new), with more models, shading models, lights or shapes registered by `extend`.
+    /// Like [`new`](Self::new), with additional models, shading models, lights or shapes registered by
+    /// `extend`.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn extended(
         width: u32,
         height: u32,
@@ -239,7 +239,7 @@ impl GpuRenderer {
                 .disable::<WinitPlugin>()
                 .disable::<PipelinedRenderingPlugin>()
                 .disable::<LogPlugin>()
-                // Nobody looks, points or types.
+                // There is no user input.
                 .disable::<TerminalCtrlCHandlerPlugin>()
                 .disable::<AccessibilityPlugin>()
                 .disable::<PickingPlugin>()
@@ -273,7 +273,7 @@ impl GpuRenderer {
         Ok(Self { app, target, batched: None, staging: None, output, width, height })
     }
 
-    /// The world of the app, for tests and for registering more.
+    /// The app, for tests and for registering more.
     pub fn app(&mut self) -> &mut App {
         &mut self.app
     }
@@ -283,8 +283,8 @@ impl GpuRenderer {
         self.app.world_mut().resource_mut::<CurrentScene>().set_if_neq(CurrentScene(scene));
     }
 
-    /// Takes so many samples of lights with extent in the pictures of scenes that are set from now on, at least 1. Each frame
-    /// takes them all, so many of them need a fast GPU.
+    /// Sets the number of samples of lights with extent, at least 1, for the pictures of scenes set from now
+    /// on. Each frame takes all of them, so large numbers need a fast GPU.
     pub fn set_light_samples(&mut self, count: u32) {
         self.app.world_mut().resource_mut::<Convergence>().target = count.max(1);
     }
@@ -311,7 +311,7 @@ impl GpuRenderer {
         }
     }
 
-    /// From now on frames draw only what changed, as those of the window do.
+    /// Makes frames draw only what changed, as in the window.
     pub fn draw_on_demand(&mut self) {
         let view =
             View { size: UVec2::new(self.width, self.height), format: self.output.format(), inset: None };
@@ -322,39 +322,39 @@ impl GpuRenderer {
         }
     }
 
-    /// Draws one frame. After a picture in [batches](Self::settle) it stays as it is until the next
-    /// has settled.
+    /// Draws one frame. A picture drawn in [batches](Self::settle) stays unchanged until the next has
+    /// settled.
     pub fn step(&mut self) {
         self.app.update();
     }
 
-    /// Waits until the GPU has drawn everything that was asked of it; for timing.
+    /// Waits until the GPU has finished all submitted work; for timing.
     pub fn wait(&mut self) {
         if let Some(render_app) = self.app.get_sub_app(RenderApp) {
-            // A lost device shows when the picture is read.
+            // A lost device is detected when the picture is read.
             let _ = render_app.world().resource::<RenderDevice>().poll(PollType::wait_indefinitely());
         }
     }
 
-    /// The problem that keeps the picture from following the shader files, if there is one.
+    /// The problem that keeps the picture from following the shader files, if any.
     #[must_use]
     pub fn shader_problem(&self) -> Option<ShaderProblem> {
         self.app.world().get_resource::<LiveShaders>()?.refused().cloned()
     }
 
-    /// The bytes of the picture as last drawn, rows without padding.
+    /// The bytes of the last picture, rows without padding.
     ///
     /// # Errors
-    /// [`GpuError::Copy`] when the picture does not exist yet or the device was lost.
+    /// Returns [`GpuError::Copy`] if the picture does not exist yet, or the device was lost.
     pub fn read(&mut self) -> Result<Vec<u8>, GpuError> {
         let target = self.target.clone();
         self.read_view(&target)
     }
 
-    /// As [`read`](Self::read), from the texture of another view of the same size and format.
+    /// Like [`read`](Self::read), from the texture of another view of the same size and format.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn read_view(&mut self, texture: &Handle<Image>) -> Result<Vec<u8>, GpuError> {
         let missing = || GpuError::Copy("nothing has been drawn yet".to_owned());
         let render_app = self.app.get_sub_app(RenderApp).ok_or_else(missing)?;
@@ -393,10 +393,10 @@ impl GpuRenderer {
         Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
     }
 
-    /// The picture as last drawn, 8-bit RGB, with the lines and dots of its channel.
+    /// The last picture, 8-bit RGB, with the lines and dots of its channel.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn read_rgb8(&mut self) -> Result<Vec<u8>, GpuError> {
         let mut rgb8: Vec<u8> = self.read()?.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
         let world = self.app.world_mut();
@@ -411,16 +411,16 @@ impl GpuRenderer {
         Ok(rgb8)
     }
 
-    /// The picture as last drawn, linear RGB; for [`Output::Linear`].
+    /// The last picture, linear RGB; for [`Output::Linear`].
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn read_linear(&mut self) -> Result<Vec<Vec3>, GpuError> {
         Ok(self.read()?.chunks_exact(16).map(vector).collect())
     }
 }
 
-/// The bytes of a buffer to which everything submitted has been copied, if that is done in time.
+/// The bytes of a buffer to which all submitted work has been copied, if this is done in time.
 pub(super) fn read_back(
     device: &RenderDevice,
     staging: &Buffer,

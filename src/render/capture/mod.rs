@@ -1,5 +1,5 @@
-//! Rendering without a window: [`gpu`] draws the pictures of `lcm render`, [`evaluate`] computes values, [`trial`] draws
-//! small pictures with a shader that is tried, [`png`] writes files.
+//! Rendering without a window: [`gpu`] draws the pictures of `lcm render`, [`evaluate`] computes values,
+//! [`trial`] draws small pictures to try shaders, [`png`] writes files.
 
 pub mod evaluate;
 pub mod gpu;

@@ -1,4 +1,4 @@
-//! PNG files: pictures that say what they show.
+//! PNG files: pictures with metadata.
 
 use std::{
     io::{self, BufWriter, Write},
@@ -15,7 +15,7 @@ use crate::{
     scene::{Scene, formats::SCENE_KEYWORD, save::to_json},
 };
 
-/// What a picture says of itself: texts that picture viewers show, and the scene, which the program opens again.
+/// The metadata of a picture: texts for picture viewers, and the scene, which the program can open again.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct About {
     texts: Vec<(&'static str, String)>,
@@ -30,7 +30,7 @@ impl About {
         Self::default().with("Software", program)
     }
 
-    /// The same, and the scene that the picture shows.
+    /// The program, and the scene shown in the picture.
     #[must_use]
     pub fn scene(scene: &Scene, registry: &Registry) -> Self {
         let shown = Self::program()
@@ -40,28 +40,28 @@ impl About {
         Self { scene: Some(to_json(scene, None, registry)), ..shown }
     }
 
-    /// The same with a text. Keywords such as `Title` and `Description` are those of the PNG specification.
+    /// Adds a text. Keywords such as `Title` and `Description` are those of the PNG specification.
     #[must_use]
     pub fn with(mut self, keyword: &'static str, text: impl Into<String>) -> Self {
         self.texts.push((keyword, text.into()));
         self
     }
 
-    /// The same without the scene, for pictures that shall not give it away.
+    /// Removes the scene, for pictures that must not reveal it.
     #[must_use]
     pub fn without_scene(self) -> Self {
         Self { scene: None, ..self }
     }
 }
 
-/// Writes an sRGB picture (red, green, blue, row by row from the top) with what it says of itself.
+/// Writes an sRGB picture (red, green, blue, row by row from the top) with its metadata.
 ///
-/// Missing folders are created, and go again if the picture cannot be written. A file appears complete or not at all;
-/// standard output, devices and pipes are written straight, as [`Output`] says.
+/// Missing folders are created, and removed again if the picture cannot be written. A file appears complete
+/// or not at all; standard output, devices and pipes are written to directly, see [`Output`].
 ///
 /// # Errors
-/// If `rgb8` is not `width · height · 3` bytes, a keyword is empty or longer than 79 characters, or
-/// the file cannot be written.
+/// Returns an error if `rgb8` is not `width · height · 3` bytes, if a keyword is empty or longer than 79
+/// characters, or if the file cannot be written.
 pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
     files::in_folder(files::folder_of(path), || {
         let mut output = Output::open(path)?;
@@ -73,7 +73,7 @@ pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -
 /// The picture as the bytes of a PNG file.
 ///
 /// # Errors
-/// As [`write`](fn@write), but for the file system.
+/// Returns the errors of [`write`](fn@write), except those of the file system.
 pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
     let mut encoder = Encoder::new(&mut to, width, height);
     encoder.set_color(ColorType::Rgb);
@@ -82,7 +82,7 @@ pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &
     encoder.set_compression(Compression::Fast);
     for (keyword, text) in &about.texts {
         let (keyword, text) = ((*keyword).to_owned(), text.clone());
-        // Latin-1 fits the plain chunk that every reader knows; names like "Blinn–Phong" do not.
+        // Latin-1 text fits into the plain chunk that every reader supports; names like "Blinn–Phong" do not.
         if text.chars().all(|c| u32::from(c) < 256) {
             encoder.add_text_chunk(keyword, text).map_err(plain)?;
         } else {
@@ -100,7 +100,7 @@ pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &
     to.flush()
 }
 
-/// Keeps the kind of errors of the system.
+/// Keeps the kind of operating system errors.
 fn plain(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,
@@ -149,7 +149,7 @@ mod tests {
         write(&path, 16, 8, &gradient(), &about.without_scene()).expect("can be written");
         let said = load::file(&path, &registry, Defaults::Refuse).expect_err("has no scene").to_string();
         assert!(said.contains("there is no scene in this picture, only texts called \"Software\""), "{said}");
-        // Nothing is left beside it.
+        // No other files are left.
         assert_eq!(fs::read_dir(path.parent().expect("has one")).expect("readable").count(), 1);
     }
 

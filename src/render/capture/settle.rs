@@ -1,4 +1,5 @@
-//! Pictures that are complete: frames until nothing is missing, and batches where not all shapes find room at once.
+//! Complete pictures: draws frames until nothing is missing, in batches if the shapes do not all fit into
+//! memory at once.
 
 use std::time::{Duration, Instant};
 
@@ -27,16 +28,16 @@ use crate::render::{
     trial::Bench,
 };
 
-/// A frame that takes longer is drawn once, if it can be.
+/// Duration above which a frame is drawn only once, if possible.
 const SLOW: Duration = Duration::from_millis(150);
 
 impl GpuRenderer {
-    /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: where they take
-    /// more than [`BATCH`](crate::render::meshes::BATCH), one batch after the other.
+    /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: if
+    /// they take more than [`BATCH`](crate::render::meshes::BATCH), one batch after the other.
     ///
     /// # Errors
-    /// [`GpuError::TimedOut`] when that does not happen, e.g. because a shader cannot be compiled;
-    /// [`GpuError::Memory`] when one shape alone takes more than there is.
+    /// Returns [`GpuError::TimedOut`] if this does not happen, e.g. because a shader cannot be compiled;
+    /// [`GpuError::Memory`] if a single shape does not fit into memory.
     pub fn settle(&mut self) -> Result<(), GpuError> {
         if let Some((background, graph)) = self.batched.take() {
             self.edit_camera(|camera| {
@@ -49,8 +50,8 @@ impl GpuRenderer {
         if self.refused().is_some() { self.draw_batches() } else { Ok(()) }
     }
 
-    /// Draws the shapes batch by batch: each over the picture and the depths of those before, from meshes that take
-    /// the room of theirs. From then on frames leave the picture as it is.
+    /// Draws the shapes batch by batch: each over the picture and the depths of those before, with meshes
+    /// that replace theirs in memory. Later frames leave the picture unchanged.
     fn draw_batches(&mut self) -> Result<(), GpuError> {
         let mut before = None;
         let mut straight = false;
@@ -65,7 +66,7 @@ impl GpuRenderer {
             }
         });
         self.batched.clone_from(&before);
-        // The first batch has been drawn, but light only straight.
+        // The first batch has been drawn, but only as light.
         let mut drawn = straight;
         loop {
             if !std::mem::take(&mut drawn) {
@@ -84,7 +85,7 @@ impl GpuRenderer {
             self.clear_meshes();
             self.app.world_mut().resource_mut::<ShapeMeshes>().make_room();
         }
-        // The display's passes come once, at the end: they would take what they made for light.
+        // The display's passes run once, at the end: they would mistake their own output for light.
         if let Some((_, graph)) = before.filter(|_| !straight) {
             self.edit_camera(|camera| _ = camera.insert(graph));
             self.step();
@@ -96,7 +97,7 @@ impl GpuRenderer {
 
     fn clear_meshes(&mut self) {
         ShapeMeshes::clear(self.app.world_mut());
-        // The render world lets go of them a frame later.
+        // The render world releases them a frame later.
         self.step();
         self.step();
         self.wait();
@@ -106,7 +107,8 @@ impl GpuRenderer {
     fn draw_frames(&mut self) -> Result<(), GpuError> {
         let start = Instant::now();
         let mut ready = 0;
-        // The first frame is drawn before the target is, hence two; but a slow one for which all was there is not repeated.
+        // The first frame is drawn before the target, hence two; but a slow one for which everything was
+        // ready is not repeated.
         while ready < 2 {
             let (before, begun) = (self.prepared(), Instant::now());
             self.step();
@@ -118,7 +120,7 @@ impl GpuRenderer {
                 }
             }
             if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
-                // Another process has the processors for what it tries.
+                // Another process is using the processors for trials.
                 std::thread::sleep(Duration::from_millis(2));
             }
             if start.elapsed() > PATIENCE {
@@ -128,7 +130,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    /// How many meshes, materials and images are on the GPU; none before the target is.
+    /// The numbers of meshes, materials and images on the GPU; `None` before the target is there.
     fn prepared(&self) -> Option<[usize; 3]> {
         let world = self.app.get_sub_app(RenderApp)?.world();
         let images = world.resource::<RenderAssets<GpuImage>>();
@@ -155,13 +157,13 @@ impl GpuRenderer {
             }
         }
         let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
-        // Bevy goes on listing a pipeline for one frame after it was made.
+        // Bevy still lists a pipeline for one frame after creating it.
         let made =
             |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
         Ok(trying || !cache.waiting_pipelines().all(made))
     }
 
-    /// The reason why shapes are missing in the picture, if any are.
+    /// The reason why shapes are missing in the picture, if any.
     fn refused(&self) -> Option<String> {
         self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem)
     }
@@ -175,7 +177,7 @@ impl GpuRenderer {
     }
 }
 
-/// Gives a camera a background, or none: then it draws over the picture that is there.
+/// Sets the background of a camera; without one it draws over the existing picture.
 fn set_background(camera: &mut EntityWorldMut, background: ClearColorConfig) {
     if let Some(mut lens) = camera.get_mut::<Camera3d>() {
         lens.depth_load_op = match background {

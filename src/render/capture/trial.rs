@@ -1,5 +1,5 @@
-//! The process that tries shaders for another one ([`crate::render::trial::process`]): each is made into a pipeline,
-//! and a small picture is drawn with it.
+//! The process that tries shaders for another one ([`crate::render::trial::process`]): each is compiled into
+//! a pipeline, and a small picture is drawn with it.
 
 use std::{
     io::{self, BufRead, Write},
@@ -44,20 +44,20 @@ use crate::{
     shader::{check::ShaderProblem, compose::Composed, slim::slim, whole::judged},
 };
 
-/// The side of the small picture, pixels.
+/// Width and height of the small picture, in pixels.
 const SIDE: u32 = 32;
-/// Bytes of the table of parameters: more than any row has.
+/// Size of the parameter table, in bytes: larger than any row.
 const ROW: usize = 1 << 16;
-/// The longest that drawing it again may take: a picture of the window has a thousand times its pixels, and the
+/// Maximum time for drawing it again: a picture in the window has a thousand times its pixels, and the
 /// shipped models take a hundredth of this.
 const SLOWEST: Duration = Duration::from_millis(150);
-/// The most further pictures that are drawn to find one that is fast enough.
+/// Maximum number of further pictures drawn to find one that is fast enough.
 const PATIENCE: usize = 5;
 
-/// Answers requests until there are no more, or until the renderer failed: then a new process is better.
+/// Answers requests until there are no more, or until the renderer fails: then a new process is better.
 ///
 /// # Errors
-/// [`GpuError`] when nothing can be drawn at all.
+/// Returns a [`GpuError`] if nothing can be drawn at all.
 pub fn serve(input: impl BufRead, mut output: impl Write) -> Result<(), GpuError> {
     let mut stage = Stage::new()?;
     let deadline = Deadline::watched(2 * Budget::default().time);
@@ -80,7 +80,7 @@ pub fn serve(input: impl BufRead, mut output: impl Write) -> Result<(), GpuError
     Ok(())
 }
 
-/// Ends this process should a trial not end, for who asked may be gone.
+/// Ends this process if a trial does not end, since the requesting process may be gone.
 #[derive(Clone)]
 struct Deadline(Arc<Mutex<Option<Instant>>>);
 
@@ -113,14 +113,14 @@ impl Deadline {
     }
 }
 
-/// The small picture: one sphere for each kind of mesh, one of which is shown.
+/// The small picture: one sphere for each kind of mesh, one of which is visible.
 struct Stage {
     renderer: GpuRenderer,
-    /// For meshes that share vertices, and for those that know their polygons.
+    /// For meshes with shared vertices, and for those with data of their polygons.
     actors: [Actor; 2],
-    /// The one that is shown.
+    /// Index of the visible one.
     shown: usize,
-    /// The complaint of the renderer about the last picture.
+    /// The renderer's error about the last picture.
     failure: Failure,
 }
 
@@ -130,7 +130,7 @@ struct Actor {
     parameters: Handle<ShaderBuffer>,
 }
 
-/// The complaint of the renderer, if there is one.
+/// The renderer's error, if any.
 #[derive(Clone, Default, Resource)]
 struct Failure(Arc<Mutex<Option<String>>>);
 
@@ -166,7 +166,7 @@ impl Stage {
         let known = match judged(&composed, request.faces) {
             Some(Ok(())) => true,
             Some(Err(problem)) => {
-                // The composer names places in more cases.
+                // The composer reports positions in more cases.
                 return (Answer::Bad(self.explained(&composed, request.faces).unwrap_or(problem)), true);
             }
             None => false,
@@ -192,7 +192,7 @@ impl Stage {
         }
     }
 
-    /// The error of a shader, found by making a pipeline with nothing drawn.
+    /// The error of a shader, found by creating a pipeline without drawing.
     fn explained(&mut self, composed: &Composed, faces: bool) -> Option<Box<ShaderProblem>> {
         let world = self.renderer.app().world_mut();
         let device = world.get_resource::<RenderDevice>()?.clone();
@@ -207,7 +207,7 @@ impl Stage {
         }
     }
 
-    /// Draws a picture; the time that it takes.
+    /// Draws a picture and returns its duration.
     fn picture(&mut self) -> Duration {
         let start = Instant::now();
         self.renderer.step();
@@ -215,7 +215,7 @@ impl Stage {
         start.elapsed()
     }
 
-    /// Draws with a shader; the time of a picture once everything is compiled.
+    /// Draws with a shader; returns the time for a picture once everything is compiled.
     fn draw(&mut self, request: &Request) -> Result<Duration, String> {
         self.failure.take();
         let chosen = usize::from(request.faces);
@@ -225,8 +225,9 @@ impl Stage {
             world.entity_mut(actor.entity).insert(shown);
         }
         self.actors[chosen].dress(world, request);
-        // The driver compiles for the first picture; if that takes long, the next ones show how much of it is drawing.
-        // A busy machine makes any of them slow, but not all. An actor that just came on may still miss its entrance.
+        // The driver compiles for the first picture; if that takes long, the next ones show how much of it is
+        // drawing. A busy machine makes any of them slow, but not all. An actor that has just become visible
+        // may still be missing.
         let mut time = self.picture();
         if chosen != std::mem::replace(&mut self.shown, chosen) {
             time = self.picture();
@@ -247,8 +248,8 @@ impl Stage {
     }
 }
 
-/// Lets all systems run one after the other: in a picture this small, each takes less time than handing it to another
-/// thread.
+/// Runs all systems one after the other: in a picture this small, each takes less time than passing it to
+/// another thread.
 fn on_one_thread(app: &mut App) {
     let change = |world: &mut World| {
         if let Some(mut schedules) = world.get_resource_mut::<Schedules>() {
@@ -263,8 +264,8 @@ fn on_one_thread(app: &mut App) {
     }
 }
 
-/// Every light type without extent shines, so that all of the light loop is drawn with. Light with extent asks the same functions
-/// of a model, hundreds of times.
+/// Every light type without extent is active, so that the whole light loop is used. Light with extent calls
+/// the same functions of a model, hundreds of times.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     let registry = Registry::builtin();
@@ -317,11 +318,11 @@ impl Actor {
         Self { entity, shader, parameters }
     }
 
-    /// Gives it the shader and the parameters of a request.
+    /// Sets the shader and the parameters of a request.
     fn dress(&self, world: &mut World, request: &Request) {
         let mut shader = Shader::from_wgsl(slim(&request.text), format!("{COMPOSED}trial.wgsl"));
         shader.validate_shader = ValidateShader::Enabled;
-        // The asset is there as long as its handle.
+        // The asset exists as long as its handle.
         let _ = world.resource_mut::<Assets<Shader>>().insert(self.shader.id(), shader);
         let mut row = request.row.clone();
         row.resize(ROW, 0);

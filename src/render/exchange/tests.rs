@@ -32,7 +32,7 @@ use crate::{
 #[derive(Resource)]
 struct Desk(Document);
 
-/// What was refused since the test last looked.
+/// Refusals since the test last looked.
 #[derive(Default, Resource)]
 struct Said(Vec<String>);
 
@@ -105,12 +105,12 @@ impl Lab {
         self.0.get_mut::<C>(entity).expect("it has the component")
     }
 
-    /// Messages since the last look.
+    /// Messages since the last call.
     fn said(&mut self) -> Vec<String> {
         std::mem::take(&mut self.0.resource_mut::<Said>().0)
     }
 
-    /// Frames after a change: what is refused goes back, and a new name comes, in the next one.
+    /// Runs frames after a change: refused changes are undone, and new names appear, in the next one.
     fn settle(&mut self) {
         self.frame();
         self.frame();
@@ -177,7 +177,7 @@ impl Lab {
     }
 }
 
-/// Something that the user changes in the document; in words.
+/// Changes something in the document as a user would, and describes it.
 fn edit(
     document: &mut Document,
     registry: &Registry,
@@ -232,10 +232,10 @@ fn edit(
     }
 }
 
-/// Something that a system changes; in words.
+/// Changes something as a system would, and describes it.
 fn act(world: &mut World, below: &mut impl FnMut(usize) -> usize) -> &'static str {
     let amount = 0.5 + below(64) as f32 / 16.0;
-    // Now and then more than a rule allows.
+    // Sometimes more than a rule allows.
     let far = amount * 4.0 - 3.0;
     let entities = world.resource::<SceneEntities>();
     let one = |list: &[Entity], below: &mut dyn FnMut(usize) -> usize| list[below(list.len())];
@@ -381,7 +381,7 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
                 });
             }
             lab.frame();
-            // Entities that cannot become parts, which messages say.
+            // Entities that cannot become parts, as the messages say.
             let strangers = lab.0.query_filtered::<Entity, (With<SceneObject>, Without<PartId>)>();
             let known = lab.0.resource::<SceneEntities>().objects.clone();
             let strangers: Vec<_> = { strangers }.iter(&lab.0).filter(|e| !known.contains(e)).collect();
@@ -392,7 +392,7 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
             lab.frame();
             lab.frame();
             lab.check(&format!("seed {seed}: {said:?}"));
-            // A part keeps its entity as long as the entity lives, where the document knows what became of it.
+            // A part keeps its entity for the lifetime of the entity, where the document knows the changes.
             if said[first..].contains(&"the scene that is shown") {
                 continue;
             }
@@ -417,7 +417,7 @@ fn a_spot_that_is_spawned_is_a_light_of_the_document_and_goes_when_it_is_despawn
     let registry = lab.0.resource::<Registry>().clone();
     let entry = registry.light("spot").expect("built in");
     assert_eq!(light.intensity, entry.declaration.default_intensity);
-    // Turning its transform turns its light.
+    // Rotating its transform rotates its light.
     lab.get::<Transform>(entity).rotation = Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2);
     lab.settle();
     let direction = lab.document().lights[1].direction.expect("a spot has one");
@@ -431,7 +431,7 @@ fn a_spot_that_is_spawned_is_a_light_of_the_document_and_goes_when_it_is_despawn
     lab.0.despawn(entity);
     lab.settle();
     assert_eq!(lab.document().lights.len(), 1);
-    // What came and went again is no step.
+    // A part that was added and removed again is not a step.
     let document = lab.document();
     assert_eq!((document.steps().len(), document.differs()), (0, false));
     assert_eq!(lab.said(), [""; 0]);
@@ -454,13 +454,13 @@ fn the_component_of_a_type_has_the_parameters_of_its_part() {
     let (spot, torus) = parameters(&mut lab);
     assert_eq!(spot.get("cone_angle"), Some(&Value::Number(12.0)));
     assert_eq!(torus.get("tube_radius"), Some(&Value::Number(0.2)));
-    // And the other way.
+    // And in the other direction.
     let registry = lab.0.resource::<Registry>().clone();
     let edit = Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.1)));
     lab.document().edit(edit, Selection::Room, &registry).expect("legal");
     lab.settle();
     assert_eq!(lab.get::<Torus>(object).tube_radius, 0.1);
-    // What breaks a rule goes back.
+    // Changes that break a rule are undone.
     lab.get::<Spot>(light).cone_angle = 500.0;
     lab.get::<Torus>(object).tube_radius = f32::NAN;
     lab.settle();
@@ -514,7 +514,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
     let (first, second) = (lab.object(0), lab.object(1));
     for round in 0..3 {
         lab.get::<Transform>(first).translation.x = 400.0 + round as f32;
-        // One that is legal is not refused with it.
+        // A legal change is not refused with it.
         lab.get::<Transform>(second).translation.x = 3.0 + 0.5 * round as f32;
         lab.frame();
         assert_eq!(lab.get::<Transform>(first).translation, Vec3::ONE);
@@ -526,7 +526,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
         said[0].starts_with("A change of a component was refused: objects[0].position is [400, 1, 1], but"),
         "{said:?}"
     );
-    // Another mistake of the same part is another message.
+    // Another error in the same part is another message.
     lab.get::<Transform>(first).scale = Vec3::new(1.0, 3.0, 1.0);
     lab.settle();
     let said = lab.said();
@@ -538,7 +538,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
         ]
     );
     assert_eq!(lab.get::<Transform>(first).scale, Vec3::splat(0.5));
-    // After a legal change the message comes again.
+    // After a legal change the message is reported again.
     lab.get::<Transform>(first).translation.x = 2.0;
     lab.settle();
     lab.get::<Transform>(first).translation.x = -1.0;
@@ -588,7 +588,7 @@ fn what_cannot_become_a_part_is_said_with_the_reason() {
     }
     assert_eq!(said.len(), expected.len(), "{said:?}");
     lab.settle();
-    // What is mended is added.
+    // A corrected entity is added.
     let entity = lab.0.spawn(Sphere {}).id();
     lab.frame();
     lab.get::<Transform>(entity).translation = Vec3::new(1.0, 2.0, 3.0);
@@ -618,7 +618,7 @@ fn the_last_object_the_last_light_and_the_observer_come_back() {
     lab.settle();
     assert_eq!((lab.document().objects.len(), lab.document().lights.len()), (1, 1));
     assert_eq!(lab.document().objects[0].position, Vec3::ONE);
-    // One may take the place of the last.
+    // Another one may replace the last.
     let light = lab.light(0);
     lab.0.despawn(light);
     lab.0.spawn((Spot::default(), Transform::from_xyz(5.0, 9.0, 5.0)));
@@ -638,7 +638,7 @@ fn what_is_animated_is_shown_and_not_stored() {
     }
     let stored = lab.document().scene().clone();
     for round in 0..3 {
-        // Beyond every rule.
+        // Far outside all rules.
         let place = Vec3::new(50.0 + round as f32, 1.0, 1.0);
         for entity in [object, light, eye] {
             lab.get::<Transform>(entity).translation = place;
@@ -660,7 +660,7 @@ fn what_is_animated_is_shown_and_not_stored() {
         );
         assert_eq!(look.shape.0.get("tube_radius"), Some(&Value::Number(0.1)));
     }
-    // An edit writes what it changed, and leaves the rest to the animation.
+    // An edit writes only its changes, and leaves the rest to the animation.
     let edit = Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.6)));
     lab.document().edit(edit, Selection::Room, &registry).expect("legal");
     lab.frame();
@@ -671,7 +671,7 @@ fn what_is_animated_is_shown_and_not_stored() {
     lab.frame();
     assert_eq!(lab.get::<Transform>(object).translation, Vec3::splat(2.0));
     assert_eq!(lab.get::<Transform>(object).scale, Vec3::new(1.0, 2.0, 3.0));
-    // Without the marker everything is what the document has.
+    // Without the marker everything is as in the document.
     for entity in [object, light, eye] {
         lab.0.entity_mut(entity).remove::<Animated>();
     }

@@ -1,4 +1,4 @@
-//! Custom models that arrive and go.
+//! Arrival and removal of custom models.
 
 use bevy::ecs::prelude::*;
 
@@ -7,7 +7,7 @@ use super::{
 };
 use crate::library::model_of;
 
-/// The number of custom models that are tried at the same time.
+/// Number of custom models tried at the same time.
 const ARRIVING: usize = 16;
 
 impl LiveShaders {
@@ -22,8 +22,8 @@ impl LiveShaders {
         }
     }
 
-    /// Tries the custom models that were read, and makes those known that can be drawn with: parameters, text and
-    /// shader are exchanged together or not at all.
+    /// Tries the custom models that were read, and registers the valid ones: parameters, text and shader are
+    /// exchanged together or not at all.
     pub(super) fn adopt(&mut self, world: &mut World, visible: &Visible) {
         for model in self.library.next_arriving(ARRIVING) {
             let registry = world.resource::<Registry>().clone();
@@ -39,7 +39,7 @@ impl LiveShaders {
             let mut lenient = self.library.lenient(&registry);
             lenient.edit(source, model.text.clone());
             let mut verdict = Verdict::Good;
-            // All are begun, so that another process tries them at the same time.
+            // All are started, so that another process tries them at the same time.
             for shading in shadings {
                 let mut tried = Verdict::Good;
                 for sources in [&current, &lenient] {
@@ -66,7 +66,7 @@ impl LiveShaders {
         }
     }
 
-    /// Lets go of files that are gone and that nothing is made of.
+    /// Forgets missing files that nothing is made of.
     pub(super) fn forget_gone(&mut self, world: &mut World, visible: &Visible) {
         let registry = world.resource::<Registry>();
         let scene = world.get_resource::<CurrentScene>().map(|scene| &scene.0);

@@ -1,10 +1,10 @@
-//! The shaders in use: composed when first needed, exchanged when a file they are made of changes, and
-//! kept when the change cannot be drawn with.
+//! The shaders in use: composed when first needed, exchanged when one of their files changes, and kept when
+//! the change is invalid.
 //!
-//! Each reflection model in each shading model has one shader, and each of those goes its own way: what a change of a
-//! shared file breaks for one model does not disturb the others. A shader is exchanged only after it was tried
-//! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it. The
-//! files are the business of the [`Library`].
+//! Each reflection model in each shading model has a separate shader: a change of a shared file that breaks
+//! one model does not affect the others. A shader is exchanged only after it was tried
+//! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects are not affected.
+//! The files are managed by the [`Library`].
 //!
 //! Until a shader is ready, an object keeps its old one ([`AwaitsShader`](super::swap::AwaitsShader)); a broken custom
 //! model is drawn as grey Lambert (see [`custom`](crate::custom)).
@@ -53,7 +53,7 @@ use crate::{
 
 pub use ready::SPARE;
 
-/// Exchanges shaders while they are on the picture.
+/// Exchanges shaders while they are in use.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LiveShadersPlugin;
 
@@ -80,7 +80,7 @@ fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Regis
     compose(sources, model, shading, &registry.lights_in(lights))
 }
 
-/// The light types that are shown; where nothing is, all that have no extent, which are compiled soon.
+/// The light types in the scene; without a scene, all that have no extent, which compile quickly.
 fn lights_of(world: &World, registry: &Registry) -> LightSet {
     let shown = world.get_resource::<Shown>();
     let without = || registry.lights().iter().filter(|light| !light.declaration.extent).collect();
@@ -90,19 +90,20 @@ fn lights_of(world: &World, registry: &Registry) -> LightSet {
 /// One shader.
 struct Live {
     handle: Handle<Shader>,
-    /// The declaration that it was made for, see [`ModelEntry::declared`].
+    /// The declaration for which it was made, see [`ModelEntry::declared`].
     declared: u64,
-    /// The source that is drawn with.
+    /// The source in use.
     shown: Composed,
-    /// The paths of the files that stand-ins replace in it, see [`stand_in`](crate::library::stand_in).
+    /// The paths of the files that fallbacks replace in it, see [`stand_in`](crate::library::stand_in).
     replaced: Vec<&'static str>,
-    /// The source that was drawn with before, and until when: the renderer may still refuse the one that came after.
+    /// The previous source, and until when it is kept: the renderer may still refuse the one that replaced
+    /// it.
     before: Option<(Composed, Instant)>,
-    /// The source that was tried last and refused.
+    /// The source that was last tried and refused.
     refused: Option<Refused>,
-    /// True if a file that it is made of changed.
+    /// True if one of its files changed.
     due: bool,
-    /// The look at which it was last on the picture, see [`LiveShaders::rest`].
+    /// Number of the check in which it was last in the picture, see [`LiveShaders::rest`].
     seen: u64,
 }
 
@@ -116,27 +117,27 @@ struct Refused {
 pub struct LiveShaders {
     library: Library,
     shaders: HashMap<Key, Live>,
-    /// The assets of shaders that are made anew when something is drawn with them again.
+    /// Assets of shaders that are rebuilt when they are needed again.
     resting: HashMap<Key, Handle<Shader>>,
-    /// The number of times that shaders were looked through for some that may rest.
+    /// Number of checks for shaders that can rest.
     looks: u64,
     /// True if an object waits for a shader that is tried for the first time.
     awaited: bool,
-    /// The composed texts that were tried with success in this frame.
+    /// Composed texts that were tried successfully in this frame.
     approved: HashSet<String>,
-    /// Changed files that no shader is made of: they are tried on the side.
+    /// Changed files that no shader uses: they are tried separately.
     unused: BTreeSet<String>,
-    /// The problems of those.
+    /// The problems of those files.
     unused_problems: BTreeMap<String, Problem<Box<ShaderProblem>>>,
-    /// The last change that came through.
+    /// The last change that took effect.
     last: Option<Reloaded>,
     status: ShaderStatus,
-    /// True if the status has to be made anew.
+    /// True if the status must be updated.
     stale_status: bool,
 }
 
 impl LiveShaders {
-    /// Tries all shaders again: the registry has other texts and folders.
+    /// Tries all shaders again, since texts and folders of the registry have changed.
     pub fn start(&mut self) {
         self.shaders.values_mut().for_each(|live| live.due = true);
         self.stale_status = true;
@@ -148,13 +149,13 @@ impl LiveShaders {
         &self.status
     }
 
-    /// True if something is still to be tried or reported, so that frames must go on.
+    /// True if there is more to try or report, so that frames must continue.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.stale_status || self.library.has_news() || self.is_trying()
     }
 
-    /// True if something is still to be tried, so that the next picture may be another one.
+    /// True if there is more to try, so that the next picture may differ.
     #[must_use]
     pub fn is_trying(&self) -> bool {
         self.awaited
@@ -163,26 +164,26 @@ impl LiveShaders {
             || self.shaders.values().any(|live| live.due)
     }
 
-    /// The first problem that keeps a shader from being what its files say.
+    /// The first problem that keeps a shader from matching its files.
     #[must_use]
     pub fn refused(&self) -> Option<&ShaderProblem> {
         self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem.what))
     }
 
-    /// The texts that lights themselves are drawn with: those that were drawn with, since light types light objects too.
+    /// The texts with which lights themselves are drawn: the valid ones, since light types light objects too.
     pub(super) fn sources_of_seen(&self, registry: &Registry) -> Sources {
         let mut sources = self.library.good().clone();
         sources.copy_from(registry.sources(), SEEN.path);
         sources
     }
 
-    /// The number of shaders that are ready to be drawn with.
+    /// The number of shaders ready for use.
     #[must_use]
     pub fn ready(&self) -> usize {
         self.shaders.len()
     }
 
-    /// True if the picture is what the files say, all of it.
+    /// True if the whole picture matches the files.
     #[must_use]
     pub fn is_up_to_date(&self) -> bool {
         !self.is_trying()
@@ -191,19 +192,19 @@ impl LiveShaders {
             && self.unused_problems.is_empty()
     }
 
-    /// Has custom models read on a thread of its own, which calls `wake`.
+    /// Moves the reading of custom models to a separate thread, which calls `wake`.
     pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
         self.library.read_apart(wake);
     }
 
-    /// True while a thread reads custom models; it wakes who waits.
+    /// True while a thread reads custom models, and will call `wake`.
     #[must_use]
     pub fn is_reading(&self) -> bool {
         self.library.is_reading()
     }
 
-    /// Reads a file that may have changed, see [`Library::look_at`]. Custom models go into the registry once they were
-    /// tried.
+    /// Reads a file that may have changed, see [`Library::look_at`]. Custom models are registered once they
+    /// were tried.
     pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
         let Self { library, shaders, .. } = self;
         let drawn = |id: &str| shaders.keys().any(|key| key.0 == id);
@@ -215,7 +216,7 @@ impl LiveShaders {
         }
     }
 
-    /// Has the shaders tried that a file is part of. True if there is one.
+    /// Schedules the shaders that contain a file to be tried. True if there are any.
     fn mark_due(&mut self, source: &str) -> bool {
         let mut used = false;
         for live in self.shaders.values_mut() {
@@ -229,7 +230,7 @@ impl LiveShaders {
     }
 }
 
-/// The models and shading models on the picture, with the light types of their shaders.
+/// The models and shading models in the picture, with the light types of their shaders.
 struct Visible(Vec<(String, String, LightSet)>);
 
 impl Visible {
@@ -259,7 +260,7 @@ pub(super) fn exchange(world: &mut World) {
         world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
     }
     if !world.resource::<LiveShaders>().status.troubles.is_empty() {
-        // Objects with a faulty shader may have come into the picture or left it; they are swapped after this.
+        // Objects with a faulty shader may have entered or left the picture; they are swapped after this.
         let mut drawn = world.query_filtered::<(), Changed<Drawn>>();
         if other_scene || drawn.iter(world).next().is_some() {
             world.resource_mut::<LiveShaders>().stale_status = true;
@@ -285,7 +286,7 @@ pub(super) fn exchange(world: &mut World) {
         live.forget_gone(world, &visible);
         live.rest(world, &visible);
         live.library.take_news();
-        // Problems that are too young now are reported later.
+        // Problems that are too recent are reported later.
         live.stale_status = live.has_young_problems();
         live.report(&registry, &visible);
     });

@@ -1,4 +1,4 @@
-//! The shaders that are ready to be drawn with: composed when first needed, and let rest when they are not.
+//! The shaders ready for use: composed when first needed, and put to rest when unused.
 
 use std::collections::HashSet;
 
@@ -20,21 +20,21 @@ use crate::{
     },
 };
 
-/// The number of shaders that stay ready for a change back while nothing is drawn with them; each keeps some megabytes.
+/// Number of unused shaders that stay ready in case they are needed again; each takes several megabytes.
 pub const SPARE: usize = 32;
-/// The content of the assets of the others: the least that a pipeline can be made of.
+/// The content of the assets of resting shaders: the smallest valid pipeline.
 const RESTING: &str = "
 @vertex fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
 @fragment fn fragment() -> @location(0) vec4<f32> { return vec4(0.0); }
 ";
 
-/// The path by which Bevy knows the asset of a shader.
+/// The path by which Bevy identifies the asset of a shader.
 pub(super) fn path_of_asset(key: Key) -> String {
     format!("{COMPOSED}{}/{}/{:x}.wgsl", key.0, key.1, key.2.bits())
 }
 
 impl LiveShaders {
-    /// The shader of a model, a shading model and light types; none yet while another process tries it.
+    /// The shader of a model, a shading model and light types; `None` while another process tries it.
     pub(crate) fn get(
         &mut self,
         world: &mut World,
@@ -51,7 +51,7 @@ impl LiveShaders {
             return None;
         }
         let wanted = composed(registry.sources(), parts, registry);
-        // From here on these files are used.
+        // From here on these files are in use.
         for path in wanted.map.files() {
             self.unused.remove(path);
             self.unused_problems.remove(path);
@@ -87,7 +87,7 @@ impl LiveShaders {
         let mut assets = world.resource_mut::<Assets<Shader>>();
         let handle = match taken_over {
             Some(handle) => {
-                // The asset is there as long as its handle.
+                // The asset exists as long as its handle.
                 let _ = assets.insert(handle.id(), asset);
                 handle
             }
@@ -101,9 +101,9 @@ impl LiveShaders {
         Some(handle)
     }
 
-    /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of a
-    /// custom model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
-    /// asset for each declaration, each would keep megabytes.
+    /// The asset that a shader takes over: that of the same model with an earlier declaration, of the same
+    /// shader at rest, or of a removed custom model. Bevy never releases a pipeline, but rebuilds it when its
+    /// shader changes; with an asset for each declaration, each would keep megabytes.
     fn taken_over(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
         if let Some(live) = self.shaders.remove(&key) {
             return Some(live.handle);
@@ -118,8 +118,8 @@ impl LiveShaders {
         self.shaders.remove(&known).map(|live| live.handle).or_else(|| self.resting.remove(&known))
     }
 
-    /// Lets shaders rest that were not on the picture for longest, if there are many: their pipelines stay, since Bevy
-    /// keeps those, but are made of next to nothing.
+    /// Puts the shaders to rest that were out of the picture for longest, if there are many: their pipelines
+    /// stay, since Bevy keeps them, but with minimal content.
     pub(super) fn rest(&mut self, world: &mut World, visible: &Visible) {
         self.looks += 1;
         for (_, live) in self.shaders.iter_mut().filter(|(key, _)| visible.has(key)) {
@@ -129,7 +129,7 @@ impl LiveShaders {
         let mut idle: Vec<_> =
             self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
         idle.sort_unstable();
-        // Those of other light types rest at once, or each set of these would have its own spare ones.
+        // Those of other light types rest at once, or each set of light types would have separate spare ones.
         let lights: HashSet<_> = visible.0.iter().map(|(.., lights)| *lights).collect();
         let (spare, other): (Vec<_>, Vec<_>) =
             idle.into_iter().partition(|(_, key)| lights.is_empty() || lights.contains(&key.2));
@@ -137,15 +137,16 @@ impl LiveShaders {
         for (_, key) in other.into_iter().chain(spare.into_iter().take(many)) {
             let Some(live) = self.shaders.remove(&key) else { continue };
             let asset = Shader::from_wgsl(RESTING, path_of_asset(key));
-            // The asset is there as long as its handle.
+            // The asset exists as long as its handle.
             let _ = world.resource_mut::<Assets<Shader>>().insert(live.handle.id(), asset);
             self.resting.insert(key, live.handle);
         }
     }
 
-    /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
-    /// as they last came through, else what is compiled in. Of the last, stand-ins replace the files of other crates
-    /// that cannot be drawn with; their paths are returned with it. None yet while another process tries one of them.
+    /// The latest valid source: the file of the model with the last valid versions of the others; otherwise
+    /// the last valid version of all; otherwise the compiled-in texts. In the last case, fallbacks replace
+    /// invalid files of other crates, whose paths are returned too. `None` while another process tries one of
+    /// these.
     fn last_good(
         &mut self,
         world: &mut World,
@@ -174,7 +175,7 @@ impl LiveShaders {
         Some((composed(&sources, parts, registry), replaced))
     }
 
-    /// True if a source can be drawn with; none yet while another process tries it.
+    /// True if a source is valid; `None` while another process tries it.
     fn passes(&mut self, world: &mut World, composed: &Composed, parts: Parts) -> Option<bool> {
         match self.try_out(world, composed, parts) {
             Verdict::Good => Some(true),
@@ -190,7 +191,7 @@ impl LiveShaders {
     pub(super) fn asset(&self, composed: &Composed, key: Key, registry: &Registry) -> Shader {
         let mut shader = Shader::from_wgsl(slim(&composed.text), path_of_asset(key));
         if !self.library.is_built_in(composed, registry) {
-            // Users' shaders may read outside of arrays.
+            // Users' shaders may read beyond the bounds of arrays.
             shader.validate_shader = ValidateShader::Enabled;
         }
         shader

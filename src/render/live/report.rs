@@ -1,4 +1,4 @@
-//! The status of the shaders for people.
+//! The status of the shaders for display.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,12 @@ use crate::{
 };
 
 impl LiveShaders {
-    /// Makes the status anew.
+    /// Updates the status.
     pub(super) fn report(&mut self, registry: &Registry, visible: &Visible) {
         let mut troubles: Vec<Trouble> = Vec::new();
         let mut add = |problem: &ShaderProblem, stale: Option<String>| {
             let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
-                // What another crate compiled in may be on the disk of its author only.
+                // Sources compiled into another crate may exist only on its author's disk.
                 let there = |path: &PathBuf| !registry.is_foreign(&problem.file) || path.is_file();
                 let path = registry.folders().file_of(&problem.file).filter(there);
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
@@ -27,7 +27,7 @@ impl LiveShaders {
             }
         };
         let name = |key: &Key| match registry.model(key.0) {
-            // A file that was never right.
+            // A file that was never valid.
             Some(m)
                 if registry.custom_file(key.0).is_some()
                     && registry.sources().get(m.declaration.wgsl.path).is_none() =>
@@ -70,7 +70,7 @@ impl LiveShaders {
         }
     }
 
-    /// True if there are problems that are too young to be reported.
+    /// True if there are problems that are too recent to be reported.
     pub(super) fn has_young_problems(&self) -> bool {
         self.shaders.values().any(|live| live.refused.as_ref().is_some_and(|r| !r.problem.has_settled()))
             || self.library.unusable().any(|(_, problem)| !problem.has_settled())

@@ -1,4 +1,4 @@
-//! Trying shaders, and exchanging those that can be drawn with.
+//! Tries shaders, and exchanges the valid ones.
 
 use std::time::{Duration, Instant};
 
@@ -32,9 +32,10 @@ use crate::{
     shading::Stage,
 };
 
-/// The time that a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
+/// Time that a frame may spend trying shaders before it is drawn: with many in the picture, the window stays
+/// responsive.
 const SLICE: Duration = Duration::from_millis(200);
-/// The time after an exchange in which a failure of the renderer is blamed on it.
+/// Time after an exchange in which an error of the renderer is attributed to it.
 const PROBATION: Duration = Duration::from_secs(5);
 
 impl LiveShaders {
@@ -55,7 +56,7 @@ impl LiveShaders {
         verdict
     }
 
-    /// Names the author's file where a problem shows in another one.
+    /// Names the author's file if a problem appears in another one.
     pub(super) fn blamed(
         &self,
         problem: Box<ShaderProblem>,
@@ -67,11 +68,11 @@ impl LiveShaders {
         wgsl::blamed(problem, registry, model, shading, &registry.lights_in(lights))
     }
 
-    /// Tries what is due, for as long as a frame may take: first what is on the picture; then, one in a frame, what
-    /// is not.
+    /// Tries pending shaders for as long as a frame may take: first those in the picture; then, one per
+    /// frame, others.
     pub(super) fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
         let begin = Instant::now();
-        // Shaders of older declarations are made anew when something is drawn with them.
+        // Shaders of older declarations are rebuilt when they are needed again.
         for (key, live) in &mut self.shaders {
             if registry.model(key.0).is_some_and(|model| model.declared() != live.declared) {
                 (live.due, live.refused) = (false, None);
@@ -97,10 +98,10 @@ impl LiveShaders {
         }
     }
 
-    /// Exchanges a shader for what its files say now, if that can be drawn with.
+    /// Exchanges a shader for the present content of its files, if that is valid.
     fn refresh(&mut self, world: &mut World, registry: &Registry, key: Key) {
         let Some((model, shading)) = registry.model(key.0).zip(registry.shading_model(key.1)) else {
-            // Nothing is drawn with it any more.
+            // No object uses it any more.
             if let Some(live) = self.shaders.get_mut(&key) {
                 live.due = false;
             }
@@ -124,7 +125,7 @@ impl LiveShaders {
             Verdict::Good if shown_already => live.refused = None,
             Verdict::Good => {
                 let id = live.handle.id();
-                // The asset is there as long as its handle.
+                // The asset exists as long as its handle.
                 let _ = world.resource_mut::<Assets<Shader>>().insert(id, asset);
                 live.before = Some((std::mem::replace(&mut live.shown, wanted), Instant::now()));
                 live.replaced.clear();
@@ -145,8 +146,8 @@ impl LiveShaders {
         self.stale_status = true;
     }
 
-    /// Tries a file that nothing on the picture is made of: a model, a shading model or a light type, together with
-    /// others that are.
+    /// Tries a file that nothing in the picture uses: a model, a shading model or a light type, together with
+    /// others that are in use.
     fn try_unused(&mut self, world: &mut World, registry: &Registry, visible: &Visible, path: &str) {
         let shadings = registry.shading_models();
         let models = registry.models();
@@ -201,8 +202,8 @@ fn sample(model: &ModelEntry, shading: &ShadingEntry) -> Vec<u8> {
     row(model, shading, &Values::default(), Encoding::Srgb, false, true)
 }
 
-/// The renderer failed all the same: goes back to what was drawn with before. Where nothing was exchanged, the
-/// cause is another, and the program ends as Bevy has it.
+/// Restores the previous shaders if the renderer failed nevertheless. If nothing was exchanged, the cause is
+/// another, and the program ends in Bevy's way.
 pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> RenderErrorPolicy {
     let usual = RenderErrorHandler::default().0;
     if !matches!(error.ty, ErrorType::Validation | ErrorType::Internal) {

@@ -1,4 +1,4 @@
-//! The trial itself: a candidate is composed and made into a pipeline.
+//! The trial itself: composes a candidate and builds a pipeline from it.
 
 use std::{borrow::Cow, cell::Cell, panic, sync::Once};
 
@@ -27,7 +27,7 @@ use crate::{
     shader::{check::locate, compose::Composed, limits, pitfall},
 };
 
-/// Composes a candidate and makes a pipeline of it. The cache is filled when it is used first.
+/// Composes a candidate and builds a pipeline from it. The cache is filled on first use.
 pub(super) fn attempt(
     cache: &mut Option<ShaderCache<Module, ()>>,
     composed: &Composed,
@@ -63,11 +63,11 @@ pub(super) fn attempt(
 }
 
 thread_local! {
-    /// True if a panic of this thread is expected, and not reported.
+    /// True if a panic on this thread is expected, and not reported.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls a function that may panic; none if it did, and nothing is printed.
+/// Calls a function that may panic; `None` if it did, without any output.
 pub(super) fn quietly<T>(call: impl FnOnce() -> T) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -84,14 +84,14 @@ pub(super) fn quietly<T>(call: impl FnOnce() -> T) -> Option<T> {
     result.ok()
 }
 
-/// A cache that knows Bevy's shaders.
+/// A cache with Bevy's shaders.
 fn library(tools: Tools) -> ShaderCache<Module, ()> {
     let downlevel = tools.adapter.get_downlevel_capabilities().flags;
     let mut cache = ShaderCache::new((), tools.device.features(), downlevel, |(), source, _| match source {
         ShaderCacheSource::Naga(module) => Ok(module),
         _ => Err(ShaderCacheError::CreateShaderModule("only WGSL is expected".to_owned())),
     });
-    // Off in release builds otherwise.
+    // Otherwise off in release builds.
     cache.composer.validate = true;
     for (id, shader) in tools.shaders.iter() {
         if !shader.path.starts_with(COMPOSED) {
@@ -101,7 +101,7 @@ fn library(tools: Tools) -> ShaderCache<Module, ()> {
     cache
 }
 
-/// The asset that candidates have in the cache.
+/// Asset id of candidates in the cache.
 const CANDIDATE: AssetId<Shader> = AssetId::Uuid { uuid: Uuid::from_u128(0x4c43_4d05) };
 
 /// Adds the limits of the device, as Bevy does for every shader.
@@ -141,7 +141,7 @@ fn has_faces(defs: &[ShaderDefVal]) -> bool {
     defs.iter().any(|def| *def == "FACES".into())
 }
 
-/// Turns the example into one for meshes that know their polygons, or back.
+/// Switches the example to meshes with data of their polygons, or back.
 fn change_faces(descriptor: &mut RenderPipelineDescriptor, faces: bool) {
     let change = |defs: &mut Vec<ShaderDefVal>| {
         defs.retain(|def| *def != "FACES".into());
@@ -166,7 +166,7 @@ fn change_faces(descriptor: &mut RenderPipelineDescriptor, faces: bool) {
     }
 }
 
-/// Makes a pipeline that nothing is drawn with; what the driver says against it.
+/// Builds a pipeline that is not drawn; returns the driver's error.
 fn build(
     descriptor: &RenderPipelineDescriptor,
     layouts: &[BindGroupLayout],

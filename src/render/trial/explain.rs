@@ -1,4 +1,4 @@
-//! Explaining in the terms of the author's file why a candidate was refused.
+//! Explains why a candidate was refused, in terms of the author's file.
 
 use naga::{Module, Span, front::wgsl::ParseError};
 use naga_oil::compose::{ComposerError, ComposerErrorInner, ErrSource};
@@ -10,11 +10,11 @@ use crate::shader::{
     whole::judged,
 };
 
-/// As naga_oil packs the number of a module into positions in the text.
+/// Mask of positions in the text, in which naga_oil packs the number of a module.
 const POSITION: usize = (1 << 21) - 1;
 
-/// The problem of a module of Bevy that does not exist: at the line that imports it, or at the line that uses a
-/// name that nothing imports.
+/// The problem of a nonexistent module of Bevy: at the line that imports it, or at the line that uses a name
+/// without an import.
 pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> Box<ShaderProblem> {
     let modules: Vec<_> =
         tools.shaders.iter().map(|(_, s)| s.import_path.module_name().into_owned()).collect();
@@ -42,13 +42,13 @@ pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -
         error.inner,
         Inner::WgslParseError(_) | Inner::HeaderValidationError(_) | Inner::ShaderValidationError(_)
     );
-    // The same words as everywhere, where the text can be read without the composer.
+    // The same wording as elsewhere, if the text can be parsed without the composer.
     if let Some(Err(problem)) = about_text.then(|| judged(composed, faces)).flatten() {
         return Refusal::Problem(problem);
     }
     let offset = match &error.source {
         ErrSource::Constructing { offset, .. } => *offset,
-        // In one of Bevy's own modules: what imports it stands in the wrapper.
+        // In one of Bevy's own modules: the wrapper imports it.
         ErrSource::Module { name, .. } => {
             let line = composed.text.lines().position(|l| l.contains(name.as_str())).map(|l| (l + 1, 1));
             return Refusal::Problem(locate(composed, line, error.inner.to_string()));
@@ -85,8 +85,8 @@ pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -
     }
 }
 
-/// A problem at the first of some places that are one. The composer puts `offset` bytes before our text, and
-/// replaces what it handles by as many spaces, so that lines and columns stay.
+/// A problem at the first of several places that are one. The composer inserts `offset` bytes before our
+/// text, and replaces everything that it handles by as many spaces, so that lines and columns stay.
 pub(super) fn located(
     composed: &Composed,
     offset: usize,
@@ -137,8 +137,8 @@ pub(super) fn deepest(error: &dyn std::error::Error) -> String {
     }
 }
 
-/// The driver's error, and the line of the composed text that it means: it names numbers of bindings,
-/// locations and entry points, but no lines.
+/// The driver's error, and the corresponding line of the composed text: it names binding numbers, locations
+/// and entry points, but no lines.
 pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, usize)>, String) {
     let line_of = |what: &str| {
         let lines: Vec<_> = composed.text.lines().collect();
@@ -182,7 +182,7 @@ pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, u
 
 /// The problem of a text on which the composer itself fails.
 pub(super) fn without_place(composed: &Composed) -> Box<ShaderProblem> {
-    // Plain parsing may find what it fails on.
+    // Plain parsing may find the cause.
     match check::validate(composed) {
         Err(problem) if problem.file != WRAPPER.path => problem,
         _ => locate(

@@ -1,12 +1,12 @@
-//! Trying out a shader before it is drawn with.
+//! Tries shaders before they are used.
 //!
-//! Bevy puts a changed shader on the picture whatever it is: when it cannot be compiled, the mesh or the whole
-//! frame is lost. So each one is first composed as Bevy would compose it, in a [`ShaderCache`] of our own that
-//! validates in release builds too, and then made into a pipeline that nothing is drawn with, inside an error
-//! scope of the graphics driver. What comes through both can be drawn with.
+//! Bevy uses a changed shader unconditionally: if it cannot be compiled, the mesh or the whole frame is lost.
+//! Each shader is therefore first composed as Bevy would compose it, in a [`ShaderCache`] of our own that
+//! validates in release builds too, and then compiled into a pipeline that is not drawn, inside an error
+//! scope of the graphics driver. Shaders that pass both steps are valid.
 //!
-//! A driver may also crash, or not come to an end. So the window has all this done, and something drawn as well,
-//! in a process of its own ([`process`]), and goes on meanwhile.
+//! A driver may also crash, or never finish. The window therefore does all this, and also draws something, in
+//! a separate process ([`process`]), and continues meanwhile.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -39,7 +39,7 @@ use process::TrialProcess;
 use tools::Example;
 use verdict::Refusal;
 
-/// The example, filled by the renderer as soon as there is one.
+/// The example, filled by the renderer as soon as one exists.
 #[derive(Clone, Default, Resource)]
 struct SharedExample(Arc<Mutex<Option<Example>>>);
 
@@ -49,7 +49,7 @@ impl SharedExample {
     }
 }
 
-/// Lets shaders be tried: makes [`Bench`] a resource.
+/// Enables trials of shaders: makes [`Bench`] a resource.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrialPlugin;
 
@@ -85,13 +85,13 @@ fn find_example(example: Res<SharedExample>, cache: Res<PipelineCache>) {
     }
 }
 
-/// The place where shaders are tried.
+/// The resource that tries shaders.
 #[derive(Resource)]
 pub struct Bench {
     example: SharedExample,
-    /// With Bevy's own shaders in it, which ours import.
+    /// Contains Bevy's own shaders, which ours import.
     cache: Option<ShaderCache<Module, ()>>,
-    /// Tries in our place, where there is one.
+    /// The process that runs the trials instead, if any.
     process: Option<TrialProcess>,
 }
 
@@ -102,26 +102,26 @@ impl std::fmt::Debug for Bench {
 }
 
 impl Bench {
-    /// Has everything tried in another process from now on, and nothing here.
+    /// Runs all trials in another process from now on, and none here.
     pub fn try_in(&mut self, process: TrialProcess) {
         self.process = Some(process);
     }
 
-    /// Begins a new frame: what was asked for before and is not asked for again is not tried any more.
+    /// Begins a new frame: pending trials that are not requested again are dropped.
     pub fn begin_frame(&self) {
         if let Some(process) = &self.process {
             process.begin_frame();
         }
     }
 
-    /// True while another process tries something; it wakes who waits.
+    /// True while another process tries something, and will call `wake`.
     #[must_use]
     pub fn is_waiting(&self) -> bool {
         self.process.as_ref().is_some_and(TrialProcess::is_busy)
     }
 
-    /// True if the renderer can draw with a composed source, on meshes that know their polygons or not. `row` is
-    /// what an object has in the table of parameters.
+    /// True if the renderer can draw with a composed source, on meshes with or without data of their
+    /// polygons. `row` is an object's row in the parameter table.
     pub fn try_out(
         &mut self,
         composed: &Composed,
@@ -141,18 +141,18 @@ impl Bench {
         self.try_here(composed, faces, tools)
     }
 
-    /// As [`try_out`](Self::try_out), in this process.
+    /// Like [`try_out`](Self::try_out), in this process.
     pub fn try_here(&mut self, composed: &Composed, faces: bool, tools: Tools) -> Verdict {
         let example = self.example.clone();
         let example = example.lock();
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
-        // The composer of shaders unwraps here and there.
+        // The shader composer calls unwrap in places.
         match quietly(|| attempt(&mut self.cache, composed, faces, example, tools)) {
             Some(Ok(())) => Verdict::Good,
             Some(Err(Refusal::NotYet)) => Verdict::NotYet,
             Some(Err(Refusal::Problem(problem))) => Verdict::Bad(problem),
             None => {
-                // The cache may be left half changed.
+                // The cache may be left in an inconsistent state.
                 self.cache = None;
                 Verdict::Bad(without_place(composed))
             }

@@ -1,8 +1,8 @@
-//! Trials in a process of their own, with a budget of time and memory: a driver that crashes there, or does not come
-//! to an end, takes nothing along, and nobody waits for it.
+//! Trials in a separate process, with a time and memory budget: a driver that crashes there, or never
+//! finishes, does no harm, and nobody waits for it.
 //!
-//! The process is this program with another command. It reads one [`Request`] a line and writes one [`Answer`] a
-//! line. It is started when something is tried for the first time, and started anew after it died.
+//! The process is this program with another command. It reads one [`Request`] per line and writes one
+//! [`Answer`] per line. It is started for the first trial, and restarted after it died.
 
 use std::{
     collections::{HashMap, VecDeque},
@@ -29,26 +29,26 @@ use crate::{
 
 /// The command of the program that tries shaders.
 pub const COMMAND: &str = "try-shaders";
-/// The longest that a process may take until it is ready: software Vulkan starts within a second.
+/// Maximum time until a process is ready: software Vulkan starts within a second.
 const START: Duration = Duration::from_secs(30);
-/// The interval at which a working process is checked.
+/// Interval at which a working process is checked.
 const WATCH: Duration = Duration::from_millis(10);
-/// The shortest interval between reports of answers.
+/// Minimum interval between reports of answers.
 const PACE: Duration = Duration::from_millis(50);
-/// The most answers that are kept in case they are asked for again.
+/// Maximum number of answers kept in case they are requested again.
 const KEPT: usize = 256;
 
 /// The limits of one trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// From the request to the answer.
+    /// Time from the request to the answer.
     pub time: Duration,
-    /// The memory of the process, bytes; known on Linux only.
+    /// Memory of the process in bytes; known only on Linux.
     pub memory: u64,
 }
 
 impl Default for Budget {
-    /// A hundred times what the shipped models take.
+    /// A hundred times the needs of the shipped models.
     fn default() -> Self {
         Self { time: Duration::from_secs(10), memory: 1 << 30 }
     }
@@ -57,28 +57,28 @@ impl Default for Budget {
 /// A shader to be tried.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Request {
-    /// The composed text.
+    /// Composed text.
     pub text: String,
-    /// The files that it is made of.
+    /// Files of which it is made.
     pub map: LineMap,
-    /// True for meshes that know their polygons.
+    /// True for meshes with data of their polygons.
     pub faces: bool,
-    /// The object's row in the table of parameters.
+    /// The object's row in the parameter table.
     pub row: Vec<u8>,
 }
 
 /// The answer of the process.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Answer {
-    /// It can be asked.
+    /// The process is ready.
     Ready,
-    /// The shader can be drawn with.
+    /// The shader is valid.
     Good,
-    /// It cannot.
+    /// The shader is invalid.
     Bad(Box<ShaderProblem>),
 }
 
-/// A process that tries shaders, and the answers that it gave.
+/// A process that tries shaders, and its answers.
 #[derive(Debug)]
 pub struct TrialProcess {
     shared: Arc<Shared>,
@@ -93,20 +93,20 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     queue: VecDeque<Waiting>,
-    /// The request that is being tried.
+    /// The request being tried.
     current: Option<u64>,
     answers: HashMap<u64, Kept>,
     frame: u64,
     closed: bool,
 }
 
-/// An answer.
+/// An answer that is kept.
 #[derive(Debug)]
 struct Kept {
     verdict: Verdict,
-    /// The frame in which it was last asked for.
+    /// Frame in which it was last requested.
     frame: u64,
-    /// False if the shader was not tried: the next who asks has it tried again.
+    /// False if the shader was not tried: the next request tries it again.
     lasting: bool,
 }
 
@@ -114,7 +114,7 @@ struct Kept {
 struct Waiting {
     key: u64,
     request: Request,
-    /// The frame in which it was last asked for.
+    /// Frame in which it was last requested.
     frame: u64,
 }
 
@@ -125,7 +125,7 @@ impl Shared {
 }
 
 impl TrialProcess {
-    /// A process of `program`, started when it is needed. `wake` is called when there are answers.
+    /// A process of `program`, started when needed. `wake` is called when there are answers.
     #[must_use]
     pub fn new(program: PathBuf, budget: Budget, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
@@ -154,8 +154,8 @@ impl TrialProcess {
         Self { shared }
     }
 
-    /// The verdict on a shader, [`Verdict::NotYet`] until there is one. What could not be tried is refused, and tried
-    /// when it is asked for again.
+    /// The verdict on a shader, [`Verdict::NotYet`] until there is one. A shader that could not be tried is
+    /// refused, and tried when it is requested again.
     pub fn ask(&self, composed: &Composed, faces: bool, row: impl FnOnce() -> Vec<u8>) -> Verdict {
         let mut hasher = DefaultHasher::new();
         (&composed.text, faces).hash(&mut hasher);
@@ -186,7 +186,7 @@ impl TrialProcess {
         Verdict::NotYet
     }
 
-    /// Begins a new frame: what was not asked for in the last one is not tried any more.
+    /// Begins a new frame: shaders that were not requested in the last one are no longer tried.
     pub fn begin_frame(&self) {
         let mut state = self.shared.lock();
         state.frame += 1;
@@ -200,7 +200,7 @@ impl TrialProcess {
         }
     }
 
-    /// True while something is tried or waits for it.
+    /// True while something is tried or waits for a trial.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         let state = self.shared.lock();
@@ -215,7 +215,7 @@ impl Drop for TrialProcess {
     }
 }
 
-/// Keeps the process, on a thread of its own.
+/// Manages the process, on a separate thread.
 struct Worker {
     shared: Arc<Shared>,
     program: PathBuf,
@@ -224,7 +224,7 @@ struct Worker {
 }
 
 impl Worker {
-    /// The next shader to try; `None` when there will be none.
+    /// The next shader to try; `None` if there will be no more.
     fn next(&mut self) -> Option<(u64, Request)> {
         let mut state = self.shared.lock();
         loop {
@@ -239,7 +239,7 @@ impl Worker {
         }
     }
 
-    /// Has a shader tried. Returns the answer, or the reason why there is none.
+    /// Tries a shader. Returns the answer, or the reason why there is none.
     fn verdict(&mut self, request: &Request) -> Result<Verdict, String> {
         let line = serde_json::to_string(request).map_err(|why| why.to_string())?;
         for attempt in 0..2 {
@@ -263,7 +263,7 @@ impl Worker {
                         format!("the graphics driver needs more than {limit} MiB of memory to compile it");
                     return Ok(refused(request, message));
                 }
-                // It may have been ended by somebody else, so it is asked once more.
+                // Somebody else may have ended the process, so it is asked once more.
                 Fate::Died(_) if attempt == 0 => {}
                 Fate::Died(status) => {
                     let how = status.map_or_else(String::new, |status| format!(" ({status})"));
@@ -276,7 +276,7 @@ impl Worker {
         Err("it ended".to_owned())
     }
 
-    /// Starts a process and waits until it can be asked.
+    /// Starts a process and waits until it is ready.
     fn start(&self) -> Result<Running, String> {
         let program = self.program.shown();
         let mut process = Running::start(&self.program)
@@ -306,7 +306,7 @@ fn refused(request: &Request, message: String) -> Verdict {
     Verdict::Bad(refused_whole(request, message))
 }
 
-/// A problem of a shader as a whole, reported at the file of the model if the user wrote that.
+/// A problem of a shader as a whole, reported at the model's file if the user wrote it.
 #[must_use]
 pub fn refused_whole(request: &Request, message: String) -> Box<ShaderProblem> {
     let composed = Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
@@ -327,10 +327,10 @@ enum Fate {
     Died(Option<ExitStatus>),
 }
 
-/// A process that runs; it ends with this value.
+/// A running process, which ends when this value is dropped.
 struct Running {
     child: Child,
-    /// To a thread that writes: a process that does not read must not be waited for.
+    /// Requests for a writing thread: nobody must wait for a process that does not read.
     requests: Option<mpsc::Sender<String>>,
     answers: mpsc::Receiver<Answer>,
 }
@@ -342,7 +342,7 @@ impl Running {
         #[cfg(unix)]
         {
             use std::os::unix::process::CommandExt as _;
-            // Ctrl+C in the terminal is for the window.
+            // Ctrl+C in the terminal is meant for the window.
             command.process_group(0);
         }
         let mut child = command.spawn()?;
@@ -373,7 +373,7 @@ impl Running {
 
     fn send(&self, line: &str) {
         if let Some(requests) = &self.requests {
-            // If nobody takes it, no answer comes.
+            // If nobody receives it, no answer comes.
             let _ = requests.send(line.to_owned());
         }
     }
@@ -398,10 +398,10 @@ impl Running {
         }
     }
 
-    /// Ends it, whatever its state. Returns how it ended.
+    /// Ends the process, whatever its state. Returns how it ended.
     fn end(&mut self) -> Option<ExitStatus> {
         self.requests = None;
-        // A process whose output is closed is about to end by itself, and says better how.
+        // A process with a closed output is about to exit by itself, with a better status.
         for _ in 0..20 {
             match self.child.try_wait() {
                 Ok(None) => thread::sleep(WATCH),
@@ -421,12 +421,12 @@ impl Drop for Running {
     }
 }
 
-/// The memory that a process has, bytes, where the system tells.
+/// The memory of a process in bytes, where the system reports it.
 fn resident(process: u32) -> Option<u64> {
     if !cfg!(target_os = "linux") {
         return None;
     }
-    /// Of all processors that the driver runs on.
+    /// Page size of all processors on which the driver runs.
     const PAGE: u64 = 4096;
     let text = files::read(Path::new(&format!("/proc/{process}/statm")), PAGE).ok()?;
     let text = String::from_utf8_lossy(&text);

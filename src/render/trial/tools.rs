@@ -9,12 +9,12 @@ use bevy::{
     shader::Shader,
 };
 
-/// The mark in the pipelines of our materials, by which one is found as an example.
+/// Marks the pipelines of our materials, so that one can be found as an example.
 pub const MARK: &str = "LAB_SURFACE";
-/// The prefix of the paths of our own composed shaders.
+/// Prefix of the paths of our own composed shaders.
 pub const COMPOSED: &str = "composed/";
 
-/// A pipeline of our materials as Bevy made it, to be made again with another shader.
+/// A pipeline of our materials as built by Bevy, to be rebuilt with another shader.
 pub(super) struct Example {
     pub descriptor: RenderPipelineDescriptor,
     pub layouts: Vec<BindGroupLayout>,
@@ -27,6 +27,6 @@ pub struct Tools<'a> {
     pub device: &'a RenderDevice,
     /// The adapter of the device.
     pub adapter: &'a RenderAdapter,
-    /// All shaders that are loaded, Bevy's own among them.
+    /// All loaded shaders, including Bevy's own.
     pub shaders: &'a Assets<Shader>,
 }

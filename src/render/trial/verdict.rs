@@ -5,11 +5,11 @@ use crate::shader::check::ShaderProblem;
 /// The result of a trial.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It can be drawn with.
+    /// The shader is valid.
     Good,
-    /// It cannot, for this reason.
+    /// The shader is invalid, for this reason.
     Bad(Box<ShaderProblem>),
-    /// Not known yet: nothing has been drawn, or the process that tries is still at it. Ask again in the next
+    /// Not known yet: nothing has been drawn, or the trial process is still busy. Ask again in the next
     /// frame.
     NotYet,
 }

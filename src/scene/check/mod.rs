@@ -23,7 +23,7 @@ use crate::{
 mod rule;
 pub use rule::*;
 
-/// A vector as in scene files.
+/// A vector as written in scene files.
 struct Written(Vec3);
 
 impl fmt::Display for Written {
@@ -32,7 +32,7 @@ impl fmt::Display for Written {
     }
 }
 
-/// Everything that is wrong with a scene; empty if it is valid. In the order of the scene.
+/// All problems of a scene, in order; empty if it is valid.
 #[must_use]
 pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let count = |n: usize, what: &str| match n {
@@ -53,35 +53,36 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with one light, including conflicts with other parts; empty if there is no such light.
+/// All problems of one light, including conflicts with other parts; empty if the light does not exist.
 #[must_use]
 pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).light(index)
 }
 
-/// Everything that is wrong with one object, including conflicts with other parts; empty if there is no such object.
+/// All problems of one object, including conflicts with other parts; empty if the object does not exist.
 #[must_use]
 pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).object(index)
 }
 
-/// Everything that is wrong with the observer, including conflicts with other parts.
+/// All problems of the observer, including conflicts with other parts.
 #[must_use]
 pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     Parts::of(scene, registry).observer()
 }
 
-/// Checks part after part, as [`light`], [`object`] and [`observer`] do, without looking at all lights each time.
+/// Checks one part after another, as [`light`], [`object`] and [`observer`] do, without going through all
+/// lights each time.
 pub struct Parts<'a>(Check<'a>);
 
 impl<'a> Parts<'a> {
-    /// Begins to check the parts of a scene.
+    /// Starts checking the parts of a scene.
     #[must_use]
     pub fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
         Self(Check::of(scene, registry))
     }
 
-    /// Everything that is wrong with one light.
+    /// All problems of one light.
     pub fn light(&mut self, index: usize) -> Vec<Problem> {
         let check = &mut self.0;
         check.light(index);
@@ -91,13 +92,13 @@ impl<'a> Parts<'a> {
         std::mem::take(&mut check.problems)
     }
 
-    /// Everything that is wrong with one object.
+    /// All problems of one object.
     pub fn object(&mut self, index: usize) -> Vec<Problem> {
         self.0.object(index);
         std::mem::take(&mut self.0.problems)
     }
 
-    /// Everything that is wrong with the observer.
+    /// All problems of the observer.
     pub fn observer(&mut self) -> Vec<Problem> {
         let check = &mut self.0;
         let p = check.scene.observer.position;
@@ -108,7 +109,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Everything that is wrong with the room, including parts outside it.
+/// All problems of the room, including parts outside it.
 #[must_use]
 pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| {
@@ -123,20 +124,20 @@ pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with the reflection model and the shading model of a scene. The scene's reflection model
-/// also judges the materials of objects without an override: see [`object`].
+/// All problems of the reflection model and the shading model of a scene. The scene's reflection model also
+/// judges the materials of objects without an override: see [`object`].
 #[must_use]
 pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.models())
 }
 
-/// Everything that is wrong with the variants and the comparison.
+/// All problems of the variants and the comparison.
 #[must_use]
 pub fn variants(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.variants())
 }
 
-/// Everything that is wrong with the display.
+/// All problems of the display.
 #[must_use]
 pub fn display(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.display())
@@ -153,21 +154,21 @@ pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     room
 }
 
-/// The identity of a place: two parts are in the same place if their coordinates are the same numbers in 32 bits, as in
-/// scene files. Non-finite positions have no place.
+/// The identity of a position: two parts have the same position if their coordinates are equal in 32 bits, as
+/// in scene files. `None` for non-finite positions.
 fn place(p: Vec3) -> Option<[u32; 3]> {
     // Adding 0 makes −0 and 0 the same bits.
     p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits))
 }
 
-/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two objects may
-/// share a place.
+/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two
+/// objects may share a position.
 #[must_use]
 pub fn same_place(a: Vec3, b: Vec3) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// The first object in a place, for messages.
+/// The first object at a position, for messages.
 fn object_there(scene: &Scene, p: Vec3) -> Option<String> {
     scene.objects.iter().position(|o| same_place(o.position, p)).map(|i| format!("objects[{i}]"))
 }
@@ -184,17 +185,17 @@ fn observer_path() -> Path {
     Path::root().key("observer")
 }
 
-/// The problems found so far, and the data for judging the parts of a scene.
+/// The problems found so far, and the data for checking the parts of a scene.
 struct Check<'a> {
     scene: &'a Scene,
     registry: &'a Registry,
     room: SceneSize,
-    /// The first light in each place: with many objects, lookups replace pairwise comparison.
+    /// The first light at each position: with many objects, lookups replace pairwise comparison.
     lights: HashMap<[u32; 3], usize>,
     problems: Vec<Problem>,
 }
 
-/// The problems that some checks find.
+/// The problems found by these checks.
 fn found(scene: &Scene, registry: &Registry, checks: impl FnOnce(&mut Check)) -> Vec<Problem> {
     let mut check = Check::of(scene, registry);
     checks(&mut check);
@@ -214,7 +215,8 @@ impl<'a> Check<'a> {
 }
 
 impl Check<'_> {
-    /// Adds the broken rule; the path is built only then, since valid scenes are the rule and large.
+    /// Adds the broken rule, if any. The path is built only when needed, because most scenes are valid and
+    /// some are large.
     fn rule<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
         if let Err(rule) = rule {
             let (path, found) = at();
@@ -226,12 +228,12 @@ impl Check<'_> {
         self.problems.push(Problem::about(path, predicate));
     }
 
-    /// A position in the room.
+    /// Checks that a position is in the room.
     fn within(&mut self, p: Vec3, path: impl Fn() -> Path) {
         self.rule(position(self.room, p), || (path().key("position"), Written(p)));
     }
 
-    /// A part in the same place as another that excludes it.
+    /// Checks that a part is not at the position of another that excludes it.
     fn meets(&mut self, p: Vec3, there: Option<String>, one: &str, other: &str, path: impl Fn() -> Path) {
         if let Some(there) = there {
             let rule = format!("{there} is there; {one} must not be where {other} is");
@@ -239,12 +241,12 @@ impl Check<'_> {
         }
     }
 
-    /// The first light in a place, for messages.
+    /// The first light at a position, for messages.
     fn light_there(&self, p: Vec3) -> Option<String> {
         self.lights.get(&place(p)?).map(|i| format!("lights[{i}]"))
     }
 
-    /// The observer, if it is in a place, for messages.
+    /// The observer, if at this position, for messages.
     fn observer_there(&self, p: Vec3) -> Option<String> {
         same_place(p, self.scene.observer.position).then(|| "the observer".to_owned())
     }
@@ -420,7 +422,7 @@ impl Check<'_> {
         }
     }
 
-    /// The parameters of a variant, each judged by the objects of the scene as the variant shows them.
+    /// Checks the parameters of a variant, each against the objects of the scene as they are in the variant.
     fn variant_material(&mut self, index: usize, path: &dyn Fn(&'static str) -> Path) {
         let (scene, registry) = (self.scene, self.registry);
         let Some((seen, _)) = scene.seen(index + 1, registry) else { return };
@@ -437,7 +439,7 @@ impl Check<'_> {
     }
 }
 
-/// `Ok` if a variant may be based on the one with a name.
+/// Checks that a variant may be based on the one with this name.
 fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
     if scene.variant(base).is_none() {
         let names =
@@ -454,7 +456,7 @@ fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
         let known = chain.contains(&name);
         chain.push(name);
         if known {
-            // A circle that others are in is theirs to report.
+            // A cycle of other variants is reported for those.
             if chain[0] == name {
                 return Err(format!("a variant must not be based on itself: {}", chain.join(" → ")));
             }
@@ -465,7 +467,7 @@ fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
     Ok(())
 }
 
-/// Reports a missing field that a light's type needs, or a field that the type does not have.
+/// The rule for a missing field that a light's type needs, or for a field that the type does not have.
 fn presence(type_id: &str, field: &str, needed: bool) -> String {
     let light = with_article(type_id);
     if needed {
@@ -475,7 +477,7 @@ fn presence(type_id: &str, field: &str, needed: bool) -> String {
     }
 }
 
-/// A parameter as in scene files.
+/// A parameter as written in scene files.
 fn written(value: &Value) -> String {
     match value {
         Value::Number(v) => v.to_string(),

@@ -28,7 +28,7 @@ use crate::{
 pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
 /// The widest legal field of view, degrees.
 pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
-/// The legal exposures range from minus this to plus this, EV.
+/// The largest legal exposure, EV; the smallest is its negative.
 pub const MAX_EXPOSURE: f32 = 16.0;
 
 /// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
@@ -38,7 +38,7 @@ pub const MAX_SIZE: f32 = 1e9;
 /// `Ok`, or the rule that is broken.
 pub type Rule = Result<(), String>;
 
-/// `Ok` if a rule is kept.
+/// `Ok` if the rule is kept.
 fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
     if kept { Ok(()) } else { Err(rule()) }
 }
@@ -163,17 +163,18 @@ pub fn material_parameter(
     }
 }
 
-/// The declarations that a value in the material of an object is held against.
+/// The declarations against which a value in an object's material is checked.
 #[derive(Clone, Debug)]
 pub enum Declared {
-    /// Those of its reflection model and its shading model: both must allow it.
+    /// Declarations of the object's reflection model and shading model: both must allow the value.
     Own(Vec<&'static Parameter>),
-    /// Those of others, since it uses none of that name: one must allow it. None for unknown names.
+    /// Declarations of others, since neither uses the name: one must allow the value. Empty for unknown
+    /// names.
     Others(Vec<&'static Parameter>),
 }
 
 impl Declared {
-    /// Those of a name for an object of a scene.
+    /// The declarations of a name for an object of a scene.
     #[must_use]
     pub fn of(registry: &Registry, scene: &Scene, object: &Object, name: &str) -> Self {
         let model = registry.model(scene.model_of(object)).and_then(|m| m.parameter(name));
@@ -185,7 +186,7 @@ impl Declared {
         Self::Others(registry.material_users().flat_map(|(_, all)| all).filter(|p| p.name == name).collect())
     }
 
-    /// All of them.
+    /// All declarations.
     #[must_use]
     pub fn all(&self) -> &[&'static Parameter] {
         match self {
@@ -193,10 +194,10 @@ impl Declared {
         }
     }
 
-    /// `Ok` for a value that is allowed.
+    /// Checks that the value is allowed.
     ///
     /// # Errors
-    /// The declaration whose rule the value breaks; `None` if there is none at all.
+    /// Returns the declaration whose rule the value breaks; `None` if there is none at all.
     pub fn refusing(&self, value: &Value) -> Result<(), Option<&'static Parameter>> {
         let refuses = |p: &&&'static Parameter| !p.allows(value);
         match self {
@@ -206,8 +207,8 @@ impl Declared {
         }
     }
 
-    /// The value itself if it is allowed, else the nearest one that is; none where the type is another one, or the
-    /// ranges exclude each other.
+    /// The value itself if it is allowed, or else the nearest allowed one; `None` if the type differs, or the
+    /// ranges do not overlap.
     #[must_use]
     pub fn nearest(&self, value: &Value) -> Option<Value> {
         if self.refusing(value).is_ok() {
@@ -249,7 +250,8 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     })
 }
 
-/// The detail for an id without a model in the folder of custom models: its file may be missing, or be no model.
+/// Details about an id without a model in the folder of custom models: its file may be missing, or not be a
+/// model.
 fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
     let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
     let file = folder.join(id).with_extension(custom::EXTENSION);
@@ -314,7 +316,7 @@ pub fn channel(id: &str) -> Rule {
     one_of("the channel of a difference", id, Channel::ALL.iter().map(|c| (c.id(), c.name())))
 }
 
-/// The id of the values that are compared.
+/// The id of the kind of values that are compared.
 pub fn compared(id: &str) -> Rule {
     one_of("the values of a difference", id, Compared::ALL.iter().map(|c| (c.id(), c.name())))
 }
@@ -324,7 +326,7 @@ pub fn view_letter(letter: &str) -> Rule {
     one_of("the other view", letter, LETTERS[1..].iter().map(|l| (*l, *l)))
 }
 
-/// The place of the edge of a wipe.
+/// The position of the edge of a wipe.
 pub fn split(place: f32) -> Rule {
     must((0.0..=1.0).contains(&place), || "the place of the edge must be between 0 and 1".to_owned())
 }

@@ -1,4 +1,4 @@
-//! JSON, the format of scene files that holds everything and that editors check by a schema.
+//! JSON, the format that holds everything in a scene and that editors check with a schema.
 
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
@@ -36,10 +36,10 @@ impl SceneFormat for Json {
     }
 }
 
-/// The scene in a text that comes from a source, if there is anything in it.
+/// The syntax tree of the scene in a text from a source; `None` if the text is empty.
 ///
 /// # Errors
-/// The position where the text ceases to be JSON, and what was expected there.
+/// Returns the position where the text stops being JSON, and what was expected there.
 pub(super) fn parse<'a>(
     text: &'a str,
     source: &'a Source<'_>,

@@ -1,6 +1,7 @@
-//! The formats of scene files. Each reads a file into a [`Scene`], and perhaps writes one; the extension of the file
-//! decides which. The window, the command line and [`load`](super::load) ask here, so a new format is known everywhere:
-//! in the dialogs, on the command line, when a file is followed, saved or recovered.
+//! The formats of scene files. Each reads a file into a [`Scene`], and may write one; the extension of the
+//! file selects the format. The window, the command line and [`load`](super::load) use this list, so a new
+//! format is known everywhere: in the dialogs, on the command line, and when a file is followed, saved or
+//! recovered.
 //!
 //! Rules are checked for all formats alike, after reading.
 
@@ -55,13 +56,14 @@ pub use {
 /// # }
 /// ```
 pub trait SceneFormat: Send + Sync + 'static {
-    /// Its name for people: `JSON`.
+    /// The display name: `JSON`.
     fn name(&self) -> &'static str;
 
     /// The extensions of its files, in lower case, without the dot. Saving uses the first.
     fn extensions(&self) -> &'static [&'static str];
 
-    /// True if content without a name, from a pipe for example, is in this format. Otherwise it is read as JSON.
+    /// True if content without a name, for example from a pipe, is in this format. Content that no format
+    /// recognises is read as JSON.
     fn recognises(&self, content: &[u8]) -> bool {
         let _ = content;
         false
@@ -70,8 +72,8 @@ pub trait SceneFormat: Send + Sync + 'static {
     /// Reads a file. Which values are legal is checked afterwards, as for every format.
     ///
     /// # Errors
-    /// [`LoadError`] if the file is not in this format: see [`Source::syntax_error`]. Problems of single values belong
-    /// into the result, so that all are reported at once: see [`Parsed::with_problems`].
+    /// Returns a [`LoadError`] if the file is not in this format: see [`Source::syntax_error`]. Problems with
+    /// single values belong in the result, so that all are reported at once: see [`Parsed::with_problems`].
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError>;
 
     /// The writer; `None` if the format can only be read. Scenes are then saved in another format.
@@ -80,13 +82,13 @@ pub trait SceneFormat: Send + Sync + 'static {
     }
 }
 
-/// The writer of a format of scene files. It need not be lossless: but for JSON, what is written is read again before it
-/// replaces a file, and refused if it is another scene.
+/// The writer of a format of scene files. It need not be lossless: except for JSON, the written data is read
+/// again before it replaces a file, and refused if it is another scene.
 pub trait SceneWriter {
     /// The content of a file with a valid scene.
     ///
     /// # Errors
-    /// The part of the scene that the format cannot express, as the end of "it was not written: …".
+    /// Returns the part of the scene that the format cannot express, as the end of "it was not written: …".
     fn write(&self, scene: &Scene, target: &Target<'_>, registry: &Registry) -> Result<Vec<u8>, String>;
 }
 
@@ -94,9 +96,10 @@ pub trait SceneWriter {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Target<'a> {
-    /// Its folder.
+    /// The folder of the file.
     pub folder: &'a FilePath,
-    /// Its present content, if there is any: for what a scene does not hold, such as comments.
+    /// The present content, if any, from which things that a scene does not contain can be kept, such as
+    /// comments.
     pub old: Option<&'a [u8]>,
 }
 
@@ -108,29 +111,29 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The reason why a format was refused.
+/// The reason why a format was rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("scene format “{name}”: {problem}")]
 #[non_exhaustive]
 pub struct FormatError {
     /// The name of the format.
     pub name: &'static str,
-    /// The mistake and the remedy.
+    /// The mistake and how to correct it.
     pub problem: String,
 }
 
-/// Making formats of scene files known: a [`Registry`] or an app.
+/// Registers formats of scene files, in a [`Registry`] or an app.
 pub trait SceneFormats {
-    /// Makes a format known.
+    /// Registers a format.
     ///
     /// # Errors
-    /// [`FormatError`]: an extension is none, or belongs to another format.
+    /// Returns a [`FormatError`] if an extension is invalid, or belongs to another format.
     fn try_add_scene_format(&mut self, format: impl SceneFormat) -> Result<&mut Self, FormatError>;
 
-    /// As [`try_add_scene_format`](Self::try_add_scene_format).
+    /// Like [`try_add_scene_format`](Self::try_add_scene_format), but panics.
     ///
     /// # Panics
-    /// With the message of the error: a mistake of the format's author, found at the first start.
+    /// Panics with the message of the error: a mistake of the format's author, found at the first start.
     fn add_scene_format(&mut self, format: impl SceneFormat) -> &mut Self {
         match self.try_add_scene_format(format) {
             Ok(registered) => registered,
@@ -189,7 +192,7 @@ pub fn all(registry: &Registry) -> impl Iterator<Item = &dyn SceneFormat> {
     BUILT_IN.into_iter().chain(added)
 }
 
-/// True for JSON, which the others are measured by.
+/// True for JSON, the reference for other formats.
 pub(super) fn is_json(format: &dyn SceneFormat) -> bool {
     format.name() == Json.name()
 }
@@ -203,7 +206,7 @@ fn by_extension<'r>(extension: &str, registry: &'r Registry) -> Option<&'r dyn S
     all(registry).find(|format| format.extensions().contains(&extension))
 }
 
-/// A file whose extension belongs to no format.
+/// The error for a file whose extension belongs to no format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(".{extension} is not the extension of a scene; scenes are {known}")]
 #[non_exhaustive]
@@ -217,14 +220,14 @@ pub struct UnknownExtension {
 /// The format of a file by its extension; JSON for names without one.
 ///
 /// # Errors
-/// [`UnknownExtension`].
+/// Returns [`UnknownExtension`] if no format has the extension.
 pub fn of_path<'r>(path: &FilePath, registry: &'r Registry) -> Result<&'r dyn SceneFormat, UnknownExtension> {
     let Some(extension) = extension(path) else { return Ok(&Json) };
     by_extension(&extension, registry)
         .ok_or_else(|| UnknownExtension { extension, known: shown_extensions(registry) })
 }
 
-/// The format of content: by the extension of its name, and without one by what it looks like.
+/// The format of content: by the extension of its name, or without an extension by its appearance.
 pub(super) fn of_source<'r>(
     source: &Source,
     registry: &'r Registry,
@@ -236,7 +239,7 @@ pub(super) fn of_source<'r>(
     }
 }
 
-/// True if a file has the extension of a scene; schemas have that of JSON, but are none.
+/// True if a file has the extension of a scene; schemas have that of JSON, but are not scenes.
 #[must_use]
 pub fn is_scene_file(path: &FilePath, registry: &Registry) -> bool {
     let is_schema = path.to_string_lossy().to_lowercase().ends_with(schema::EXTENSION);

@@ -1,4 +1,4 @@
-//! A scene as a format read it, and the checks that follow.
+//! A scene as read by a format, and the checks that follow.
 
 use std::collections::HashSet;
 
@@ -14,16 +14,16 @@ use crate::{
     text::place::Place,
 };
 
-/// A scene as it was read, before its values are checked.
+/// A scene before its values are checked.
 #[non_exhaustive]
 pub struct Parsed<'a> {
-    /// The scene, with stand-ins for what could not be read.
+    /// The scene, with placeholders for values that could not be read.
     pub scene: Scene,
-    /// Parts that are missing and have defaults, which are in the scene already.
+    /// Missing parts that have defaults, which the scene already contains.
     pub missing: Vec<Missing>,
-    /// Problems found on reading.
+    /// Problems found while reading.
     pub(in crate::scene) problems: Vec<Problem>,
-    /// Paths of values that could not be read, and are not checked.
+    /// Paths of values that could not be read and are therefore not checked.
     pub(in crate::scene) unread: HashSet<Path>,
     /// The number of problems that are not listed.
     pub(in crate::scene) unlisted: usize,
@@ -32,17 +32,17 @@ pub struct Parsed<'a> {
     locate: Box<dyn Fn(&Path) -> Located + 'a>,
 }
 
-/// The place of a value, and the value as written.
+/// The position of a value, and the value as written.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Located {
-    /// The place; that of the part that lacks it if the value is missing.
+    /// The position of the value; if it is missing, that of the part that lacks it.
     pub(in crate::scene) place: Option<Place>,
     /// The value as written.
     pub(in crate::scene) found: Option<String>,
 }
 
 impl<'a> Parsed<'a> {
-    /// A scene without places and problems.
+    /// A scene without positions and problems.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         Self {
@@ -56,8 +56,8 @@ impl<'a> Parsed<'a> {
         }
     }
 
-    /// The same with the places of its values: `places` gives that of a path such as `objects[0].material.k_d`. Where it
-    /// knows none, that of the part around it counts: of `objects[0].material`, then of `objects[0]`.
+    /// Adds the positions of values: `places` returns that of a path such as `objects[0].material.k_d`. If it
+    /// returns `None`, the enclosing part is used: `objects[0].material`, then `objects[0]`.
     #[must_use]
     pub fn with_places(self, places: impl Fn(&Path) -> Option<Place> + 'a) -> Self {
         self.located(move |path| {
@@ -66,7 +66,7 @@ impl<'a> Parsed<'a> {
         })
     }
 
-    /// The same with problems found on reading. Values at their paths are not checked again.
+    /// Adds problems found while reading. Values at their paths are not checked again.
     #[must_use]
     pub fn with_problems(mut self, problems: Vec<Problem>) -> Self {
         self.unread = problems.iter().map(|problem| problem.path.clone()).collect();
@@ -74,14 +74,14 @@ impl<'a> Parsed<'a> {
         self
     }
 
-    /// The same with parts that are missing.
+    /// Adds missing parts.
     #[must_use]
     pub fn with_missing(mut self, missing: Vec<Missing>) -> Self {
         self.missing = missing;
         self
     }
 
-    /// The same without places, which are of no use where nobody sees the text.
+    /// Removes the positions, which are useless if nobody sees the text.
     pub(in crate::scene) fn without_places(self) -> Self {
         let Self { locate, mut problems, mut missing, .. } = self;
         problems.iter_mut().for_each(|problem| problem.place = None);
@@ -90,14 +90,14 @@ impl<'a> Parsed<'a> {
         Self { locate: Box::new(locate), problems, missing, end: None, ..self }
     }
 
-    /// The same with the places of its values, and the values as written.
+    /// Adds the positions of values, and the values as written.
     pub(in crate::scene) fn located(mut self, locate: impl Fn(&Path) -> Located + 'a) -> Self {
         self.locate = Box::new(locate);
         self
     }
 }
 
-/// Checks a scene that was read: the scene, or everything that is wrong with it.
+/// Checks a scene that was read, and returns it or all its problems.
 pub(in crate::scene) fn checked(
     parsed: Parsed,
     name: &str,

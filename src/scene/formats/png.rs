@@ -1,8 +1,9 @@
-//! Pictures that hold the scene that they show: PNG files with a compressed text of a keyword of ours.
+//! Pictures that contain the scene that they show: PNG files with a compressed text under this program's
+//! keyword.
 //!
-//! The pieces of the file are walked through here, since a decoder of pictures passes over damaged texts in silence,
-//! and unpacks the picture to reach the texts behind it. Source: *Portable Network Graphics (PNG) Specification (Third
-//! Edition)*, W3C (2025), sections 5.2 to 5.5 and 11.3.3.
+//! The chunks of the file are read here, since a decoder of pictures silently skips damaged texts, and
+//! decompresses the picture to reach the texts after it. Source: *Portable Network Graphics (PNG)
+//! Specification (Third Edition)*, W3C (2025), sections 5.2 to 5.5 and 11.3.3.
 
 use std::io::Read as _;
 
@@ -16,11 +17,11 @@ use crate::{
     text::{listed, place::Lines, quoted},
 };
 
-/// The keyword of the text that is the scene of a picture: JSON as in a scene file.
+/// The keyword of the text that contains the scene of a picture: JSON as in a scene file.
 pub const SCENE_KEYWORD: &str = "lights-camera-models scene";
-/// The way to a picture with a scene, for messages.
+/// The way to make a picture with a scene, for messages.
 const WRITERS: &str = "pictures that this program writes have one, unless --no-scene is given";
-/// More names of texts would be a list, not a message.
+/// Maximum number of keywords that a message lists.
 const MOST_NAMED: usize = 3;
 
 /// Pictures with a scene. They can only be read.
@@ -59,14 +60,14 @@ impl SceneFormat for Png {
     }
 }
 
-/// A piece of a PNG file.
+/// A chunk of a PNG file.
 struct Chunk<'a> {
     kind: [u8; 4],
     content: &'a [u8],
     whole: bool,
 }
 
-/// The text of the scene in a picture, of at most so many bytes.
+/// The text of the scene in a picture; `most` is its maximum size in bytes.
 fn scene_text(bytes: &[u8], most: u64) -> Result<String, String> {
     let Some(mut rest) = bytes.strip_prefix(files::PNG.begins) else {
         return Err("this is not a PNG picture, though its name ends in .png".to_owned());
@@ -93,7 +94,7 @@ fn scene_text(bytes: &[u8], most: u64) -> Result<String, String> {
     }
 }
 
-/// The message for a whole picture without a scene, but perhaps with other texts.
+/// The message for a complete picture without a scene, perhaps with other texts.
 fn without_scene(mut others: Vec<String>) -> String {
     others.dedup();
     let more = others.len().saturating_sub(MOST_NAMED);
@@ -109,7 +110,7 @@ fn without_scene(mut others: Vec<String>) -> String {
     format!("there is no scene in this picture{only}; {WRITERS}")
 }
 
-/// The first piece, and what follows it; `None` if the bytes end before it does.
+/// The first chunk, and the bytes after it; `None` if the bytes end within it.
 fn next_chunk(bytes: &[u8]) -> Option<(Chunk<'_>, &[u8])> {
     let (length, rest) = bytes.split_first_chunk()?;
     let (kind, _) = rest.split_first_chunk::<4>()?;
@@ -121,18 +122,19 @@ fn next_chunk(bytes: &[u8]) -> Option<(Chunk<'_>, &[u8])> {
         crc.update(checked);
         crc.sum() == u32::from_be_bytes(*sum)
     };
-    // The sums of pictures are no business of ours, and take a while.
+    // The checksums of pictures do not matter here, and take a while.
     let whole = kind != b"iTXt" || whole();
     Some((Chunk { kind: *kind, content: &checked[4..], whole }, rest))
 }
 
-/// What stands before the first zero, and what behind it.
+/// The bytes before the first zero, and those after it.
 fn until_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let end = bytes.iter().position(|b| *b == 0)?;
     Some((&bytes[..end], &bytes[end + 1..]))
 }
 
-/// The text of an international text: keyword, 0, compressed or not, method, language, 0, translated keyword, 0, text.
+/// The content of an iTXt chunk: keyword, 0, compression flag, method, language, 0, translated keyword, 0,
+/// text.
 fn unpacked(chunk: &Chunk, most: u64) -> Result<String, String> {
     if !chunk.whole {
         return Err("is damaged: its checksum is wrong".to_owned());
@@ -200,7 +202,7 @@ mod tests {
             vec![scene([0, 0], b"{}"), pixels()],
             vec![scene([1, 0], &packed(b"{}"))],
             vec![other(), pixels(), scene([1, 0], &packed(b"{}"))],
-            // Of two, the first counts.
+            // The first of two counts.
             vec![scene([0, 0], b"{}"), scene([0, 0], b"[]")],
         ] {
             assert_eq!(scene_text(&picture(&chunks), 2).as_deref(), Ok("{}"));

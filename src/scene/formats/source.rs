@@ -13,7 +13,7 @@ use crate::{
 pub struct Source<'a> {
     /// The content.
     pub bytes: &'a [u8],
-    /// Its name in messages: the path of the file, or that of a stream.
+    /// The name in messages: the path of the file, or the name of a stream.
     pub name: &'a str,
     /// The folder of the files that a scene may name.
     pub folder: &'a FilePath,
@@ -25,10 +25,11 @@ impl<'a> Source<'a> {
         Self { bytes, name, folder, derived: OnceCell::new() }
     }
 
-    /// The content as text, after the byte order mark with which some programs begin: places do not count it.
+    /// The content as text, without the byte order mark that some programs write: positions do not count it.
     ///
     /// # Errors
-    /// [`LoadError`] if it is not UTF-8, with a guess at what it is instead, or nothing but white space.
+    /// Returns a [`LoadError`] if the content is not UTF-8, with a guess at the encoding, or if it is only
+    /// white space.
     pub fn text(&self) -> Result<&str, LoadError> {
         let text = decode(after_mark(self.bytes), self.name)?;
         if text.trim().is_empty() {
@@ -37,13 +38,13 @@ impl<'a> Source<'a> {
         Ok(text)
     }
 
-    /// A text made from the content, once, that lives as long as this.
+    /// A text derived from the content, created once, that lives as long as the source.
     pub(super) fn derived(&self, make: impl FnOnce() -> String) -> &str {
         self.derived.get_or_init(make)
     }
 
-    /// The error for content that is not in the format of that name: the place where reading stopped, and what was
-    /// expected there.
+    /// The error for content that does not follow the syntax of this format: the position where reading
+    /// stopped, and what was expected there.
     #[must_use]
     pub fn syntax_error(&self, format: &'static str, place: Place, what: impl Into<String>) -> LoadError {
         LoadError::Syntax { format, name: self.name.to_owned(), place, what: what.into() }

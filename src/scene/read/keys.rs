@@ -20,7 +20,7 @@ pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
 ];
 /// The keys of `scene_size`.
 pub(in crate::scene) const SIZE_KEYS: &[&str] = &["height", "width", "depth"];
-/// Alternative keys of a light; the first counts if neither is given.
+/// Alternative keys of a light; if neither is given, the default of the first applies.
 pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
     [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
 /// The keys of `observer`.
@@ -45,7 +45,7 @@ pub(in crate::scene) const VARIANT_KEYS: &[&str] = &[
 pub(in crate::scene) const COMPARISON_KEYS: &[&str] =
     &["layout", "with", "split", "edge", "sign", "channel", "values", "amplification"];
 
-/// Other words for keys, for suggestions only: the names in other programs.
+/// Other words for keys, used only for suggestions: the names in other programs.
 pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
     ("camera", "observer"),
     ("eye", "observer"),

@@ -21,15 +21,15 @@ pub(super) mod keys;
 mod parts;
 mod values;
 
-/// The number of unknown keys with a suggestion; more would take long in a hostile file.
+/// Maximum number of unknown keys with a suggestion; more would take too long in a hostile file.
 pub(super) const MAX_SUGGESTIONS: usize = 200;
 
-/// The most problems listed. A scene within the limits of lights and objects with errors in every field has fewer; a
-/// hostile file could have millions.
+/// Maximum number of problems listed. A scene within the limits of lights and objects with errors in every
+/// field has fewer; a hostile file could have millions.
 pub(super) const MAX_PROBLEMS: usize = 200_000;
 
-/// The scene in a tree of values: that of JSON, or one that another format made of a text. `before` are problems that
-/// were found when the tree was made, each with its byte.
+/// The scene in a tree of values, from JSON or made by another format. `before` are problems found while the
+/// tree was made, each with its byte index.
 pub(super) fn parsed<'a>(
     text: &'a str,
     root: Ast<'a>,
@@ -52,7 +52,7 @@ pub(super) fn parsed<'a>(
     })
 }
 
-/// One part of a scene, alone, from JSON with checked syntax; only types and keys are checked.
+/// Reads a single part of a scene from JSON with checked syntax; only types and keys are checked.
 pub(super) fn alone<T>(
     text: &str,
     registry: &Registry,
@@ -69,12 +69,12 @@ pub(super) fn alone<T>(
 /// The state of reading.
 pub(super) struct Reader<'a> {
     text: &'a str,
-    /// The folder in which files are that the scene names.
+    /// The folder of the files that the scene names.
     folder: &'a FilePath,
     registry: &'a Registry,
-    /// Problems, each with its byte.
+    /// Problems, each with its byte index.
     problems: Vec<(usize, Problem)>,
-    /// Paths of unreadable values: their stand-ins are not checked.
+    /// Paths of unreadable values: their placeholders are not checked.
     reported: HashSet<Path>,
     missing: Vec<Missing>,
     /// The number of problems beyond [`MAX_PROBLEMS`].
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes a missing part with a default.
+    /// Records a missing part with a default.
     fn missing(&mut self, path: Path, at: usize, default: String) {
         self.missing.push(Missing { path, default, place: Some(self.lines.place(at)) });
     }

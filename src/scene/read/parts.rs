@@ -1,4 +1,4 @@
-//! The parts of a scene, each from its object. Unreadable values have their defaults.
+//! The parts of a scene, each read from its JSON object. Unreadable values are replaced by defaults.
 
 use glam::Vec3;
 
@@ -245,7 +245,7 @@ impl Reader<'_> {
         object
     }
 
-    /// A whole number that is not negative.
+    /// A non-negative whole number.
     fn count(&mut self, value: Cursor, rule: &str) -> Option<u32> {
         let count = self.integer(value, rule)?;
         u32::try_from(count).map_err(|_| self.wrong(value, rule)).ok()

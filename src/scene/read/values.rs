@@ -11,7 +11,7 @@ use crate::{
     text::json::{Ast, Cursor, Fields, Reader as _},
 };
 
-/// The rule of every colour.
+/// The rule for every colour.
 pub(super) const COLOUR_RULE: &str = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
 
 impl Reader<'_> {
@@ -36,8 +36,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The entries of a list of lights or objects. Of a list that is too long, only the length is reported: it may be
-    /// very long.
+    /// The entries of a list of lights or objects. If the list is too long, only its length is reported,
+    /// because it may be very long.
     pub(super) fn list<T>(
         &mut self,
         scene: &Fields,
@@ -85,7 +85,7 @@ impl Reader<'_> {
         value.text().map(str::to_owned)
     }
 
-    /// The rule for an id, for values other than text.
+    /// The rule for an id, for values that are not text.
     pub(super) fn id_rule(&self, what: &str) -> String {
         rule_of(match what {
             "reflection_model" => check::reflection_model(self.registry, ""),
@@ -106,7 +106,7 @@ impl Reader<'_> {
         value.number().or_else(|| self.number(value, &rule_of(check(f32::NAN))))
     }
 
-    /// A number in 32 bits; too large a one is infinite, so that its rule refuses it.
+    /// A number in 32 bits; a number that is too large becomes infinite, so that its rule rejects it.
     pub(super) fn number(&mut self, value: Cursor, rule: &str) -> Option<f32> {
         let number = value.number();
         if number.is_none() {
@@ -128,7 +128,7 @@ impl Reader<'_> {
         integer
     }
 
-    /// True or false.
+    /// A boolean.
     fn truth(&mut self, value: Cursor, rule: &str) -> Option<bool> {
         if let Ast::BooleanLit(flag) = value.value {
             return Some(flag.value);
@@ -207,7 +207,7 @@ pub(super) fn rule_of(rule: check::Rule) -> String {
     rule.err().unwrap_or_default()
 }
 
-/// The type needed instead of another.
+/// The message that a value of another type is needed.
 fn needs(what: &str, value: Cursor, rule: &str) -> String {
     match value.text() {
         Some(text) if text.trim().parse::<f64>().is_ok() => {

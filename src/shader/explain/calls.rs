@@ -1,4 +1,4 @@
-//! Values of a wrong type or number: where a struct is made, in calls, in what a function returns.
+//! Values of the wrong type or number: in constructors, in calls, in results of functions.
 
 use super::{
     Complaint, Explained, between,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::text::{listed, plural};
 
-/// Functions of WGSL as called, for messages.
+/// WGSL functions as called, for messages.
 const USAGE: &[&str] = &[
     "atan2(y, x)",
     "clamp(x, low, high)",
@@ -24,7 +24,7 @@ const USAGE: &[&str] = &[
     "step(edge, x)",
 ];
 
-/// A function of WGSL as called; its name alone if that is clear.
+/// A WGSL function as called; only its name if that is sufficient.
 fn usage(name: &str) -> &str {
     let with = |usage: &&&str| usage.strip_prefix(name).is_some_and(|rest| rest.starts_with('('));
     USAGE.iter().find(with).copied().unwrap_or(name)
@@ -39,7 +39,7 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
     let converts = between(message, "automatic conversions cannot convert `{}` to `{}`")
         .or_else(|| between(message, "automatic conversions cannot convert elements of `{}` to `{}`"));
     if let Some([got, expected]) = converts {
-        // The first place is that of the declaration, with a struct.
+        // The first position is that of the declaration, with a struct.
         let value = labels.last()?;
         if let Some(name) = scan.name_of(scan.at(value.range.start)) {
             let target = shown(first.source().split('=').next().unwrap_or_default().trim());
@@ -54,7 +54,7 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
     if let Some([name, expected, got]) =
         between(message, "the type of `{}` is expected to be `{}`, but got `{}`")
     {
-        // The place is that of the name.
+        // The position is that of the name.
         let i = scan.at(first.range.start);
         let begins = (i..scan.tokens.len()).find(|j| scan.word(*j) == "=")? + 1;
         let end = (begins..scan.tokens.len()).find(|j| scan.word(*j) == ";")?;
@@ -65,7 +65,7 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
     }
     if let Some([expected, found]) = between(message, "wrong number of arguments: expected {}, found {}") {
         let name = scan.word(scan.at(first.range.start));
-        // The end of a range is beyond it.
+        // The end of a range is exclusive.
         let fewest = expected.split("..").next()?;
         let count = plural(fewest.parse().ok()?, "value");
         let takes = if fewest == expected { count } else { format!("at least {count}") };
@@ -80,7 +80,7 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
         let hint = if name == "atan" { "; the angle of a point is atan2(y, x)" } else { "" };
         return Some((place(first), format!("{} takes {count}, but more are given{hint}", usage(name))));
     }
-    // The compiler names the place where a value with a name was calculated; the call is the first place.
+    // The compiler names the position where a named value was calculated; the call is the first position.
     let call = scan.at(first.range.start);
     let argument = |number: &str| {
         let part = scan.parts(call + 1).get(number.parse::<usize>().ok()?.checked_sub(1)?)?.clone();
@@ -114,8 +114,8 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
     None
 }
 
-/// The end of a message about a value of a type that a function does not take. The compiler tells those that it does in
-/// the notes of its report only.
+/// The end of a message about a value of a type that a function does not accept. The compiler lists the
+/// accepted types only in the notes of its report.
 fn allowed(complaint: &Complaint, got: &str, value: &str) -> String {
     let report = complaint.error.emit_to_string(&complaint.composed.text);
     let types = report.lines().filter_map(|line| line.split_once("allowed type: "));
@@ -130,7 +130,7 @@ fn allowed(complaint: &Complaint, got: &str, value: &str) -> String {
     }
 }
 
-/// The message about a value, the token `i`, that does not become one of the expected type.
+/// The message about a value, the token `i`, that cannot be converted to the expected type.
 fn converted(scan: &Scan, i: usize, expected: &str, got: &str, value: &str) -> String {
     if scan.before(i, 1) == "return" {
         return result(scan, scan.function(i).unwrap_or("the function"), Some(expected), got, value);

@@ -1,4 +1,4 @@
-//! Fields that a struct does not have, such as parameters that a model does not declare.
+//! Unknown fields of structs, such as parameters that a model does not declare.
 
 use super::scan::Scan;
 use crate::text::{listed, nearest};

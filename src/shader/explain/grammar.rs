@@ -1,10 +1,10 @@
-//! The compiler's plain messages, and the words and signs that it did not expect: habits from GLSL, HLSL and C.
+//! The compiler's plain messages, and unexpected words and symbols: habits from GLSL, HLSL and C.
 
 use super::{Explained, between, scan::Scan, words::wgsl_type};
 use crate::{shader::token::Kind, text::shortened};
 
-/// Messages that name what is wrong, the number of the label at the author's place, and what would be right. `{0}` and
-/// `{1}` are what stands for `{}`, `{}` is the text at the first label.
+/// Patterns of messages, the number of the label at the author's position, and an explanation with the
+/// remedy. `{0}` and `{1}` are the texts matched by `{}`, `{}` is the text at the first label.
 const PLAIN: &[(&str, usize, &str)] = &[
     ("name `{}` is a reserved keyword", 0, "`{0}` is a reserved word of WGSL; choose another name"),
     (
@@ -104,9 +104,9 @@ const TYPES: &[&str] = &[
     "float3", "float4", "ivec2", "ivec3", "mat2", "mat3", "mat4", "void",
 ];
 
-/// The expected word, the word before, the one found, and the message. An empty text stands for anything, `TYPE` for a
-/// type, `WORD` for a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these words,
-/// `{earlier}` that before both, `{next}` that after, `{type}` the type as it is written here.
+/// The expected word, the word before, the one found, and the message. An empty text matches anything, `TYPE`
+/// a type, `WORD` a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these
+/// words, `{earlier}` is the one before both, `{next}` the one after, `{type}` the type as written here.
 const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
     (
         "",
@@ -211,7 +211,7 @@ pub(super) fn plain(message: &str, source: &str) -> Option<(usize, String)> {
     })
 }
 
-/// The explanation of the token at a byte, where something else was expected.
+/// The explanation of an unexpected token at a byte.
 pub(super) fn unexpected(scan: &Scan, start: usize, expected: &str, found: &str) -> Option<Explained> {
     let i = scan.at(start);
     let directive = scan.tokens.get(i).filter(|token| token.kind == Kind::Directive);
@@ -252,7 +252,7 @@ fn no_semicolon(scan: &Scan, start: usize) -> Explained {
     };
     let before = scan.text.get(last.at..start).unwrap_or_default();
     let word = before.trim_end();
-    // In another line, or before a word that begins a statement or ends a block.
+    // On another line, or before a word that begins a statement or ends a block.
     let ends = before.contains('\n')
         || matches!(scan.word(scan.at(start)), "return" | "let" | "var" | "if" | "for" | "}");
     let missing = if ends { "a ;" } else { "an operator or a ;" };

@@ -1,8 +1,9 @@
-//! The compiler's complaints as an author needs them: at the author's line, with the mistake and what would be right.
+//! Rephrases the compiler's errors for authors: at the author's line, with the mistake and the remedy.
 //!
-//! naga speaks of expressions by number, of its grammar and of the declaration instead of the call. What it says about
-//! a text that it cannot read is explained by tables ([`words`], [`grammar`]) and by the text around; what it says about
-//! a text that it can read, by the types of the values ([`values`]). Other messages pass.
+//! naga refers to expressions by number, to its grammar, and to the declaration instead of the call. Errors
+//! in a text that it cannot parse are explained by tables ([`words`], [`grammar`]) and by the surrounding
+//! text; errors in a text that it can parse, by the types of the values ([`values`]). Other messages stay
+//! unchanged.
 
 use naga::{
     Module, WithSpan,
@@ -21,10 +22,10 @@ mod words;
 
 use scan::Scan;
 
-/// A byte of the composed text, if there is one to name, and the message.
+/// A byte of the composed text, if known, and the message.
 pub(super) type Explained = (Option<usize>, String);
 
-/// The error of a text that cannot be read.
+/// The error in a text that cannot be parsed.
 pub(super) fn unreadable(composed: &Composed, error: &ParseError) -> Explained {
     let text = &composed.text;
     let labels: Vec<Label> = error
@@ -38,9 +39,9 @@ pub(super) fn unreadable(composed: &Composed, error: &ParseError) -> Explained {
     })
 }
 
-/// The error of a module that is not valid.
+/// The error in an invalid module.
 pub(super) fn invalid(composed: &Composed, module: &Module, error: &WithSpan<ValidationError>) -> Explained {
-    // The first place is the function around.
+    // The first position is the enclosing function.
     let last = error.spans().last().and_then(|(span, _)| Some(span.to_range()?.start));
     Scan::new(&composed.text)
         .and_then(|scan| values::explained(&scan, module, error.as_inner()))
@@ -48,7 +49,7 @@ pub(super) fn invalid(composed: &Composed, module: &Module, error: &WithSpan<Val
         .unwrap_or_else(|| (last, innermost(error.as_inner())))
 }
 
-/// The reason without what it is within: "Function [54] 'response' is invalid: Expression [18] is invalid".
+/// The reason without its context, such as "Function [54] 'response' is invalid: Expression [18] is invalid".
 fn innermost(error: &dyn std::error::Error) -> String {
     let mut reason = error;
     while let Some(inner) = reason.source() {
@@ -57,7 +58,7 @@ fn innermost(error: &dyn std::error::Error) -> String {
     reason.to_string()
 }
 
-/// A place that the compiler names, and what it says there.
+/// A position named by the compiler, with its message there.
 struct Label<'a> {
     text: &'a str,
     range: std::ops::Range<usize>,
@@ -107,7 +108,7 @@ impl Complaint<'_> {
         })
     }
 
-    /// A name that two places define, of which one may be the author's.
+    /// A name defined in two places, of which one may be the author's.
     fn redefined(&self, name: &str) -> Option<Explained> {
         let [current, previous, ..] = &self.labels[..] else { return None };
         let place = |label: &Label| {
@@ -147,9 +148,9 @@ impl Complaint<'_> {
         }
     }
 
-    /// The statement of an error without a place: the first at which the text up to there has it.
+    /// The statement with an error without a position: the first one up to which the text has the error.
     fn unplaced(&self, scan: &Scan) -> Option<usize> {
-        /// The longest text that is parsed again and again, bytes.
+        /// Maximum size of a text that is parsed repeatedly, in bytes.
         const LONGEST: usize = 1 << 17;
         if scan.text.len() > LONGEST {
             return None;
@@ -173,7 +174,7 @@ impl Complaint<'_> {
     }
 }
 
-/// The parts of a message that stand for the `{}` of a pattern.
+/// The parts of a message that match the `{}` of a pattern.
 fn between<'m, const N: usize>(message: &'m str, pattern: &str) -> Option<[&'m str; N]> {
     let mut pieces = pattern.split("{}");
     let mut rest = message.strip_prefix(pieces.next()?)?;

@@ -1,4 +1,4 @@
-//! A WGSL text as tokens: calls, their arguments, and the declarations that they belong to.
+//! A WGSL text as tokens: calls, their arguments, and their declarations.
 
 use std::ops::Range;
 
@@ -31,12 +31,12 @@ impl<'a> Scan<'a> {
         Some(Self { text, tokens: tokens(text, LIMITS.tokens).ok()?.list })
     }
 
-    /// The number of the first token that begins at or after a byte.
+    /// The index of the first token that begins at or after a byte.
     pub fn at(&self, byte: usize) -> usize {
         self.tokens.partition_point(|token| token.at < byte)
     }
 
-    /// The text of a token; empty if there is none.
+    /// The text of a token; empty if it does not exist.
     pub fn word(&self, token: usize) -> &'a str {
         self.tokens.get(token).map_or("", |token| token.text)
     }
@@ -46,13 +46,13 @@ impl<'a> Scan<'a> {
         token.checked_sub(back).map_or("", |token| self.word(token))
     }
 
-    /// The text from the first to the last of some tokens.
+    /// The text of a range of tokens.
     pub fn source(&self, range: Range<usize>) -> &'a str {
         let ends = self.tokens.get(range.start).zip(self.tokens.get(range.end.wrapping_sub(1)));
         ends.and_then(|(first, last)| self.text.get(first.at..last.at + last.text.len())).unwrap_or_default()
     }
 
-    /// The number of the token that closes a bracket.
+    /// The index of the token that closes a bracket.
     fn close(&self, open: usize) -> Option<usize> {
         let mut depth = 0_usize;
         (open..self.tokens.len()).find(|i| {
@@ -65,7 +65,7 @@ impl<'a> Scan<'a> {
         })
     }
 
-    /// The parts between the commas of the bracket that a token opens.
+    /// The parts between the commas in the bracket that a token opens.
     pub fn parts(&self, open: usize) -> Vec<Range<usize>> {
         let Some(end) = self.close(open) else { return Vec::new() };
         let (mut parts, mut start, mut i) = (Vec::new(), open + 1, open + 1);
@@ -85,7 +85,7 @@ impl<'a> Scan<'a> {
         parts
     }
 
-    /// The text of some bytes; with its arguments, if it is the name of a function that is called.
+    /// The text of some bytes, including the arguments if it is the name of a called function.
     pub fn value(&self, bytes: Range<usize>) -> &'a str {
         let text = self.text.get(bytes.clone()).unwrap_or_default();
         let i = self.at(bytes.start);
@@ -93,7 +93,7 @@ impl<'a> Scan<'a> {
         called.then(|| self.close(i + 1)).flatten().map_or(text, |close| self.source(i..close + 1))
     }
 
-    /// The bracket open around a token, and the number of commas since.
+    /// The innermost bracket around a token, and the number of commas since.
     pub fn around(&self, token: usize) -> Option<(usize, usize)> {
         let (mut depth, mut commas) = (0_usize, 0);
         for (i, token) in self.tokens.iter().enumerate().take(token).rev() {
@@ -110,7 +110,7 @@ impl<'a> Scan<'a> {
         None
     }
 
-    /// The name of the value that begins at a token, where that is its definition: the compiler names this place, and not
+    /// The name of the value whose definition begins at a token: the compiler names this position instead of
     /// that of the use.
     pub fn name_of(&self, token: usize) -> Option<&'a str> {
         if self.before(token, 1) == "=" && self.before(token, 3) == "let" {
@@ -125,14 +125,14 @@ impl<'a> Scan<'a> {
         Some(self.word(begins + 1))
     }
 
-    /// The end of a message about a value that is a struct: what can be taken of it.
+    /// The end of a message about a value that is a struct: its fields.
     pub fn fields_of(&self, of: &str, value: &str) -> Option<String> {
         let declared = self.declared(of).filter(|declared| declared.is_struct)?;
         let names: Vec<_> = declared.fields.iter().map(|(name, _)| format!("`{value}.{name}`")).collect();
         Some(format!("; use one of its fields: {}", listed(&names, "or")))
     }
 
-    /// The bodies of all functions: the numbers of their braces.
+    /// The bodies of all functions: the indices of their braces.
     pub fn bodies(&self) -> Vec<Range<usize>> {
         let begins = (0..self.tokens.len()).filter(|i| self.word(*i) == "fn");
         let body = |begins: usize| {
@@ -143,7 +143,8 @@ impl<'a> Scan<'a> {
         begins.filter_map(body).collect()
     }
 
-    /// The tokens that end the statements of a body or begin a block in it, and the number of braces open behind each.
+    /// The tokens that end the statements of a body or begin a block in it, each with the number of open
+    /// braces after it.
     pub fn statements(&self, body: &Range<usize>) -> Vec<(usize, usize)> {
         let (mut braces, mut brackets) = (1_usize, 0_usize);
         let mut ends = Vec::new();
@@ -179,7 +180,7 @@ impl<'a> Scan<'a> {
 }
 
 impl Declared<'_> {
-    /// As called: `Terms(ambient, diffuse, specular)`, `power(x: f32, p: f32)`.
+    /// The declaration as a call: `Terms(ambient, diffuse, specular)`, `power(x: f32, p: f32)`.
     pub fn call(&self) -> String {
         let field = |(name, of): &(&str, &str)| {
             if self.is_struct { (*name).to_owned() } else { format!("{name}: {of}") }
@@ -187,7 +188,7 @@ impl Declared<'_> {
         format!("{}({})", self.name, self.fields.iter().map(field).collect::<Vec<_>>().join(", "))
     }
 
-    /// ", each a vec3<f32>", where all have one type.
+    /// ", each a vec3<f32>" if all have one type.
     fn each(&self) -> String {
         match &self.fields[..] {
             [(_, of), rest @ ..] if !rest.is_empty() && rest.iter().all(|(_, other)| other == of) => {
@@ -263,7 +264,7 @@ fn width(of: &str) -> Option<char> {
     of.strip_prefix("vec").and_then(|rest| rest.chars().next())
 }
 
-/// The text of a value as another type; empty if it has none.
+/// The text of a value as another type; empty if it cannot be converted.
 fn fitted(expected: &str, got: &str, value: &str) -> String {
     let number = |of: &str| matches!(of, "f32" | "{AbstractFloat}" | "{AbstractInt}");
     let whole = |of: &str| matches!(of, "i32" | "u32");
@@ -292,7 +293,7 @@ fn fitted(expected: &str, got: &str, value: &str) -> String {
 
 /// The message about the result of a function: `expected` is the declared type, if there is one.
 pub(super) fn result(scan: &Scan, function: &str, expected: Option<&str>, got: &str, value: &str) -> String {
-    /// The way to return one term, of a struct that has several.
+    /// The way to return a single term of a struct that has several.
     const ONE_TERM: (&str, &str) = ("Terms", "Terms(vec3(0.0), …, vec3(0.0))");
     let Some(expected) = expected else {
         return format!(

@@ -1,4 +1,4 @@
-//! Errors of a module that could be read: what its values are, and what they would have to be.
+//! Errors in a module that could be parsed: the types of its values, and the required types.
 
 use naga::{
     BinaryOperator, Block, Expression, Function, Handle, Module, Span, Statement, TypeInner, UnaryOperator,
@@ -47,7 +47,7 @@ struct Values<'a> {
     name: &'a str,
     function: &'a Function,
     types: Typifier,
-    /// The number of expressions up to the first one without a type.
+    /// The number of expressions before the first one without a type.
     known: usize,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Values<'a> {
         Some(self.function.expressions.get_span(value).to_range()?.start)
     }
 
-    /// The explanation of an expression that is not valid.
+    /// The explanation of an invalid expression.
     fn expression(&self, wrong: Handle<Expression>) -> Option<Explained> {
         let expressions = &self.function.expressions;
         let uses = |expression: &Expression, used: &Handle<Expression>| match expression {
@@ -93,7 +93,7 @@ impl<'a> Values<'a> {
             Expression::Splat { value, .. } => value == used,
             _ => false,
         };
-        // A number that found no type, because of what it is used in.
+        // A number whose type could not be determined from its use.
         let mut wrong = wrong;
         while matches!(expressions[wrong], Expression::Literal(_) | Expression::Splat { .. })
             || self.of(wrong).is_some_and(|of| of.contains("Abstract"))
@@ -143,7 +143,7 @@ impl<'a> Values<'a> {
         Some((self.place(wrong), message))
     }
 
-    /// The message about two values that an operator does not take.
+    /// The message about two values that an operator does not accept.
     fn combined(
         &self,
         op: BinaryOperator,
@@ -205,7 +205,7 @@ impl<'a> Values<'a> {
         ))
     }
 
-    /// The explanation of a struct or a vector made of the wrong values.
+    /// The explanation of a struct or a vector constructed from the wrong values.
     fn composed(
         &self,
         at: usize,
@@ -247,13 +247,13 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The place and the text of a value in the call that begins at a token.
+    /// The position and the text of a value in the call that begins at a token.
     fn argument(&self, call: usize, index: usize) -> Option<(usize, &'a str)> {
         let part = self.scan.parts(call + 1).get(index)?.clone();
         Some((self.scan.tokens.get(part.start)?.at, self.scan.source(part)))
     }
 
-    /// The explanation of a statement that is not valid.
+    /// The explanation of an invalid statement.
     fn statement(&self, error: &FunctionError) -> Option<Explained> {
         let begins =
             |wanted: &dyn Fn(&Statement) -> bool| Some(find(&self.function.body, wanted)?.to_range()?.start);
@@ -293,7 +293,7 @@ impl<'a> Values<'a> {
                 }
                 let of = self.of(*pointer)?;
                 let of = of.split_once(", ").map_or("", |(_, of)| of.trim_end_matches('>'));
-                // The end of `vec3<f32>` is that of the pointer too.
+                // `vec3<f32>` ends like the pointer type.
                 let of = if of.contains('<') { format!("{of}>") } else { of.to_owned() };
                 Some((at, format!("`{target}` is {}, but {}", called(&of), misfit(&of, &got, text))))
             }
@@ -354,7 +354,7 @@ impl<'a> Values<'a> {
     }
 }
 
-/// A type as naga writes it: `vec3f` is `vec3<f32>`.
+/// A type in naga's notation: `vec3f` is `vec3<f32>`.
 fn plain(of: &str) -> String {
     match of.as_bytes() {
         [b'v', b'e', b'c', _, b'f'] => format!("{}<f32>", &of[..4]),
@@ -367,7 +367,7 @@ fn last_operand(text: &str) -> &str {
     text.rsplit(['<', '>', '=']).next().unwrap_or(text).trim()
 }
 
-/// The place of the first such statement in a block.
+/// The position of the first matching statement in a block.
 fn find(block: &Block, wanted: &dyn Fn(&Statement) -> bool) -> Option<Span> {
     block.span_iter().find_map(|(statement, span)| {
         if wanted(statement) {

@@ -1,9 +1,9 @@
-//! Names that are not defined: those of other languages, of equations, and misspelt ones.
+//! Undefined names: those of other languages, of equations, and misspelt ones.
 
 use super::scan::Scan;
 use crate::text::{listed, nearest};
 
-/// Names of GLSL, HLSL and C, and of the equations, with what they are here.
+/// Names from GLSL, HLSL, C and the equations, with their equivalents here.
 const MEANT: &[(&str, &str)] = &[
     ("float", "f32"),
     ("double", "f32"),
@@ -55,7 +55,7 @@ const MEANT: &[(&str, &str)] = &[
 const RECEIVED: &[(&str, &str)] =
     &[("l", "vec3<f32>"), ("v", "vec3<f32>"), ("frame", "Frame"), ("m", "Parameters")];
 
-/// The name here of a type of another language.
+/// The name here of a type from another language.
 pub(super) fn wgsl_type(word: &str) -> String {
     match word {
         "vec2" | "vec3" | "vec4" => format!("{word}<f32>"),
@@ -63,7 +63,7 @@ pub(super) fn wgsl_type(word: &str) -> String {
     }
 }
 
-/// The message about a name that is not defined, the token `i`.
+/// The message about an undefined name, the token `i`.
 pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
     if name == "void" {
         return "WGSL has no void; a function without a result has no ->".to_owned();
@@ -83,7 +83,7 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
         let defines =
             |j: &usize| matches!(scan.before(*j, 1), "let" | "var" | "const" | "fn" | "struct" | "alias");
         let declared = (1..scan.tokens.len()).filter(defines);
-        // Variables of this function, and whatever is outside of functions.
+        // Variables of this function, and everything outside functions.
         let begins = (0..i).rposition(|j| scan.word(j) == "fn").unwrap_or(0);
         let known = declared
             .filter(|j| (begins..i).contains(j) || matches!(scan.before(*j, 1), "fn" | "struct" | "const"));

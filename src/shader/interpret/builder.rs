@@ -1,4 +1,4 @@
-//! Writing code: registers, constants, folding, and reuse of earlier results.
+//! Emits code: registers, constants, folding, and reuse of earlier results.
 
 use std::collections::HashMap;
 
@@ -7,14 +7,14 @@ use super::{
     instruction::{Instruction, Operation},
 };
 
-/// The number of registers, for variables, intermediate values and constants.
+/// Number of registers, for variables, intermediate values and constants.
 pub(super) const REGISTERS: usize = 1 << 16;
-/// The most instructions, calls and expressions of a program with all calls inlined.
+/// Maximum number of instructions, calls and expressions of a program with all calls inlined.
 const WORK: usize = 1 << 20;
-/// The deepest nesting of blocks and calls.
+/// Maximum nesting of blocks and calls.
 const DEPTH: usize = 200;
 
-/// One word, known now or at run time.
+/// A word, known now or at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Operand {
     Constant(u32),
@@ -30,7 +30,7 @@ fn too_large() -> Unsupported {
 #[derive(Default)]
 pub(super) struct Builder {
     pub(super) code: Vec<Instruction>,
-    /// The register 65 535 − i holds the constant i.
+    /// Constants: register 65 535 − i holds constant i.
     pub(super) constants: Vec<u32>,
     places: HashMap<u32, u16>,
     blocks: HashMap<Vec<u32>, u16>,
@@ -62,7 +62,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Leaves what [`enter`](Self::enter) entered.
+    /// Leaves the block or call entered by [`enter`](Self::enter).
     pub(super) fn leave(&mut self) {
         self.depth -= 1;
     }
@@ -126,7 +126,7 @@ impl Builder {
         }
     }
 
-    /// Writes an instruction unchanged.
+    /// Emits an instruction unchanged.
     pub(super) fn push(&mut self, instruction: Instruction) -> Result<()> {
         self.work()?;
         self.code.push(instruction);
@@ -189,7 +189,7 @@ impl Builder {
         self.push(Instruction::new(Operation::Copy, register, [a, 0, 0]))
     }
 
-    /// The word at a place known at run time.
+    /// The word at a position known at run time.
     pub(super) fn load_at(&mut self, base: usize, offset: u16) -> Result<Operand> {
         let d = self.allocate(1, false)?;
         let b = base as u16;
@@ -197,13 +197,13 @@ impl Builder {
         Ok(Operand::Register(d))
     }
 
-    /// Writes a value to a place known at run time.
+    /// Writes a value to a position known at run time.
     pub(super) fn store_at(&mut self, base: usize, offset: u16, value: Operand) -> Result<()> {
         let a = self.register(value)?;
         self.push(Instruction::new(Operation::StoreAt, base as u16, [a, offset, 0]))
     }
 
-    /// The first of consecutive registers that hold these values already, or may since they are constants.
+    /// The first of consecutive registers that already hold these values, or can since they are constants.
     fn row_of(&mut self, values: &[Operand]) -> Result<Option<u16>> {
         let constants: Option<Vec<u32>> = values
             .iter()
@@ -224,7 +224,8 @@ impl Builder {
         Ok(None)
     }
 
-    /// The first of consecutive registers that hold these values, for instructions that address them by number.
+    /// The first of consecutive registers that hold these values, for instructions that address them by
+    /// number.
     pub(super) fn in_a_row(&mut self, values: &[Operand]) -> Result<u16> {
         if let Some(base) = self.row_of(values)? {
             self.wanted.extend((0..values.len()).map(|i| base + i as u16));
@@ -254,20 +255,20 @@ impl Builder {
         self.code.len()
     }
 
-    /// Writes a jump whose target is set later, by [`land`](Self::land).
+    /// Emits a jump whose target is set later, by [`land`](Self::land).
     pub(super) fn jump(&mut self, operation: Operation, a: u16, d: u16) -> Result<usize> {
         self.push(Instruction::new(operation, d, [a, 0, 0]))?;
         Ok(self.code.len() - 1)
     }
 
-    /// Writes a jump to a target.
+    /// Emits a jump to a target.
     pub(super) fn jump_to(&mut self, operation: Operation, a: u16, target: usize) -> Result<()> {
         let at = self.jump(operation, a, 0)?;
         self.code[at].aim(target);
         Ok(())
     }
 
-    /// Makes jumps lead here.
+    /// Sets the target of jumps to the next instruction.
     pub(super) fn land(&mut self, jumps: &[usize]) {
         let here = self.here();
         for jump in jumps {
@@ -275,7 +276,7 @@ impl Builder {
         }
     }
 
-    /// Starts code that may not run, or not before the code after it.
+    /// Begins code that may not run, or not before the code after it.
     pub(super) fn scope(&self) -> usize {
         self.log.len()
     }

@@ -1,4 +1,4 @@
-//! From naga's expressions to words and instructions.
+//! Translates naga's expressions to words and instructions.
 
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ use super::{
 
 type Words = Rc<[Operand]>;
 
-/// Two values word by word; a single word goes with each word of the other.
+/// Two values word by word; a single word is combined with each word of the other.
 fn pairs<'a>(a: &'a [Operand], b: &'a [Operand]) -> impl Iterator<Item = (Operand, Operand)> + 'a {
     let count = a.len().max(b.len());
     let at = |words: &[Operand], i: usize| words[i.min(words.len() - 1)];
@@ -90,7 +90,7 @@ impl<'m> Lowering<'m> {
             }
             Expression::As { expr, kind, convert } => self.cast(frame, expr, kind, convert)?,
             Expression::ArrayLength(pointer) => {
-                // Only the table is a reachable buffer.
+                // Only the table is an accessible buffer.
                 self.place(frame, pointer)?;
                 Rc::new([Operand::Constant(1)])
             }
@@ -260,7 +260,7 @@ impl<'m> Lowering<'m> {
         if swapped { self.map(operation, &[&b, &a]) } else { self.map(operation, &[&a, &b]) }
     }
 
-    /// An operation word by word; single words go with each word of the others.
+    /// Applies an operation word by word; single words are combined with each word of the others.
     pub(super) fn map(&mut self, operation: O, values: &[&[Operand]]) -> Result<Words> {
         let count = values.iter().map(|v| v.len()).max().unwrap_or(0);
         let mut words = Vec::with_capacity(count);

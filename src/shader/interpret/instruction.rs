@@ -4,9 +4,9 @@ use std::f32::consts::PI;
 
 use super::{STEPS, StepLimit, builder::REGISTERS};
 
-/// The registers of a running program. They are floats since most instructions calculate with floats: moving values
-/// between the processor's integer and float registers would take longer than the calculation. Other words are stored
-/// bit by bit.
+/// The registers of a running program. They are floats since most instructions calculate with floats: moving
+/// values between the processor's integer and float registers would take longer than the calculation. Other
+/// words are stored as bits.
 pub(super) type Registers = [f32; REGISTERS];
 
 /// A type of 32 bits.
@@ -97,16 +97,16 @@ fn arity<Types, F: Pure<Types>>(_: F) -> usize {
 macro_rules! operations {
     (
         { $($name:ident = $function:expr;)* }
-        // In the following pairs, the second does three times what the first does.
+        // In each of the following pairs, the second applies the first to three words.
         { $($single:ident $triple:ident = $part:expr;)* }
     ) => {
-        /// The operation of an instruction. Pure ones put a function of registers `a`, `b`, `c` into `d`.
+        /// The operation of an instruction. Pure ones write a function of registers `a`, `b`, `c` to `d`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
         pub(super) enum Operation {
             $($name,)*
             $($triple,)*
-            /// Multiplies three words from `a` on by three from `b` on, and puts the sum into `d`.
+            /// Multiplies three words from `a` on by three from `b` on, and writes the sum to `d`.
             Dot,
             /// Jumps to the target.
             Jump,
@@ -133,7 +133,7 @@ macro_rules! operations {
                 }
             }
 
-            /// The operation that does the same to three words.
+            /// The operation that applies this one to three words.
             pub(super) fn triple(self) -> Option<Self> {
                 match self {
                     $(Self::$single => Some(Self::$triple),)*
@@ -152,8 +152,8 @@ macro_rules! operations {
             }
         }
 
-        /// Runs instructions until they end. There are as many registers as 16-bit numbers, so no register number needs
-        /// a check.
+        /// Runs instructions until they end. There are as many registers as 16-bit numbers, so register
+        /// numbers need no check.
         pub(super) fn execute(code: &[Instruction], registers: &mut Registers) -> Result<(), StepLimit> {
             let mut at = 0;
             let mut steps = 0;
@@ -214,7 +214,7 @@ macro_rules! operations {
 operations! {
 {
     Copy = |a: u32| a;
-    // The offset of an element: indices beyond the end mean the last, as on the GPU.
+    // The offset of an element: indices beyond the end refer to the last element, as on the GPU.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
     Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
 
@@ -235,7 +235,7 @@ operations! {
     SubI = u32::wrapping_sub;
     MulI = u32::wrapping_mul;
     NegI = u32::wrapping_neg;
-    // Division by zero gives the dividend, and the remainder 0.
+    // Division by zero returns the dividend, and the remainder 0.
     DivS = |a: i32, b: i32| if b == 0 { a } else { a.wrapping_div(b) };
     DivU = |a: u32, b: u32| a.checked_div(b).unwrap_or(a);
     RemS = |a: i32, b: i32| if b == 0 { 0 } else { a.wrapping_rem(b) };
@@ -312,7 +312,7 @@ operations! {
     TrailingZeros = u32::trailing_zeros;
     LeadingZeros = u32::leading_zeros;
     ReverseBits = u32::reverse_bits;
-    // The position of a bit; −1 if there is none.
+    // The position of a bit; −1 if it does not exist.
     FirstTrailing = |a: u32| if a == 0 { u32::MAX } else { a.trailing_zeros() };
     FirstLeadingU = first_leading;
     FirstLeadingS = |a: i32| first_leading((if a < 0 { !a } else { a }).cast_unsigned());
@@ -343,7 +343,7 @@ operations! {
 }
 }
 
-/// A number within bounds; the upper bound if they are the wrong way round; the lower bound for NaN.
+/// A number within bounds; the upper bound if they are swapped; the lower bound for NaN.
 fn clamp(a: f32, low: f32, high: f32) -> f32 {
     a.max(low).min(high)
 }
@@ -375,11 +375,12 @@ fn field(offset: u32, count: u32) -> (u32, u32) {
     (offset, count.min(32 - offset))
 }
 
-/// An instruction: an operation, the register it writes, and those it reads. Jumps have their target in `b` and `c`.
+/// An instruction: an operation, the register that it writes, and those that it reads. Jumps store their
+/// target in `b` and `c`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Instruction {
     pub(super) operation: Operation,
-    /// For operations on three words: bits 0 to 2 tell if `a`, `b`, `c` advance from word to word.
+    /// For operations on three words: bits 0 to 2 are set if `a`, `b`, `c` advance from word to word.
     pub(super) strides: u8,
     pub(super) d: u16,
     pub(super) a: u16,
@@ -410,13 +411,13 @@ impl Instruction {
         self.c = target as u16;
     }
 
-    /// True if it has a target.
+    /// True for a jump.
     pub(super) fn jumps(self) -> bool {
         use Operation::{Jump, JumpIfEqual, JumpUnless, Repeat, RepeatUnless};
         matches!(self.operation, Jump | JumpUnless | JumpIfEqual | Repeat | RepeatUnless)
     }
 
-    /// The registers that it reads, if their numbers are known.
+    /// The registers read by the instruction, if their numbers are known.
     pub(super) fn reads(self) -> impl Iterator<Item = u16> {
         use Operation as O;
         let (words, count, length) = match self.operation {
@@ -430,12 +431,12 @@ impl Instruction {
         words.into_iter().take(count).flat_map(move |word| (0..length).map(move |k| word.wrapping_add(k)))
     }
 
-    /// The register that it writes, if any, and if its number is known.
+    /// The register written by the instruction, if any, and if its number is known.
     pub(super) fn writes(self) -> Option<u16> {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
     }
 
-    /// True if it reads or writes registers of unknown numbers.
+    /// True if it reads or writes registers with numbers known only at run time.
     pub(super) fn wanders(self) -> bool {
         matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }

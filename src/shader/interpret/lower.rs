@@ -1,7 +1,7 @@
-//! From naga's functions to instructions: functions and calls, and the places of values.
+//! Translates naga's functions to instructions: functions and calls, and the positions of values.
 //!
-//! Calls are inlined, vectors and structs are split into words. Rearranging words (swizzles, constructors, members)
-//! costs no instruction, and arguments are not copied.
+//! Calls are inlined, vectors and structs are split into words. Rearranging words (swizzles, constructors,
+//! members) takes no instructions, and arguments are not copied.
 
 use std::{collections::HashMap, rc::Rc};
 
@@ -45,15 +45,16 @@ pub(super) struct Place {
 /// A function being inlined.
 pub(super) struct Frame<'m> {
     pub(super) function: &'m Function,
-    /// True for the function that is run, false for those that it calls.
+    /// True for the function being run, false for those that it calls.
     pub(super) is_outermost: bool,
     pub(super) types: Rc<Typifier>,
     pub(super) arguments: Vec<Value>,
     pub(super) values: Vec<Option<Value>>,
     pub(super) locals: Vec<u16>,
-    /// The registers of the results; `None` if the one `return` comes last, and its value needs no copy.
+    /// The registers of the results; `None` if there is a single `return` at the end, and its value needs no
+    /// copy.
     pub(super) results: Option<u16>,
-    /// The value of that one `return`.
+    /// The value of that single `return`.
     pub(super) returned: Rc<[Operand]>,
     /// Jumps to the end.
     pub(super) returns: Vec<usize>,
@@ -75,7 +76,7 @@ pub(super) struct Lowering<'m> {
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
     /// The `let`s of the outermost function whose values are kept, and their registers.
     pub(super) watched: HashMap<Handle<Expression>, Vec<u16>>,
-    /// True once the outermost function has begun.
+    /// True while inside the outermost function.
     is_inside: bool,
 }
 
@@ -92,7 +93,7 @@ pub(super) fn literal(literal: Literal) -> Option<u32> {
     }
 }
 
-/// True if the only `return` of a function, if there is one, is its last statement.
+/// True if a function has no `return`, or only one as its last statement.
 fn returns_last(function: &Function) -> bool {
     fn returns(block: &Block) -> usize {
         let of = |statement: &Statement| match statement {
@@ -132,7 +133,7 @@ impl<'m> Lowering<'m> {
         lowering
     }
 
-    /// The value of an expression of the module; those that it is made of come before it.
+    /// The value of a constant expression of the module, whose operands come before it.
     fn constant_expression(&self, expression: &Expression) -> Option<Rc<[Operand]>> {
         let known = |handle: Handle<Expression>| self.constants.get(handle.index())?.clone();
         match expression {
@@ -245,7 +246,7 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// Inlines a call; returns the words of the result.
+    /// Inlines a call, and returns the words of the result.
     pub(super) fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Rc<[Operand]>> {
         let function = &self.module.functions[handle];
         let types = self.types(handle)?;
@@ -269,7 +270,7 @@ impl<'m> Lowering<'m> {
             around: Vec::new(),
         };
         self.locals(&mut frame)?;
-        // Literals and arguments have their values without a statement.
+        // Literals and arguments have values without a statement.
         let named = if is_outermost { self.watched.keys().copied().collect() } else { Vec::new() };
         for handle in named.into_iter().filter(|handle| function.expressions[*handle].needs_pre_emit()) {
             self.watch(&mut frame, handle)?;
@@ -283,7 +284,7 @@ impl<'m> Lowering<'m> {
         Ok((0..count).map(|i| Operand::Register(base + i as u16)).collect())
     }
 
-    /// Keeps the value of a `let` that is watched. What is calculated on no way that was taken stays NaN.
+    /// Keeps the value of a watched `let`. Values in branches that are not taken stay NaN.
     pub(super) fn watch(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<()> {
         if !frame.is_outermost {
             return Ok(());
@@ -322,13 +323,13 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The value of an expression: calculated before, or without calculation.
+    /// The value of an expression: calculated before, or available without calculation.
     pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
         if let Some(value) = &frame.values[handle.index()] {
             return Ok(value.clone());
         }
         let value = self.expression(frame, handle)?;
-        // Variables keep their places, constants their values.
+        // Variables keep their positions, constants their values.
         frame.values[handle.index()] = Some(value.clone());
         Ok(value)
     }
@@ -345,7 +346,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The one word of a value.
+    /// The single word of a value.
     pub(super) fn word(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Operand> {
         match self.words(frame, handle)?.first() {
             Some(word) => Ok(*word),

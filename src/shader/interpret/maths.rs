@@ -60,7 +60,7 @@ fn of_floats(fun: M) -> Option<O> {
     })
 }
 
-/// Componentwise functions of whole numbers.
+/// Componentwise functions of integers.
 fn of_integers(fun: M, signed: bool) -> Option<O> {
     Some(match (fun, signed) {
         (M::Abs, true) => O::AbsS,
@@ -199,7 +199,7 @@ impl Lowering<'_> {
         self.map(O::Select, &[&[total], &[number(0.0)], &way])
     }
 
-    /// By its first column.
+    /// The determinant, expanded along its first column.
     fn determinant(&mut self, a: &[Operand]) -> Result<Operand> {
         let size = match a.len() {
             1 => return Ok(a[0]),

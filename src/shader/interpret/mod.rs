@@ -1,12 +1,12 @@
-//! Running WGSL on the CPU: a function of a validated module becomes a program for a small virtual machine.
+//! Runs WGSL on the CPU: a function of a validated module becomes a program for a small virtual machine.
 //!
-//! Custom models have no Rust twin. This evaluates them for the CPU renderer, the tables of the command line and the
-//! curves of directional albedo.
+//! Custom models have no Rust twin. This interpreter evaluates them for the CPU renderer, the tables of the
+//! command line and the curves of directional albedo.
 //!
-//! A program is a list of instructions on 32-bit registers: vectors and structs are split up, and calls inlined, which
-//! WGSL allows since it has no recursion. Integers follow the rules of WGSL (they wrap, division by zero gives the
-//! dividend, shifts use the last five bits of the distance), floats are those of Rust. Indices beyond the end of an
-//! array mean its last element, as with `wgpu` on the GPU.
+//! A program is a list of instructions on 32-bit registers: vectors and structs are split up, and calls
+//! inlined, which is possible since WGSL has no recursion. Integers follow the rules of WGSL (they wrap,
+//! division by zero returns the dividend, shifts use the last five bits of the distance), floats are those of
+//! Rust. Indices beyond the end of an array refer to its last element, as with `wgpu` on the GPU.
 
 use std::{
     cell::RefCell,
@@ -32,11 +32,11 @@ use builder::{Operand, REGISTERS};
 use instruction::{Instruction, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
-/// The most instructions in loops of one run, those of a body counted in every round; a few milliseconds. A finite loop
-/// may need more.
+/// Maximum number of instructions in the loops of one run, counting the body in every iteration; a few
+/// milliseconds. A finite loop may need more.
 pub const STEPS: usize = 1 << 17;
 
-/// A construct of a function that cannot be run on the CPU.
+/// A construct in a function that cannot be run on the CPU.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}")]
 pub struct Unsupported {
@@ -54,14 +54,14 @@ pub type Lets = Vec<(String, usize)>;
 )]
 pub struct StepLimit;
 
-/// A function of a module, with everything it calls, ready to run.
+/// A function of a module, with everything that it calls, ready to run.
 ///
-/// Inputs and outputs are 32-bit words: `f32` by its bits, `bool` as 0 or 1; vectors, matrices (column by column),
-/// arrays and structs flattened in the order of their members, without padding.
+/// Inputs and outputs are 32-bit words: `f32` by its bits, `bool` as 0 or 1; vectors, matrices (column by
+/// column), arrays and structs flattened in the order of their members, without padding.
 #[derive(Debug)]
 pub struct Program {
     code: Box<[Instruction]>,
-    /// The register 65 535 − i holds the constant i.
+    /// Constants: register 65 535 − i holds constant i.
     constants: Box<[u32]>,
     /// The initial values of private variables.
     initial: Box<[(u16, u32)]>,
@@ -72,7 +72,7 @@ pub struct Program {
     id: u64,
 }
 
-/// Registers kept from run to run, and the program whose constants they hold.
+/// Registers kept between runs, and the program whose constants they hold.
 struct Scratch {
     registers: Box<Registers>,
     program: u64,
@@ -93,29 +93,29 @@ thread_local! {
 static PROGRAMS: AtomicU64 = AtomicU64::new(1);
 
 impl Program {
-    /// Prepares a function of a validated module, with everything it calls.
+    /// Prepares a function of a validated module, with everything that it calls.
     ///
     /// # Errors
-    /// If there is no such function, or it uses something that only a GPU has.
+    /// Returns an error if the function does not exist, or uses something that only a GPU has.
     pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
         Self::lets(module, function, None, |_| false).map(|(program, _)| program)
     }
 
-    /// The same for a function that may read a table in a buffer: a read-only array of that name, of which
-    /// [`run_with`](Self::run_with) receives one row. Every index means that row.
+    /// Like [`new`](Self::new), for a function that may read a table in a buffer: a read-only array with this
+    /// name, of which [`run_with`](Self::run_with) receives one row. Every index refers to that row.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self, Unsupported> {
         Self::lets(module, function, Some(table), |_| false).map(|(program, _)| program)
     }
 
-    /// A program whose results are the values of `let`s of the function, those whose names are wanted, one after the other:
-    /// each with its name and its number of words. Of a `let` that a run does not reach, the words are NaN. If there are
-    /// none, the results are those of the function.
+    /// A program that returns the values of those `let`s of the function whose names are wanted, one after
+    /// the other, each with its name and its number of words. The words of a `let` that a run does not reach
+    /// are NaN. Without such `let`s, the results are those of the function.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn lets(
         module: &Module,
         name: &str,
@@ -187,16 +187,16 @@ impl Program {
         self.results.len()
     }
 
-    /// The number of words in a row of the table, padding included; 0 without a table.
+    /// The number of words in a row of the table, including padding; 0 without a table.
     #[must_use]
     pub fn row_words(&self) -> usize {
         self.row_words
     }
 
-    /// Runs the function. Missing arguments are zero; results are written as far as there is room.
+    /// Runs the function. Missing arguments are zero; results are written as far as there is space.
     ///
     /// # Errors
-    /// If it does not end.
+    /// Returns an error if the function does not terminate.
     pub fn run(&self, arguments: &[u32], results: &mut [u32]) -> Result<(), StepLimit> {
         self.run_with(&[], arguments, results)
     }
@@ -205,7 +205,7 @@ impl Program {
     /// padding, in words. Missing words are zero.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// Returns the errors of [`run`](Self::run).
     pub fn run_with(&self, row: &[u32], arguments: &[u32], results: &mut [u32]) -> Result<(), StepLimit> {
         SCRATCH.with_borrow_mut(|scratch| {
             if scratch.program != self.id {

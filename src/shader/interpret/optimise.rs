@@ -1,9 +1,9 @@
-//! Fewer instructions with the same effect.
+//! Optimises programs: fewer instructions with the same effect.
 //!
-//! Registers other than variables are written by one instruction, which makes it easy to remove unread results, and to
-//! fuse copies with the calculation before them, products with the sum after them, and three equal operations on three
-//! words. Together these save a sixth of the time of Disney's model and a fifth of that of the microfacet model
-//! (`benches/models.rs`).
+//! Registers other than variables are written by a single instruction. This makes it easy to remove unread
+//! results, and to fuse copies with the calculation before them, products with the sum after them, and three
+//! equal operations on three words. Together these save a sixth of the time of Disney's model and a fifth of
+//! that of the microfacet model (`benches/models.rs`).
 
 use super::{
     builder::Builder,
@@ -15,15 +15,15 @@ const REACH: usize = 64;
 
 struct Optimiser<'b> {
     builder: &'b Builder,
-    /// `None` where an instruction was removed.
+    /// Instructions; `None` for removed ones.
     code: Vec<Option<Instruction>>,
-    /// The targets of jumps.
+    /// True for targets of jumps.
     targets: Vec<bool>,
     /// The number of reads of each register.
     reads: Vec<u32>,
 }
 
-/// The code of a builder, shortened; `results` are read in the end.
+/// The optimised code of a builder; `results` are read at the end.
 pub(super) fn shortened(builder: &mut Builder, results: &[u16]) -> Vec<Instruction> {
     let code = std::mem::take(&mut builder.code);
     let mut targets = vec![false; code.len() + 1];
@@ -85,8 +85,8 @@ impl Optimiser<'_> {
         }
     }
 
-    /// The instruction before another that writes a register, if the code between passes a test and has no jump into or
-    /// out of it.
+    /// The instruction before another one that writes a register, if the code between passes a test and has
+    /// no jumps into or out of it.
     fn origin(&self, register: u16, at: usize, passes: impl Fn(Instruction) -> bool) -> Option<usize> {
         if self.targets[at] {
             return None;
@@ -139,7 +139,7 @@ impl Optimiser<'_> {
         (steady(product.a) && steady(product.b)).then_some(origin)
     }
 
-    /// Writes a value directly to the variable into which alone it is copied.
+    /// Writes a value directly to the variable that is its only copy.
     fn join_copies(&mut self) {
         for at in 0..self.code.len() {
             let Some(copy) = self.code[at] else { continue };
@@ -186,7 +186,7 @@ impl Optimiser<'_> {
     }
 }
 
-/// One instruction for three that do the same to three words.
+/// Replaces three instructions that do the same to three words by one.
 fn triples(code: Vec<Instruction>, targets: &[bool]) -> Vec<Instruction> {
     let mut joined: Vec<Instruction> = Vec::with_capacity(code.len());
     let mut places = Vec::with_capacity(code.len() + 1);
@@ -208,7 +208,7 @@ fn triples(code: Vec<Instruction>, targets: &[bool]) -> Vec<Instruction> {
     joined
 }
 
-/// The instruction that does what these three do, one after the other.
+/// The instruction equivalent to these three.
 fn triple(three: &[Instruction]) -> Option<Instruction> {
     let [first, rest @ ..] = three else { return None };
     let operation = first.operation.triple()?;

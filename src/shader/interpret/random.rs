@@ -1,5 +1,5 @@
-//! Random functions against a separate interpreter: variables that change while values read from them are in use,
-//! loops, early returns, pointers.
+//! Compares random functions with a separate interpreter: variables that change while values read from them
+//! are in use, loops, early returns, pointers.
 
 use std::fmt::Write as _;
 
@@ -21,7 +21,7 @@ enum Step {
     SetElement(Expr, Expr),
     Shuffle,
     Know(usize, Expr),
-    /// Adds to a variable through a pointer; its old value becomes known.
+    /// Adds to a variable through a pointer, and makes its old value known.
     Bump(usize, usize, Expr),
     Branch(Expr, Vec<Step>, Vec<Step>),
     Switch(Expr, Vec<Step>, Vec<Step>),
@@ -262,7 +262,7 @@ fn random_functions_give_what_they_should() {
             fn f(a: i32, b: i32) -> vec2<i32> {{ var sum = 0; for (var n = 0; n < 2; n++) {{ sum = 3 * sum + inner(b + n, a); }}
             return vec2(inner(a, b), sum); }}"
         );
-        // Constants that divide by zero or are no index are errors of WGSL.
+        // Constants that divide by zero or are invalid indices are errors in WGSL.
         if !valid(&text) {
             continue;
         }

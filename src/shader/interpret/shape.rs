@@ -1,4 +1,4 @@
-//! The layout of values: the number of their words, and the place of each.
+//! The layout of values: the number of their words, and the position of each.
 
 use naga::{ArraySize, Handle, Module, Scalar, ScalarKind, Type, TypeInner};
 
@@ -6,7 +6,7 @@ use super::Unsupported;
 
 type Result<T> = std::result::Result<T, Unsupported>;
 
-/// The places of the words of a composite value.
+/// The positions of the words of a composite value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layout {
     /// One after the other.
@@ -15,14 +15,14 @@ pub(super) enum Layout {
     Buffer,
 }
 
-/// The most words of one value.
+/// Maximum number of words in one value.
 const LARGEST: usize = super::builder::REGISTERS;
 
 fn too_large() -> Unsupported {
     Unsupported { what: "it has a value that is too large".to_owned() }
 }
 
-/// Refuses numbers that do not have 32 bits.
+/// Refuses numbers without 32 bits.
 fn check(scalar: Scalar) -> Result<()> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) | (ScalarKind::AbstractInt | ScalarKind::AbstractFloat, _) | (_, 4) => Ok(()),
@@ -41,13 +41,13 @@ fn length(size: ArraySize) -> Result<usize> {
     }
 }
 
-/// Elements of one type, as found by an index.
+/// Elements of one type, accessed by an index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elements {
     pub(super) count: usize,
-    /// Words of one element.
+    /// Number of words in an element.
     pub(super) words: usize,
-    /// Words from one element to the next.
+    /// Number of words from one element to the next.
     pub(super) stride: usize,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn elements(module: &Module, inner: &TypeInner, layout: Layout) -> Re
     }
 }
 
-/// The start of a member of a struct.
+/// The offset of a member of a struct.
 pub(super) fn member(module: &Module, inner: &TypeInner, index: usize, layout: Layout) -> Result<usize> {
     let TypeInner::Struct { members, .. } = inner else {
         let elements = elements(module, inner, layout)?;
@@ -128,7 +128,7 @@ pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
     if count > LARGEST { Err(too_large()) } else { Ok(count) }
 }
 
-/// The place of each word of a value, counted from its first.
+/// The offset of each word of a value.
 pub(super) fn offsets(module: &Module, inner: &TypeInner, layout: Layout) -> Result<Vec<usize>> {
     let count = words(module, inner)?;
     if layout == Layout::Packed {
@@ -164,7 +164,7 @@ fn place(module: &Module, inner: &TypeInner, base: usize, offsets: &mut Vec<usiz
     Ok(())
 }
 
-/// The number of words of a value in a buffer, padding included.
+/// The number of words of a value in a buffer, including padding.
 pub(super) fn span(module: &Module, inner: &TypeInner) -> usize {
     match inner {
         TypeInner::Array { stride, size, .. } => length(*size).map_or(0, |n| n * *stride as usize / 4),

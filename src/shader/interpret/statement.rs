@@ -1,4 +1,4 @@
-//! From naga's statements to instructions and jumps.
+//! Translates naga's statements to instructions and jumps.
 
 use std::rc::Rc;
 

@@ -85,7 +85,7 @@ fn arithmetic_of_floats() {
     of_floats("ceil(a) + 10.0 * floor(b) + 100.0 * trunc(-a)", [2.25, -2.25], &[3.0 - 30.0 - 200.0]);
     of_floats("vec4(round(a), round(b), fract(a), fract(-b))", [2.5, 3.5], &[2.0, 4.0, 0.5, 0.5]);
     of_floats("vec3(step(a, b), step(b, a), step(a, a))", [1.0, 2.0], &[1.0, 0.0, 1.0]);
-    // Bounds the wrong way round, and an edge of no width.
+    // Swapped bounds, and an edge without width.
     of_floats(
         "vec3(clamp(a, b, 1.5), smoothstep(a, a, a), smoothstep(a, a, b))",
         [1.0, 2.0],
@@ -202,7 +202,7 @@ fn whole_numbers_wrap_and_never_trap() {
     of_words("a >> b", [0x8000_0000, 31], 1);
     of_words("a - b", [0, 1], u32::MAX);
     of_words("min(a, b) + max(a, b) + abs(a)", [u32::MAX, 2], 0);
-    // Words that would be numbers of no value.
+    // Words that would be NaN as floats.
     for word in [0x7f80_0001, 0xffff_ffff, 0x7fc0_1234] {
         of_words("select(b, a, a > 0u)", [word, 1], word);
         assert_eq!(
@@ -263,7 +263,7 @@ fn loops() {
     assert_eq!(counted(text, 0), 508);
     assert_eq!(counted("var i = 0; loop { sum += i; continuing { i++; break if i >= n; } }", 4), 6);
     assert_eq!(counted("var i = 0; loop { sum += i; continuing { i++; break if i >= n; } }", -4), 0);
-    // A break in an inner loop or switch leaves that alone; a continue in a switch goes on with the loop.
+    // A break in an inner loop or switch leaves only that; a continue in a switch continues the loop.
     let text = "for (var i = 0; i < n; i++) { for (var j = 0; j < n; j++) { if j > i { break; } if j == 1 { continue; } sum += 10 * i + j; } sum += 1000; }";
     let mut expected = 0;
     for i in 0..4 {
@@ -301,14 +301,14 @@ fn values_last_while_variables_change() {
     assert_eq!(counted(text, 1), 3 + 10 + 400);
     let text = "var x = n; for (var i = 0; i < 3; i++) { let y = x; x = x * 2; sum += y; }";
     assert_eq!(counted(text, 1), 7);
-    // Read before a loop, and used in it alone, before the variable changes there.
+    // Read before a loop, and used only in it, before the variable changes there.
     let text = "var x = n; let y = x; for (var i = 0; i < 3; i++) { sum += y * 2; x += 1; }";
     assert_eq!(counted(text, 1), 6);
     // Assigned in every iteration to a variable that changes there.
     let text = "var x = 0; let y = n * 3; var i = 0; loop { x = y; sum += x; x += 1; sum += x; continuing { i++; break if i >= 3; } }";
     assert_eq!(counted(text, 2), 39);
     assert_eq!(counted(&text.replace("loop {", "loop { sum += 1;"), 2), 42);
-    // Words that are next to each other, one of them in a branch.
+    // Adjacent words, one of them in a branch.
     let text = "fn f(v: vec3<i32>) -> vec3<i32> { var w: vec3<i32>; if v.x > 0 { w.x = v.x; } w.y = v.y; w.z = v.z; return w; }";
     assert_eq!(ints(text, &[-1, 2, 3]), [0, 2, 3]);
     assert_eq!(ints(text, &[1, 2, 3]), [1, 2, 3]);
@@ -466,7 +466,7 @@ fn endless_loops_are_stopped() {
         said.contains("more than 131072 instructions in its loops") && said.contains("may be endless"),
         "{said}"
     );
-    // A long loop that ends is none.
+    // A long loop that terminates is not endless.
     assert_eq!(counted("for (var i = 0; i < n; i++) { sum += 1; }", 10_000), 10_000);
 }
 
@@ -519,7 +519,7 @@ fn functions_that_grow_beyond_all_bounds_are_refused() {
     }
     text += "fn f(x: f32) -> f32 { return g1999(x); }";
     assert!(Program::new(&module(&text), "f").expect_err("too deep").what.contains("nested too deeply"));
-    // Types that grow without any call.
+    // Types that grow without calls.
     let mut text = "struct S0 { a: f32, b: f32 }\n".to_owned();
     for i in 1..25 {
         text += &format!("struct S{i} {{ a: S{0}, b: S{0} }}\n", i - 1);

@@ -1,14 +1,14 @@
-//! Errors of one file that swallow the next one: an unclosed comment or bracket, an unfinished declaration. In the
-//! joined text, the compiler would report them at the first line that makes no sense any more, which is in somebody
-//! else's file.
+//! Errors of one file that swallow the next one: an unclosed comment or bracket, an unfinished declaration.
+//! In the combined text, the compiler would report them at the first line that no longer makes sense, which
+//! is in somebody else's file.
 
 use super::{
     LIMITS,
     token::{Finding, Kind, Token, tokens},
 };
 
-/// Finds anything open at the end of a file: its beginning, and what is missing. Errors within the file are left to the
-/// compiler.
+/// Finds anything open at the end of a file: its start, and what is missing. Errors within the file are left
+/// to the compiler.
 #[must_use]
 pub fn unfinished(text: &str) -> Option<Finding> {
     let scan = tokens(text, LIMITS.tokens).ok().filter(|scan| scan.list.len() <= LIMITS.tokens)?;
@@ -20,13 +20,13 @@ pub fn unfinished(text: &str) -> Option<Finding> {
     open_import(text).or_else(|| open_bracket(text, &scan.list)).or_else(|| open_end(&scan.list))
 }
 
-/// True for a text with nothing but space and comments.
+/// True for a text of only white space and comments.
 #[must_use]
 pub fn is_empty(text: &str) -> bool {
     tokens(text, 0).is_ok_and(|scan| scan.list.is_empty())
 }
 
-/// An `#import` in braces continues until they are closed, over any number of lines.
+/// Finds an `#import` in unclosed braces, which continues over any number of lines.
 fn open_import(text: &str) -> Option<Finding> {
     let mut begins = None;
     let mut depth = 0_usize;
@@ -49,7 +49,7 @@ fn open_import(text: &str) -> Option<Finding> {
     begins.filter(|_| depth > 0).map(|at| (at, missing("{")))
 }
 
-/// The bracket that is not closed.
+/// Finds a bracket that is not closed.
 fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
     let indentation = |at: usize| {
         let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
@@ -70,7 +70,7 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
                     }
                 }
                 (Some(opening), "}") => return Some((opening.at, missing(opening.text))),
-                // One too many, which the compiler finds in place.
+                // A surplus bracket, which the compiler reports in place.
                 _ => return None,
             },
             _ => {}
@@ -82,7 +82,7 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
     Some((found.at, missing(found.text)))
 }
 
-/// Every declaration ends with a bracket or a semicolon.
+/// Finds a declaration without an end: every one ends with a bracket or a semicolon.
 fn open_end(tokens: &[Token]) -> Option<Finding> {
     let mut back = tokens.iter().rev().filter(|token| token.kind != Kind::Directive);
     let last = back.next()?;

@@ -1,6 +1,6 @@
-//! The expanded size of constants and types: `const B = array(A, A)` doubles with every line, and an array of arrays
-//! multiplies the lengths. The parser evaluates constants, so this is estimated before, from the text: a word counts as
-//! many words as its declaration.
+//! The expanded size of constants and types: `const B = array(A, A)` doubles with every line, and an array of
+//! arrays multiplies the lengths. The parser evaluates constants, so the size is estimated before, from the
+//! text: a name counts as many words as its declaration.
 
 use std::{cell::Cell, collections::HashMap};
 
@@ -14,7 +14,7 @@ use super::{
 struct Declaration<'a> {
     name: &'a str,
     at: usize,
-    /// Expanded where it is used: constants and types. Functions and variables are not.
+    /// True for constants and types, which are expanded where they are used. Functions and variables are not.
     expands: bool,
     /// The tokens after the name.
     first: usize,
@@ -27,7 +27,7 @@ enum State {
     Unknown,
     /// Being examined: the parser reports a declaration that uses itself.
     Open,
-    /// Its expanded number of words, and the longest chain of declarations in it.
+    /// The expanded number of words, and the longest chain of declarations in it.
     Known(u64, usize),
 }
 
@@ -35,20 +35,21 @@ struct Search<'a> {
     limits: &'a Limits,
     tokens: &'a [Token<'a>],
     declarations: Vec<Declaration<'a>>,
-    /// Names declared twice, as in the two parts of a condition, stand for both.
+    /// Declarations by name. Names declared twice, as in both branches of a condition, stand for both.
     by_name: HashMap<&'a str, Vec<usize>>,
     states: Vec<State>,
     /// For each declaration, the one in it with the longest chain.
     next: Vec<usize>,
     /// The declarations being examined, each within the one before.
     path: Vec<usize>,
-    /// The initial values of constants, including those in functions: arrays may have them as lengths.
+    /// Initial values of constants, including those in functions, since array lengths may refer to them.
     values: HashMap<&'a str, Vec<(usize, usize)>>,
     /// The number of tokens left for calculating the lengths of arrays.
     steps: Cell<u32>,
 }
 
-/// The tokens read for the lengths of all arrays: constants that use each other are many.
+/// Maximum number of tokens read for the lengths of all arrays, since constants that use each other may be
+/// many.
 const STEPS: u32 = 1 << 20;
 
 /// Checks the declarations of a text.
@@ -185,7 +186,7 @@ impl<'a> Search<'a> {
     /// The expanded number of words of some tokens, and the longest chain of declarations below them.
     fn words(&mut self, first: usize, end: usize, user: usize) -> Result<(u64, usize), Finding> {
         let tokens = self.tokens;
-        // The enclosing arrays: where each ends, and their number of elements together.
+        // The enclosing arrays: the end of each, and the product of their numbers of elements.
         let mut arrays: Vec<(usize, u64)> = Vec::new();
         let (mut sum, mut below) = (0_u64, 0);
         for i in first..end.min(tokens.len()) {
@@ -253,8 +254,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The largest possible value of an integer expression: a sum and a product are no larger than the product of their
-    /// parts, each plus one.
+    /// The largest possible value of an integer expression: sums and products are bounded by the product of
+    /// their operands, each plus one.
     fn magnitude(&self, first: usize, end: usize, depth: usize) -> Option<u64> {
         let tokens = self.tokens.get(first..end)?;
         let single = tokens.len() == 1;
@@ -284,7 +285,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A whole number in the syntax of WGSL.
+/// An integer in the syntax of WGSL.
 fn whole(text: &str) -> Option<u64> {
     let digits = text.trim_end_matches(['u', 'i']);
     match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {

@@ -1,5 +1,5 @@
-//! Limits on a parsed module: the size of values and variables, the depth of expressions, and the total with every call
-//! inlined.
+//! Limits on a parsed module: the size of values and variables, the depth of expressions, and the total with
+//! all calls inlined.
 
 use naga::{
     Block, Expression, Function, Handle, Module, Span, Statement, Type, TypeInner, front::Typifier,
@@ -11,7 +11,7 @@ use super::Limits;
 type Finding = (Span, String);
 type Result<T> = std::result::Result<T, Finding>;
 
-/// From this size on, in bytes, reading or writing a value counts as more than one step.
+/// Size, in bytes, from which reading or writing a value counts as more than one step.
 const LARGE: u32 = 256;
 
 /// The first thing in a module that exceeds a limit.
@@ -44,7 +44,7 @@ fn within(found: u64, most: u64, span: Span, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// The bytes of a type, if a value may have them.
+/// The size of a type in bytes, if a value may have it.
 fn size(module: &Module, limits: &Limits, ty: Handle<Type>, span: Span, what: &str) -> Result<u32> {
     match bytes(module, &module.types[ty].inner) {
         Some(size) if size <= limits.value_bytes => Ok(size),
@@ -55,7 +55,7 @@ fn size(module: &Module, limits: &Limits, ty: Handle<Type>, span: Span, what: &s
     }
 }
 
-/// The bytes of a type; `None` if there are too many to count.
+/// The size of a type in bytes; `None` if it is too large to count.
 fn bytes(module: &Module, inner: &TypeInner) -> Option<u32> {
     match inner {
         TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => Some(4),
@@ -63,7 +63,7 @@ fn bytes(module: &Module, inner: &TypeInner) -> Option<u32> {
     }
 }
 
-/// Constants: their sizes, and their depth.
+/// Checks the sizes and the depth of constants.
 fn constants(module: &Module, limits: &Limits) -> Result<()> {
     let mut depths: Vec<usize> = Vec::with_capacity(module.global_expressions.len());
     for (handle, expression) in module.global_expressions.iter() {
@@ -74,7 +74,7 @@ fn constants(module: &Module, limits: &Limits) -> Result<()> {
             other => operands(other, note),
         }
         let span = module.global_expressions.get_span(handle);
-        // One word of the text may make three expressions.
+        // One word of the text may produce three expressions.
         if depth + 1 > 4 * limits.chain {
             let what = format!(
                 "this constant depends on a chain of {depth} others; at most {} are allowed",

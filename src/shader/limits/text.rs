@@ -1,5 +1,6 @@
-//! Limits on a text before it is parsed: the parser, the lowering and the evaluation of constants recurse as deep as
-//! expressions, blocks and types are nested, and a chain such as `a + b + c` is a tree as deep as it is long.
+//! Limits on a text before it is parsed: the parser, the lowering and the evaluation of constants recurse as
+//! deep as expressions, blocks and types are nested, and a chain such as `a + b + c` is a tree as deep as it
+//! is long.
 
 use super::{
     Limits, expansion,
@@ -9,9 +10,9 @@ use super::{
 /// The reason for refusing a text.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// Something at a byte.
+    /// An error at a byte.
     At(usize, String),
-    /// The size of the whole.
+    /// The size of the whole text.
     Whole(String),
 }
 
@@ -56,24 +57,24 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
     expansion::check(&tokens, limits)
 }
 
-/// A part between brackets, or between the braces of a block.
+/// A part in brackets, or in the braces of a block.
 struct Group {
     open: u8,
     /// The depth of the enclosing trees down to here, without braces in between.
     above: usize,
-    /// The same for brackets, and in braces for blocks.
+    /// The nesting depth in brackets, and in braces of blocks.
     nesting: usize,
-    /// Operators since the last comma: a tree is at most as deep.
+    /// Number of operators since the last comma: a bound for the depth of the tree.
     operators: usize,
-    /// The deepest tree within inner brackets since the last comma.
+    /// The deepest tree in inner brackets since the last comma.
     deepest: usize,
-    /// The deepest of all before that.
+    /// The deepest tree before that.
     worst: usize,
-    /// The number of `else if` in the chain being read.
+    /// Number of `else if` in the present chain.
     chain: usize,
-    /// Values of `case`.
+    /// Number of `case` values.
     cases: usize,
-    /// Between `case` and its block.
+    /// True between `case` and its block.
     selectors: bool,
 }
 
@@ -92,7 +93,7 @@ impl Group {
         }
     }
 
-    /// A comma begins another tree, a semicolon another statement.
+    /// Ends a tree at a comma, or a statement at a semicolon.
     fn next(&mut self) {
         self.worst = self.worst.max(self.operators + self.deepest);
         (self.operators, self.deepest) = (0, 0);
@@ -174,7 +175,7 @@ impl Walk<'_> {
 
     fn open(&mut self, token: Token) -> Result<(), Finding> {
         let group = self.innermost();
-        // A call, an index and a list of template arguments are operators on what precedes them.
+        // A call, an index and a template list are operators on what precedes them.
         group.operators += 1;
         let above = group.above + group.operators;
         let nesting = if group.open == b'{' { 1 } else { group.nesting + 1 };
@@ -189,7 +190,7 @@ impl Walk<'_> {
     }
 
     fn close(&mut self, token: Token) -> Result<(), Finding> {
-        // Mismatched brackets are reported by the parser, which reads no further.
+        // Mismatched brackets are reported by the parser, which does not read further.
         if self.innermost().open == b'{' || self.in_section(1) {
             return self.unbalanced(token);
         }
@@ -232,12 +233,12 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// True if closing so many groups would close one from before the open condition.
+    /// True if closing this many groups would close one from before the open condition.
     fn in_section(&self, closed: usize) -> bool {
         self.sections.last().is_some_and(|(_, open)| self.groups.len() < open + closed)
     }
 
-    /// Code hidden from the parser must not hide depth here.
+    /// Refuses unbalanced code in conditions: code hidden from the parser must not hide depth here.
     fn unbalanced(&self, token: Token) -> Result<(), Finding> {
         if self.sections.is_empty() {
             return Ok(());
@@ -285,8 +286,8 @@ impl Walk<'_> {
     }
 }
 
-/// Refuses features not available to models: memory, since their input comes as parameters; `discard`, since they do
-/// not only draw pixels; and constants set from outside.
+/// Refuses features that are not available to models: memory, since their input comes as parameters;
+/// `discard`, since they do not only draw pixels; and constants set from outside.
 fn resource(tokens: &[Token], i: usize, binds: impl Fn(usize) -> bool) -> Result<(), Finding> {
     let token = tokens[i];
     if token.kind == Kind::Word && matches!(token.text, "discard" | "override") && !binds(token.at) {

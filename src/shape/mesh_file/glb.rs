@@ -1,5 +1,5 @@
-//! glTF 2.0 binary files (.glb): The Khronos Group (2021), *glTF 2.0 Specification*. Read are the triangles of the scene
-//! that the file shows first, as its nodes place them: positions, normals and the first texture coordinates.
+//! glTF 2.0 binary files (.glb): The Khronos Group (2021), *glTF 2.0 Specification*. Reads the triangles of
+//! the file's default scene, as placed by its nodes: positions, normals and the first texture coordinates.
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{parameter::FileProblem, text::shortened};
 
-/// The first bytes of such a file.
+/// First bytes of such a file.
 pub const BEGIN: &[u8] = b"glTF";
 
 /// Reads the polygons of a file.
@@ -35,7 +35,7 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
     let wrong = |e: gltf::Error| format!("it is no valid glTF: {}", mistake(&e));
     let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(wrong)?;
     let json = json::read(json.into_owned()).map_err(|what| format!("it is no valid glTF: {what}"))?;
-    // The validation of the library trusts these.
+    // The library's validation trusts these.
     for (i, mesh) in json.meshes.iter().enumerate() {
         let mut attributes = mesh.primitives.iter().flat_map(|p| p.attributes.values());
         if let Some(stray) = attributes.find(|accessor| accessor.value() >= json.accessors.len()) {
@@ -54,7 +54,7 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
     Ok(())
 }
 
-/// A mistake in words of our own: the library's are written for its authors.
+/// An error in our own words: the library's are written for its authors.
 fn mistake(error: &gltf::Error) -> String {
     match error {
         gltf::Error::Validation(mistakes) => {
@@ -78,7 +78,7 @@ fn mistake(error: &gltf::Error) -> String {
     }
 }
 
-/// The meshes of the scene with their places: those of the nodes below its roots.
+/// The meshes of the scene with their transformations: those of the nodes below its roots.
 fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, Mat4)>, String> {
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err("it shows no scene".to_owned()) };
@@ -97,7 +97,7 @@ fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, Mat4)>, String> {
 }
 
 fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(), String> {
-    // Normals stay perpendicular to what is stretched.
+    // Normals stay perpendicular to the stretched surface.
     let turn = Mat3::from_mat4(place);
     let (turn_normals, mirrored) = (turn.inverse().transpose(), turn.determinant() < 0.0);
     for primitive in mesh.primitives() {
@@ -115,7 +115,7 @@ fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(
         let normals = optional(Semantic::Normals, Dimensions::Vec3, "NORMAL")?;
         let textures = primitive
             .get(&Semantic::TexCoords(0))
-            // Those of integers are seldom, and only say where to brush.
+            // Integer texture coordinates are rare, and only determine the brush direction.
             .filter(|accessor| accessor.data_type() == DataType::F32)
             .map(|accessor| floats::<2>(&accessor, Dimensions::Vec2, "TEXCOORD_0", blob))
             .transpose()?;
@@ -179,7 +179,8 @@ fn indices(accessor: &Accessor, blob: &[u8]) -> Result<Vec<u32>, String> {
     Ok(items(accessor, accessor.data_type().size(), what, blob)?.map(index).collect())
 }
 
-/// The bytes of each item of an accessor. The reader of the library trusts lengths and offsets; these are tried.
+/// The bytes of each item of an accessor. The library's reader trusts lengths and offsets; here they are
+/// checked.
 fn items<'a>(
     accessor: &Accessor,
     size: usize,
@@ -265,7 +266,7 @@ mod tests {
         builder.numbers()
     }
 
-    /// The mesh after a change, or what is wrong.
+    /// The mesh after a change, or the error.
     fn after(change: impl FnOnce(&mut Value)) -> Result<crate::shape::PolygonMesh, String> {
         let (mut json, data) = parts();
         change(&mut json);
@@ -303,7 +304,7 @@ mod tests {
             })
             .expect("legal")
         };
-        // Turned by 90° about z, then stretched: x becomes y.
+        // Rotated by 90° about z, then stretched: x becomes y.
         let s = std::f32::consts::FRAC_1_SQRT_2;
         let mesh = turned(json!({ "rotation": [0, 0, s, s], "scale": [2, 1, 1], "translation": [9, 9, 9] }));
         let extents = mesh.positions.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())) * 2.0;

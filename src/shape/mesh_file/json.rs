@@ -1,22 +1,23 @@
-//! The JSON of a glTF file, and its mistakes in words.
+//! The JSON of a glTF file, with errors in words.
 
 use gltf::json::{Error, Root, deserialize};
 
 use crate::text::shortened;
 
-/// What authors may put everywhere, of any type: glTF 2.0 specification, 5.1 and `extras.schema.json`.
+/// The key of data that authors may add anywhere, of any type: glTF 2.0 specification, 5.1 and
+/// `extras.schema.json`.
 const EXTRAS: &[u8] = b"\"extras\"";
-/// A key of no meaning and the same length.
+/// A key of the same length without meaning.
 const UNREAD: &[u8] = b"\"unread\"";
 
 /// Reads the JSON of a file.
 pub fn read(mut json: Vec<u8>) -> Result<Root, String> {
-    // The library wants an object there.
+    // The library expects an object there.
     rename_extras(&mut json);
     deserialize::from_slice(&json).map_err(|error| in_words(&error))
 }
 
-/// Hides the extras of all objects. Every place stays the same.
+/// Hides the extras of all objects. All positions stay the same.
 fn rename_extras(json: &mut [u8]) {
     let mut at = 0;
     while let Some(start) = json[at..].iter().position(|byte| *byte == b'"').map(|i| at + i) {
@@ -25,7 +26,7 @@ fn rename_extras(json: &mut [u8]) {
             end += if json[end] == b'\\' { 2 } else { 1 };
         }
         at = (end + 1).min(json.len());
-        // A text that is followed by a colon is a key.
+        // A text followed by a colon is a key.
         let is_key = json[at..].trim_ascii_start().starts_with(b":");
         if is_key && &json[start..at] == EXTRAS {
             json[start..at].copy_from_slice(UNREAD);
@@ -33,7 +34,7 @@ fn rename_extras(json: &mut [u8]) {
     }
 }
 
-/// The mistake without names of types of the library.
+/// The error without type names of the library.
 fn in_words(error: &Error) -> String {
     let whole = error.to_string();
     let what = whole.rsplit_once(" at line ").map_or(&*whole, |(what, _)| what);
@@ -55,7 +56,7 @@ fn in_words(error: &Error) -> String {
     format!("{what} (line {}, column {} of its JSON)", error.line(), error.column())
 }
 
-/// What belongs there.
+/// The expected value, in words.
 fn kind(expected: &str) -> &str {
     match expected {
         "a map" => "an object",
@@ -94,7 +95,7 @@ mod tests {
                 assert_eq!(root.nodes[0].mesh.map(|mesh| mesh.value()), Some(3));
             }
         }
-        // A text that does not end, and one that ends within a sign.
+        // A text that does not end, and one that ends within a character.
         for text in ["\"", "\"extras", "\"extras\"", "\"a\\", "\"extras\" :"] {
             assert!(read(text.as_bytes().to_vec()).is_err(), "{text}");
         }

@@ -16,10 +16,10 @@ mod polygon;
 use model::{Builder, Model};
 pub use model::{MAX_CORNERS, MAX_POLYGONS, MAX_VERTICES};
 
-/// Models as other programs write them: glTF 2.0 binary, OBJ and PLY, told apart by their first bytes. Of one, renderers
-/// read: the number of vertices, of normals and of polygons; the vertices, around the origin with a largest extent of 1;
-/// the normals; and of each polygon the number of its corners, three or four, four indices of vertices, four of normals
-/// (−1: none), and the direction in which it is brushed.
+/// Models written by other programs: glTF 2.0 binary, OBJ and PLY, distinguished by their first bytes.
+/// Renderers read: the numbers of vertices, of normals and of polygons; the vertices, around the origin with
+/// a largest extent of 1; the normals; and for each polygon the number of its corners, three or four, four
+/// indices of vertices, four of normals (−1: none), and the brush direction.
 pub static FORMAT: FileFormat = FileFormat {
     name: "a glTF binary, OBJ or PLY file",
     extensions: &["glb", "obj", "ply"],
@@ -108,7 +108,7 @@ mod tests {
 
     use super::*;
 
-    /// The curve along which the tube of `scripts/knot` runs, and its direction, as the file has them.
+    /// The curve along which the tube of `scripts/knot` runs, and its direction, as in the file.
     fn curve(t: f32) -> (Vec3, Vec3) {
         let (s, c) = (f32::sin, f32::cos);
         let point = Vec3::new(s(t) + 2.0 * s(2.0 * t), c(t) - 2.0 * c(2.0 * t), -s(3.0 * t));
@@ -121,7 +121,7 @@ mod tests {
         const EXTENT: f32 = 6.707_968;
         let mesh = MeshFile { normals: 1, ..MeshFile::default() }.mesh(1);
         assert_eq!((mesh.positions.len(), mesh.polygons.len()), (128 * 12, 2 * 128 * 12));
-        // The middle of the box around it: the knot has three axes of symmetry, but none along y.
+        // The centre of the bounding box: the knot has three axes of symmetry, but none along y.
         let circles = (0..128).map(|i| curve(std::f32::consts::TAU * i as f32 / 128.0)).collect::<Vec<_>>();
         let offset = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len() as f32
             - circles.iter().map(|(p, _)| *p).sum::<Vec3>() / 128.0 / EXTENT;

@@ -1,5 +1,5 @@
-//! A model as a file has it: polygons with any number of corners, from which the numbers for [`MeshFile`](super::MeshFile)
-//! are made.
+//! A model as in a file: polygons with any number of corners, converted to the numbers for
+//! [`MeshFile`](super::MeshFile).
 
 use std::collections::HashMap;
 
@@ -9,11 +9,11 @@ use glam::{DVec3, Vec2, Vec3};
 use super::polygon::{doubled_area, pieces};
 use crate::shape::mesh::{Polygon, PolygonMesh};
 
-/// The most polygons of a model, those of more than four corners cut into triangles.
+/// Maximum number of polygons of a model; polygons with more than four corners are cut into triangles.
 pub const MAX_POLYGONS: usize = 500_000;
-/// The most vertices that a file may list.
+/// Maximum number of vertices in a file.
 pub const MAX_VERTICES: usize = 4 * MAX_POLYGONS;
-/// The most corners of a polygon.
+/// Maximum number of corners of a polygon.
 pub const MAX_CORNERS: usize = 128;
 
 /// A corner of a polygon.
@@ -21,9 +21,9 @@ pub const MAX_CORNERS: usize = 128;
 pub struct Corner {
     /// The position.
     pub position: Vec3,
-    /// The normal of the surface, of any length, if the file has one.
+    /// Surface normal, of any length, if the file has one.
     pub normal: Option<Vec3>,
-    /// The texture coordinates, if the file has them.
+    /// Texture coordinates, if the file has them.
     pub texture: Option<Vec2>,
 }
 
@@ -34,17 +34,17 @@ pub struct Builder {
     normals: Pool,
     polygons: Vec<Read>,
     corners: Vec<[u32; 2]>,
-    /// Polygons as they will be drawn.
+    /// Number of polygons that will be drawn.
     drawn: usize,
 }
 
-/// A polygon that was read: the end of its corners, and the direction in which texture coordinates grow.
+/// A polygon that was read: the end of its corners, and the direction of increasing texture coordinates.
 struct Read {
     end: usize,
     brushed: Vec3,
 }
 
-/// Vectors, each once.
+/// Unique vectors.
 #[derive(Default)]
 struct Pool {
     all: Vec<Vec3>,
@@ -53,7 +53,7 @@ struct Pool {
 
 impl Pool {
     fn index(&mut self, v: Vec3) -> u32 {
-        // Adding 0 makes −0 and 0 the same bits.
+        // Adding 0 gives −0 and 0 the same bits.
         let key = (v + Vec3::ZERO).to_array().map(f32::to_bits);
         *self.known.entry(key).or_insert_with(|| {
             self.all.push(v);
@@ -62,16 +62,16 @@ impl Pool {
     }
 }
 
-/// The place of a corner without a normal among the normals.
+/// Index that stands for a corner without a normal.
 const NONE: u32 = u32::MAX;
-/// Numbers of a polygon: the count of its corners, the positions of four, the normals of four, and a direction.
+/// Number of values per polygon: the number of its corners, four positions, four normals, and a direction.
 const STRIDE: usize = 12;
 
 impl Builder {
     /// Adds a polygon whose corners run counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// A corner is nowhere, or there is too much of it.
+    /// Returns an error if a corner is not finite, or if a limit is exceeded.
     pub fn polygon(&mut self, corners: &[Corner]) -> Result<(), String> {
         let nth = self.polygons.len() + 1;
         if corners.len() > MAX_CORNERS {
@@ -87,7 +87,7 @@ impl Builder {
             let position = self.positions.index(corner.position);
             let unit =
                 corner.normal.map(Vec3::normalize_or_zero).filter(|n| *n != Vec3::ZERO && n.is_finite());
-            // A vertex that follows itself is one.
+            // A repeated vertex counts once.
             if self.corners[begin..].last().is_none_or(|[before, _]| *before != position) {
                 self.corners.push([position, unit.map_or(NONE, |n| self.normals.index(n))]);
             }
@@ -111,16 +111,16 @@ impl Builder {
         Ok(())
     }
 
-    /// True if there is no polygon.
+    /// True if there are no polygons.
     pub fn is_empty(&self) -> bool {
         self.polygons.is_empty()
     }
 
-    /// The numbers for [`Model`]: vertices scaled so that the largest extent is 1, around the origin. Polygons without an
-    /// area are left out.
+    /// The numbers for [`Model`]: vertices scaled so that the largest extent is 1, around the origin.
+    /// Polygons without area are dropped.
     ///
     /// # Errors
-    /// There is no polygon.
+    /// Returns an error if there are no polygons.
     pub fn numbers(self) -> Result<Vec<f32>, String> {
         let Self { positions, normals, polygons, corners, .. } = self;
         let mut faces: Vec<(&[[u32; 2]], Vec3)> = Vec::with_capacity(polygons.len());
@@ -129,7 +129,8 @@ impl Builder {
             faces.push((&corners[begin..*end], *brushed));
             begin = *end;
         }
-        // What is left out may have been the outermost; twice is enough but for models that consist of it.
+        // Dropped polygons may have been the outermost; twice is enough except for models that consist of
+        // them.
         let (mut unit, mut corners) = (Vec::new(), Vec::new());
         for _ in 0..3 {
             let (middle, extent) = bounds(&faces, &positions.all);
@@ -148,14 +149,14 @@ impl Builder {
     }
 }
 
-/// The positions of corners, in the room for them.
+/// The positions of corners, stored in `room`.
 fn at<'r>(face: &[[u32; 2]], positions: &[Vec3], room: &'r mut Vec<Vec3>) -> &'r [Vec3] {
     room.clear();
     room.extend(face.iter().map(|[p, _]| positions[*p as usize]));
     room
 }
 
-/// The middle and the largest extent of some polygons.
+/// The centre and the largest extent of some polygons.
 fn bounds(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3]) -> (DVec3, f64) {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for [p, _] in faces.iter().flat_map(|(face, _)| *face) {
@@ -167,7 +168,7 @@ fn bounds(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3]) -> (DVec3, f64) {
 
 /// The numbers: counts of positions, normals and polygons, then these. Only what polygons use is kept.
 fn written(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
-    /// The vectors that are used, each with its new place.
+    /// The used vectors, each with its new index.
     struct Used<'a> {
         all: &'a [Vec3],
         places: Vec<u32>,
@@ -219,7 +220,7 @@ fn texture_direction(corners: &[Corner]) -> Vec3 {
     if sum.is_finite() { sum.normalize_or_zero() } else { Vec3::ZERO }
 }
 
-/// The numbers of a file as they are used.
+/// The numbers of a file in use.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a> {
     positions: &'a [[f32; 3]],
@@ -228,7 +229,7 @@ pub struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// The model in the numbers of a file; none if they are not from one.
+    /// The model in the numbers of a file; `None` if they are invalid.
     #[must_use]
     pub fn new(numbers: &'a [f32]) -> Option<Self> {
         let [positions, normals, polygons, rest @ ..] = numbers else { return None };
@@ -244,7 +245,7 @@ impl<'a> Model<'a> {
         (whole && model.polygons.iter().all(|polygon| polygon[1..5].iter().all(within))).then_some(model)
     }
 
-    /// The mesh: each point of the surface once, or, with the normals of the file, once for each normal.
+    /// The mesh: each point of the surface once or, with the normals of the file, once for each normal.
     #[must_use]
     pub fn mesh(&self, own_normals: bool) -> PolygonMesh {
         let mut mesh = PolygonMesh::default();
@@ -277,7 +278,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// One of some vectors; zero if it is none of them.
+/// One of several vectors; zero if the index is invalid.
 fn vector(of: &[[f32; 3]], index: i32) -> Vec3 {
     usize::try_from(index).ok().and_then(|i| of.get(i)).map_or(Vec3::ZERO, |v| Vec3::from_array(*v))
 }
@@ -341,7 +342,7 @@ mod tests {
         assert_eq!(full, "it has more than the 500000 polygons that fit");
     }
 
-    /// Two triangles that meet at a right angle, with a normal of each at both of its ends of the edge.
+    /// Two triangles that meet at a right angle, with normals of each at both ends of the edge.
     #[test]
     fn points_are_shared_unless_the_normals_of_the_file_differ() {
         let build = || {

@@ -1,8 +1,9 @@
-//! Wavefront OBJ files: Wavefront Technologies (1995), *Advanced Visualizer Manual*, appendix B1. Read are the faces with
-//! their vertices, normals and texture coordinates; groups count as one, and materials are not read.
+//! Wavefront OBJ files: Wavefront Technologies (1995), *Advanced Visualizer Manual*, appendix B1. Reads the
+//! faces with their vertices, normals and texture coordinates; groups count as one, and materials are
+//! ignored.
 //!
-//! The reader is our own because every mistake names its line, in files of a million lines: a face may name vertices that
-//! follow it, so faces are resolved at the end, and each remembers where it was.
+//! The reader is our own so that every error has a line number, even in files of a million lines: a face may
+//! refer to vertices that follow it, so faces are resolved at the end, and each stores its line.
 
 use std::borrow::Cow;
 
@@ -14,14 +15,14 @@ use crate::{
     text::{after_mark, quoted},
 };
 
-/// The most corners of all faces, those without an area included.
+/// Maximum number of corners of all faces, including those without area.
 const MOST_NAMED: usize = 2 * MAX_VERTICES;
-/// The rule of faces.
+/// The rule for faces.
 const FACE: &str = "a face (f) must name its corners as vertex, vertex/texture, vertex//normal or all three";
 
-/// The statements of a text, each with its line: a backslash at the end of a line continues it in the next.
+/// The statements of a text, each with its line: a backslash at the end of a line continues it on the next.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Old Macintosh programs end lines in their own way.
+    // Old Macintosh programs use other line ends.
     let end = if text.contains('\n') { '\n' } else { '\r' };
     let mut lines = text.split(end).enumerate();
     std::iter::from_fn(move || {
@@ -43,7 +44,7 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// The first numbers of a statement; none if one of them is no number.
+/// The first numbers of a statement; `None` if one of them is not a number.
 fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Option<[f32; N]> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
@@ -52,7 +53,7 @@ fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Opt
     Some(numbers)
 }
 
-/// Adds to a list of a file, which is at most [`MAX_VERTICES`] long.
+/// Appends to a list of a file, which is limited to [`MAX_VERTICES`].
 fn push<T>(list: &mut Vec<T>, item: T, what: &str) -> Result<(), Cow<'static, str>> {
     if list.len() == MAX_VERTICES {
         return Err(format!("the file has more than {MAX_VERTICES} {what}, the most read").into());
@@ -61,14 +62,14 @@ fn push<T>(list: &mut Vec<T>, item: T, what: &str) -> Result<(), Cow<'static, st
     Ok(())
 }
 
-/// What a corner of a face names: a vertex, a texture coordinate and a normal.
+/// The references of a corner of a face: a vertex, a texture coordinate and a normal.
 #[derive(Clone, Copy, Debug, Default)]
 struct Named {
-    /// From 1; 0 for nothing.
+    /// Counted from 1; 0 for none.
     places: [u32; 3],
 }
 
-/// The lists of a file: vertices, texture coordinates and normals, and the faces that name them.
+/// The lists of a file: vertices, texture coordinates and normals, and the faces that refer to them.
 #[derive(Default)]
 struct Lists {
     positions: Vec<Vec3>,
@@ -80,7 +81,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// Reads a statement; the rule that it breaks.
+    /// Reads a statement, or returns the rule that it breaks.
     fn statement(&mut self, line: usize, statement: &str) -> Result<(), Cow<'static, str>> {
         let mut words = statement.split_ascii_whitespace();
         match words.next() {
@@ -133,13 +134,13 @@ impl Lists {
         Ok(())
     }
 
-    /// What a corner of a face names. Negative numbers count back from what was read so far.
+    /// The references of a corner of a face. Negative numbers count back from the last item read.
     fn corner(&self, word: &str) -> Result<Named, Cow<'static, str>> {
         let counts = [self.positions.len(), self.textures.len(), self.normals.len()].map(|n| n as u32);
         let mut named = Named::default();
         for (i, part) in word.split('/').enumerate() {
             let Some(place) = named.places.get_mut(i) else { return Err(FACE.into()) };
-            // A texture or a normal may be left out.
+            // A texture or a normal may be omitted.
             if part.is_empty() && i > 0 {
                 continue;
             }
@@ -156,7 +157,7 @@ impl Lists {
         Ok(named)
     }
 
-    /// The corner that a face names, or the reason why there is none.
+    /// The corner to which a face refers, or the reason why it does not exist.
     fn resolved(&self, named: Named) -> Result<Corner, Cow<'static, str>> {
         let [position, texture, normal] = named.places;
         fn at<T: Copy>(list: &[T], kind: usize, place: u32) -> Result<Option<T>, Cow<'static, str>> {
@@ -174,7 +175,7 @@ impl Lists {
     }
 }
 
-/// The message about a number of a face that leads to nothing.
+/// The message about an invalid reference of a face.
 fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
     let (one, all) = [
         ("vertex", "vertices (v)"),
@@ -195,7 +196,7 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
 
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
-    // Comments are in any encoding.
+    // Comments may be in any encoding.
     let text = String::from_utf8_lossy(after_mark(bytes));
     let at =
         |line: usize| move |what: Cow<'_, str>| FileProblem { line: Some(line), message: what.into_owned() };
@@ -274,7 +275,7 @@ mod tests {
             let cut = SQUARE.replacen("v 2 0 0", &format!("v 2{end} 0{end}0"), 1);
             let text = format!("# C:\\models{end}{cut}f 1 2{end}3{end} 4");
             assert_eq!(mesh(&text, false), whole, "{text}");
-            // A mistake is in the line where its statement begins, and those after it are in their own.
+            // An error is on the line where its statement begins, and those after it are on theirs.
             for (more, expected) in [("x\n", "7: a face (f)"), ("3\nv one\n", "10: a vertex (v)")] {
                 let said = result(format!("{cut}f 1{end} 2{end} {more}").as_bytes()).expect_err(more);
                 assert!(said.starts_with(expected), "{said}");

@@ -1,5 +1,5 @@
-//! PLY files: G. Turk (1994), *The PLY Polygon File Format*, Stanford University; as text or binary. Read are the elements
-//! `vertex`, with positions, normals and texture coordinates, and `face`.
+//! PLY files: G. Turk (1994), *The PLY Polygon File Format*, Stanford University; as text or binary. Reads
+//! the elements `vertex`, with positions, normals and texture coordinates, and `face`.
 
 use std::io::ErrorKind;
 
@@ -12,7 +12,7 @@ use ply_rs_bw::{
 use super::model::{Builder, Corner, MAX_POLYGONS, MAX_VERTICES};
 use crate::{parameter::FileProblem, text::shortened};
 
-/// The first bytes of such a file.
+/// First bytes of such a file.
 pub const BEGIN: &[u8] = b"ply";
 
 /// The names of the list of corners.
@@ -55,7 +55,7 @@ impl PropertyAccess for Vertex {
     }
 }
 
-/// A face: its corners; none if one is below 0.
+/// A face: its corners; `None` if one is negative.
 #[derive(Default)]
 struct Face(Option<Vec<u32>>);
 
@@ -73,7 +73,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// Another element, which is passed over.
+/// Another element, which is skipped.
 struct Other;
 
 impl PropertyAccess for Other {
@@ -107,7 +107,7 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
             "face" => Parser::<Face>::new()
                 .read_payload_for_element(&mut reader, element, &header)
                 .map(|f| faces = f),
-            // A file of nothing may claim any number of them.
+            // A file without data may claim any number of them.
             name if element.count > bytes.len() => {
                 return Err(whole(format!(
                     "the file ends before {} of the element {}",
@@ -138,7 +138,7 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
     Ok(())
 }
 
-/// An element of the header with the properties that it must have.
+/// An element of the header with its required properties.
 fn declared<'a>(element: Option<&'a ElementDef>, name: &str) -> Result<&'a ElementDef, String> {
     let element = element.ok_or_else(|| format!("its header has no element {name}"))?;
     let kind = |name: &str| element.properties.get(name).map(|p| &p.data_type);
@@ -155,9 +155,10 @@ fn declared<'a>(element: Option<&'a ElementDef>, name: &str) -> Result<&'a Eleme
     }
 }
 
-/// A mistake in the header in words of our own: the library's are written for its authors.
+/// An error in the header in our own words: the library's are written for its authors.
 fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
-    /// The beginnings of its words, which tell the kind of an error by nothing else, and ours.
+    /// The beginnings of the library's messages, which are all that identifies the kind of an error, and
+    /// ours.
     const KINDS: &[(&str, &str)] = &[
         ("No format line", "its header has no line format"),
         ("Invalid version", "its header names no version behind the format, such as 1.0"),
@@ -190,7 +191,7 @@ fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
     no_valid(error, true, what, bytes)
 }
 
-/// A mistake in an element, in the same way.
+/// An error in an element, in our own words.
 fn in_element(error: &ParseError, element: &ElementDef, is_text: bool, bytes: &[u8]) -> FileProblem {
     let name = shortened(&element.name);
     let what = match error.kind() {
@@ -207,9 +208,9 @@ fn in_element(error: &ParseError, element: &ElementDef, is_text: bool, bytes: &[
     no_valid(error, is_text, &what, bytes)
 }
 
-/// A mistake, with its line if that is text.
+/// An error, with its line if it is in text.
 fn no_valid(error: &ParseError, is_text: bool, what: &str, bytes: &[u8]) -> FileProblem {
-    // The library does not tell where a file stops to be text.
+    // The library does not report where the text part of a file ends.
     let stops =
         |error: std::str::Utf8Error| bytes[..error.valid_up_to()].split(|byte| *byte == b'\n').count();
     let line = match error.kind() {
@@ -245,7 +246,7 @@ mod tests {
                           property float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
                           end_header\n0 0 0 7\n2 0 0 7\n2 1 0 7\n0 1 0 7\n4 0 1 2 3\n";
 
-    /// The same as numbers in bytes.
+    /// The file as binary data.
     fn binary(little: bool) -> Vec<u8> {
         let header = SQUARE.split_inclusive("end_header\n").next().expect("a header");
         let mut bytes = header

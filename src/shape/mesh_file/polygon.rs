@@ -1,11 +1,12 @@
-//! Polygons with any number of corners, cut into those that a mesh has: triangles, and quadrilaterals that are cut along
-//! the diagonal that lies inside.
+//! Polygons with any number of corners, cut into those that a mesh has: triangles, and quadrilaterals that
+//! are split along their inner diagonal.
 
 use glam::{Vec2, Vec3};
 
 use crate::shading::normals::polygon_normal;
 
-/// The length of M. Newell's sum over the edges: twice the area of a plane polygon. 0 if it is too small to have a normal.
+/// The length of M. Newell's sum over the edges: twice the area of a plane polygon. 0 if it is too small to
+/// have a normal.
 pub fn doubled_area(corners: &[Vec3]) -> f32 {
     let normal = polygon_normal(corners);
     let Some(origin) = corners.first() else { return 0.0 };
@@ -27,7 +28,7 @@ pub fn pieces(corners: &[Vec3], mut each: impl FnMut(&[usize])) {
     let turn = |a: usize, b: usize, c: usize| (flat[b] - flat[a]).perp_dot(flat[c] - flat[a]);
     let reflex = |i: usize| turn((i + n - 1) % n, i, (i + 1) % n) < 0.0;
     match n {
-        // A mesh cuts along the diagonal from the first corner.
+        // A mesh splits along the diagonal from the first corner.
         4 if reflex(1) || reflex(3) => each(&[1, 2, 3, 0]),
         4 => each(&[0, 1, 2, 3]),
         _ if !(0..n).any(reflex) => (2..n).for_each(|i| each(&[0, i - 1, i])),
@@ -39,13 +40,13 @@ pub fn pieces(corners: &[Vec3], mut each: impl FnMut(&[usize])) {
 fn flat(corners: &[Vec3]) -> Vec<Vec2> {
     let normal = polygon_normal(corners);
     let (x, y) = normal.try_normalize().map_or((Vec3::X, Vec3::Y), Vec3::any_orthonormal_pair);
-    // `any_orthonormal_pair` does not say which way round.
+    // `any_orthonormal_pair` does not specify the orientation.
     let y = if x.cross(y).dot(normal) < 0.0 { -y } else { y };
     corners.iter().map(|p| Vec2::new(p.dot(x), p.dot(y))).collect()
 }
 
-/// Cuts off one ear after the other: a corner whose triangle has no other corner in it. The search goes on where the last
-/// ear was.
+/// Cuts off one ear after the other: a corner whose triangle contains no other corner. The search continues
+/// at the last ear.
 fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..flat.len()).collect();
     let mut triangles = Vec::with_capacity(flat.len() - 2);
@@ -63,7 +64,7 @@ fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<[usize;
             turn(a, b, c) > 0.0 && !others.copied().any(|p| inside(ear, p))
         };
         let Some(i) = (last..n).chain(0..last.min(n)).find(is_ear) else {
-            // A polygon that crosses itself may have none: no cut is better than another.
+            // A self-intersecting polygon may have none: any cut is as good as another.
             break;
         };
         triangles.push(corners(i));
@@ -88,7 +89,7 @@ mod tests {
         all
     }
 
-    /// The pieces as triangles, and their doubled areas; negative for those that face the other way.
+    /// The doubled areas of the pieces' triangles; negative for those that face the other way.
     fn areas(corners: &[Vec3]) -> Vec<f32> {
         let triangles = cut(corners).into_iter().flat_map(|piece| match piece[..] {
             [a, b, c, d] => vec![[a, b, c], [a, c, d]],

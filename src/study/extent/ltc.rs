@@ -1,10 +1,11 @@
 //! Linearly transformed cosines: E. Heitz, J. Dupuy, S. Hill, D. Neubelt (2016), *Real-Time Polygonal-Light Shading with
 //! Linearly Transformed Cosines*.
 //!
-//! A cosine about z, transformed by a matrix M, is a lobe of another width, slant and skew; its integral over a polygon is
-//! that of the cosine over the polygon transformed by M⁻¹, for which J. Lambert (1760) has a formula. M is fitted here to
-//! a lobe for a few angles of view: as by the authors its axis is the mean direction of the lobe, and three numbers are
-//! free. The sum of squares of the difference is least, where the authors take that of cubes; the results are close.
+//! A cosine lobe about z, transformed by a matrix M, is a lobe of another width, slant and skew; its integral
+//! over a polygon equals that of the cosine over the polygon transformed by M⁻¹, for which J. Lambert (1760)
+//! has a formula. Here M is fitted to a lobe for several angles of view: as in the paper its axis is the mean
+//! direction of the lobe, and three numbers are free. The fit minimises the sum of squares of the difference,
+//! the authors that of cubes; the results are close.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
@@ -16,19 +17,19 @@ use crate::{
     reflection::Surface,
 };
 
-/// The angles of view of the fits: from 0° on, a step apart.
+/// Step between the angles of view of the fits, starting at 0°.
 const STEP: f64 = 5.8;
 const NODES: usize = 16;
-/// The directions by which a lobe is known.
+/// Number of directions in which a lobe is evaluated.
 const DIRECTIONS: u32 = 1024;
-/// The ranges of the logarithms of both widths, and of the slant.
+/// Ranges of the logarithms of both widths, and of the slant.
 const RANGES: [(f64, f64); 3] = [(-9.0, 3.0), (-9.0, 3.0), (-20.0, 20.0)];
 const LIMITS: Limits = Limits { steps: 40, least_gain: 1e-6, least_move: 1e-6, first_step: 1.0 };
-/// The change of a coordinate by which derivatives are calculated.
+/// Step of a coordinate in finite differences.
 const CHANGE: f64 = 1e-5;
 
-/// The part of a cosine lobe about z that a polygon fills, cut off at the horizon: the irradiance from it over that from
-/// everywhere.
+/// The fraction of a cosine lobe about z covered by a polygon, clipped at the horizon: its irradiance
+/// relative to that of uniform surroundings.
 pub(super) fn cosine_share(corners: &[DVec3; 4]) -> f64 {
     let mut above = Vec::with_capacity(5);
     for (i, a) in corners.iter().enumerate() {
@@ -44,15 +45,15 @@ pub(super) fn cosine_share(corners: &[DVec3; 4]) -> f64 {
     let sum: f64 = edges
         .map(|(a, b)| {
             let across = a.cross(*b);
-            // The angle that the edge fills, times the z of the normal of its plane.
+            // The angle subtended by the edge, times the z of the normal of its plane.
             across.length().atan2(a.dot(*b)) * across.normalize_or_zero().z
         })
         .sum();
     sum.abs() / TAU
 }
 
-/// The matrix of a lobe about a direction in the plane of x and z, with logarithms of widths in and across that plane, and
-/// a slant.
+/// The matrix of a lobe about a direction in the plane of x and z, with the logarithms of the widths in and
+/// across that plane, and a slant.
 fn matrix(about: DVec3, [along, across, slant]: [f64; 3]) -> DMat3 {
     let x = DVec3::new(about.z, 0.0, -about.x);
     let local =
@@ -60,14 +61,14 @@ fn matrix(about: DVec3, [along, across, slant]: [f64; 3]) -> DMat3 {
     DMat3::from_cols(x, DVec3::Y, about) * local
 }
 
-/// The density of the cosine that this matrix transforms, whose inverse is given.
+/// The density of the cosine lobe transformed by a matrix, given the inverse.
 pub(super) fn density(inverse: &DMat3, l: DVec3) -> f64 {
     let back = *inverse * l;
     let squared = back.length_squared();
     FRAC_1_PI * back.z.max(0.0) * inverse.determinant().abs() / (squared * squared)
 }
 
-/// A direction of a lobe, the density of the lobe there, and that of the directions.
+/// A direction of a lobe, the density of the lobe there, and the density of sampling.
 struct Known {
     l: DVec3,
     lobe: f64,
@@ -77,7 +78,7 @@ struct Known {
 /// A lobe for one view.
 struct Lobe {
     known: Vec<Known>,
-    /// Its mean direction.
+    /// Mean direction.
     about: DVec3,
 }
 
@@ -100,7 +101,7 @@ impl Lobe {
         Self { known, about: DVec3::new(mean.x, 0.0, mean.z).normalize() }
     }
 
-    /// The part of the lobe that is elsewhere under a matrix: half the integral of the size of the difference.
+    /// The fraction of the lobe that a matrix misplaces: half the integral of the absolute difference.
     fn misplaced(&self, matrix: &DMat3) -> f64 {
         let inverse = matrix.inverse();
         let off = |k: &Known| (density(&inverse, k.l) - k.lobe).abs() / k.pdf;
@@ -140,14 +141,14 @@ impl Residuals for Lobe {
 
 /// The matrices of a lobe by the angle of view.
 pub(super) struct Fitted {
-    /// At each angle: the matrix, and the part of the lobe that it misplaces.
+    /// For each angle: the matrix, and the fraction of the lobe that it misplaces.
     nodes: Vec<(DMat3, f64)>,
 }
 
 impl Fitted {
-    /// Fits the specular lobe of an isotropic surface. `width` is about its roughness α.
+    /// Fits the specular lobe of an isotropic surface. `width` is approximately its roughness α.
     pub(super) fn new(surface: &dyn Surface, width: f64) -> Self {
-        // Each fit begins where the one before it ended.
+        // Each fit starts from the one before.
         let mut at = [width.ln(), width.ln(), 0.0];
         let nodes = (0..NODES).map(|i| {
             let mut lobe = Lobe::new(surface, STEP * i as f64);
@@ -160,18 +161,19 @@ impl Fitted {
         Self { nodes: nodes.collect() }
     }
 
-    /// The same matrix for all views.
+    /// A table with the same matrix for all views.
     #[cfg(test)]
     pub(super) fn of(matrix: DMat3) -> Self {
         Self { nodes: vec![(matrix, 0.0); NODES] }
     }
 
-    /// Angle of view in degrees, the matrix, and the part of the lobe that it misplaces, for each fit.
+    /// The angle of view in degrees, the matrix, and the fraction of the lobe that it misplaces, for each
+    /// fit.
     pub(super) fn all(&self) -> impl Iterator<Item = (f64, &DMat3, f64)> {
         self.nodes.iter().enumerate().map(|(i, (matrix, off))| (STEP * i as f64, matrix, *off))
     }
 
-    /// The matrix for a view whose angle has this cosine: between those of the neighbouring fits.
+    /// The matrix for a view with this cosine, interpolated between the neighbouring fits.
     fn at(&self, cosine: f64) -> DMat3 {
         let angle = if cosine > 0.0 { cosine.min(1.0).acos() } else { FRAC_PI_2 };
         let x = (angle.to_degrees() / STEP).min((NODES - 1) as f64);
@@ -180,8 +182,8 @@ impl Fitted {
         self.nodes[i].0 * (1.0 - part) + self.nodes[i + 1].0 * part
     }
 
-    /// The part of the lobe that a polygon fills, its corners as seen from the point, with the normal n, for a viewer in the
-    /// direction v.
+    /// The fraction of the lobe covered by a polygon with these corners relative to the point, with the
+    /// normal n, for a viewer in the direction v.
     pub(super) fn share(&self, corners: &[Vec3; 4], n: Vec3, v: Vec3) -> f64 {
         // x in the plane of normal and view.
         let frame = Frame::new(n, v);
@@ -190,8 +192,7 @@ impl Fitted {
     }
 }
 
-/// The part of a cosine lobe about n that a polygon fills: the same with the identity, for surfaces that obey Lambert's
-/// law.
+/// The fraction of a cosine lobe about n covered by a polygon, for surfaces that obey Lambert's law.
 pub(super) fn diffuse_share(corners: &[Vec3; 4], n: Vec3) -> f64 {
     let frame = Frame::from_normal(n);
     cosine_share(&corners.map(|c| frame.to_local(c).as_dvec3()))

@@ -4,26 +4,28 @@ use glam::{Vec3, Vec4};
 
 use crate::{optics::colour::luminance, reference::Picture};
 
-/// The angles of view over which the error is a mean, degrees.
+/// Width of the bins of viewing angles, in degrees.
 const BIN: f64 = 10.0;
 
-/// The distance of a picture from the converged one, by the luminance of the pixels that objects cover fully and that
-/// are lit in either. Differences are relative to the root mean square of the converged one there.
+/// The difference of a picture from the converged one, in the luminance of the pixels that objects cover
+/// fully and that are lit in either. Differences are relative to the root mean square of the converged one
+/// there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Measured {
     /// The root mean square of the difference.
     pub(super) rms: f64,
     /// The mean of the picture, relative to that of the converged one.
     pub(super) mean: f64,
-    /// The largest difference with its sign.
+    /// The largest signed difference.
     pub(super) largest: f64,
-    /// Where it is: the angle of view, degrees, and the direction from the middle of the ball as on a clock.
+    /// Location of that difference: the angle of view, in degrees, and the direction from the centre of the
+    /// ball as on a clock.
     pub(super) at: (f64, u32),
-    /// The root mean square by angle of view, degrees.
+    /// The root mean square by angle of view, in degrees.
     pub(super) by_angle: Vec<(f64, f64)>,
 }
 
-/// What [`Measured`] has to know of a point: the cosine of its angle of view, and its normal to the right and up.
+/// The data of a point for [`Measured`]: the cosine of the angle of view, and the normal to the right and up.
 pub(super) fn place(observer: Vec3, p: Vec3, n: Vec3) -> Vec3 {
     Vec3::new(n.dot((observer - p).normalize_or_zero()), n.x, n.y)
 }
@@ -34,19 +36,19 @@ fn hour([right, up]: [f32; 2]) -> u32 {
     if hour == 0 { 12 } else { hour }
 }
 
-/// The luminance of the pixels that objects cover fully, where there is light.
+/// The luminance of the pixels that objects cover fully, if lit.
 fn lit(picture: &Picture) -> Vec<f64> {
     let covered = picture.pixels.iter().filter(|p| p.w > 0.999);
     covered.map(|p| f64::from(luminance(p.truncate()))).filter(|y| *y > 0.0).collect()
 }
 
-/// Its mean.
+/// The mean luminance of these pixels.
 pub(super) fn mean_luminance(picture: &Picture) -> f64 {
     let lit = lit(picture);
     lit.iter().sum::<f64>() / lit.len().max(1) as f64
 }
 
-/// Its root mean square.
+/// The root mean square luminance of these pixels.
 pub(super) fn rms_luminance(picture: &Picture) -> f64 {
     let lit = lit(picture);
     (lit.iter().map(|y| y * y).sum::<f64>() / lit.len().max(1) as f64).sqrt()
@@ -104,7 +106,7 @@ mod tests {
 
     #[test]
     fn errors_are_those_of_the_definition() {
-        // A rim and what is dark in both do not count.
+        // A rim, and pixels that are dark in both, do not count.
         let converged = picture(&[[1.0, 1.0], [3.0, 1.0], [9.0, 0.5], [0.0, 1.0]]);
         let other = picture(&[[1.5, 1.0], [2.0, 1.0], [0.0, 0.5], [0.0, 1.0]]);
         let view = |degrees: f32, right: f32, up: f32| Vec4::new(degrees.to_radians().cos(), right, up, 1.0);

@@ -1,5 +1,5 @@
-//! Light with extent: the same ball under a point light, a softbox and a sky, and what two approximations that programs
-//! use in real time would have shown.
+//! Light with extent: the same ball under a point light, a softbox and a sky, compared with two
+//! approximations for real-time rendering.
 
 mod ltc;
 mod measure;
@@ -27,25 +27,25 @@ use measure::{Measured, measure};
 use subject::{ANISOTROPY, BRUSHED, EXPONENT, GOLD_ALPHA, Lamp, Subject, Way};
 
 const SCENE: &str = include_str!("scene.json");
-/// The lights of the scene, in its order.
+/// The lights of the scene, in order.
 const LIGHTS: [&str; 3] = ["point light", "softbox", "sky"];
-/// Light and approximation of it.
+/// Light and approximation.
 const WAYS: [(usize, Way); 3] = [(1, Way::Ltc), (1, Way::SplitSum), (2, Way::SplitSum)];
-/// The difference, as a share of the root mean square luminance, that has the last colour of the maps.
+/// Difference, as a fraction of the root mean square luminance, shown in the last colour of the maps.
 const FULL: f64 = 0.5;
-/// Approximations whose errors are no larger are called close.
+/// Maximum error of approximations that are called close.
 const CLOSE: f64 = 0.05;
 
 /// A model under all lights.
 struct Shot {
     subject: Subject,
-    /// By light.
+    /// Converged pictures by light.
     converged: [Picture; 3],
     /// The largest noise of these.
     noise: f64,
-    /// By [`WAYS`].
+    /// Approximated pictures by [`WAYS`].
     approximated: [(Picture, Measured); 3],
-    /// The brightest hundredth over the mean, by light.
+    /// The brightest hundredth relative to the mean, by light.
     contrast: [f64; 3],
 }
 
@@ -107,7 +107,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
 fn shoot(lab: &Lab, scene: &Scene, subject: Subject, fits: &mut Table) -> Result<Shot, StudyError> {
     let (width, height) = lab.size(160, 160);
     let settings = reference::Settings { width, height, samples: 4, terms: TermSelection::All };
-    // Of a light and of the lobes for each pixel: of the converged picture, and of each mean of an approximation.
+    // Samples of a light and of the lobes for each pixel: of the converged picture, and of each mean in an
+    // approximation.
     let (many, few) = if lab.settings.quick { (256, 128) } else { (512, 1024) };
     let scene = subject.put(scene);
     let known = Arc::new(subject.known(lab, few)?);
@@ -122,7 +123,8 @@ fn shoot(lab: &Lab, scene: &Scene, subject: Subject, fits: &mut Table) -> Result
     let converged: [Picture; 3] = std::array::from_fn(|light| {
         let mut scene = scene.clone();
         scene.lights = vec![scene.lights.swap_remove(light)];
-        // Two pictures of half the samples each: their mean is that of all, and half their difference is its noise.
+        // Two pictures with half the samples each: their mean is the picture with all, and half their
+        // difference is its noise.
         let [mut a, b] = [0, many / 2].map(|first| {
             let samples = LightSamples { first, count: many / 2 };
             reference::render_samples(&scene, lab.registry, &settings, samples, &AtomicBool::default())
@@ -199,7 +201,7 @@ fn gallery(lab: &mut Lab, scene: &Scene, shots: &[Shot]) -> Result<Markup, Study
     ))
 }
 
-/// The differences of two pictures as colours.
+/// The differences between two pictures as colours.
 fn map(picture: &Picture, converged: &Picture, scene: &Scene, full: f64) -> Result<Vec<u8>, StudyError> {
     let [a, b] = [converged, picture].map(|p| Shown::of_light(p.clone(), &scene.display));
     let comparison = signed(full);
@@ -207,7 +209,7 @@ fn map(picture: &Picture, converged: &Picture, scene: &Scene, full: f64) -> Resu
     differences.map(|d| d.colours(&comparison)).map_err(|e| StudyError::Figure(e.to_string()))
 }
 
-/// Luminance with its sign, where this difference has the last colour.
+/// A comparison of signed luminance, in which this difference has the last colour.
 fn signed(full: f64) -> Comparison {
     Comparison {
         sign: Sign::Signed,
@@ -231,7 +233,7 @@ fn key() -> Result<Markup, StudyError> {
     })
 }
 
-/// Converged and approximated pictures under the light of some [`WAYS`], and their differences.
+/// Converged and approximated pictures for some [`WAYS`], and their differences.
 fn comparison(lab: &mut Lab, scene: &Scene, shots: &[Shot], ways: &[usize]) -> Result<Markup, StudyError> {
     let light = WAYS[ways[0]].0;
     let mut rows = Vec::new();
@@ -264,7 +266,7 @@ fn comparison(lab: &mut Lab, scene: &Scene, shots: &[Shot], ways: &[usize]) -> R
     ))
 }
 
-/// The table of errors, and the numbers.
+/// The table of errors, and the raw numbers.
 fn errors(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
     let mut raw =
         Table::new("extent_errors", "model,light,approximation,rms,mean,largest,angle_deg,clock,noise");
@@ -294,7 +296,7 @@ fn errors(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
     (table, raw)
 }
 
-/// The error by angle of view: the plots, and the numbers.
+/// The error by angle of view: the plots, and the raw numbers.
 fn plots(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
     let mut raw = Table::new("extent_by_angle", "model,light,approximation,angle_deg,rms");
     let mut plots = Vec::new();
@@ -339,7 +341,7 @@ fn plots(lab: &mut Lab, shots: &[Shot]) -> (Markup, Table) {
     (figure, raw)
 }
 
-/// A number of per cent.
+/// A fraction in per cent.
 fn share(x: f64) -> String {
     format!("{}\u{a0}%", fixed(100.0 * x, 1))
 }

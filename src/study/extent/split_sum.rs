@@ -1,9 +1,9 @@
 //! The split sum: B. Karis (2013), *Real Shading in Unreal Engine 4*.
 //!
-//! The integral of light times lobe is taken for the mean of the light times the integral of the lobe. The mean is that of
-//! surroundings filtered about the mirror direction by a GGX lobe as it is for a view along the normal (n = v = r), each
-//! direction weighted by its cosine. Here it is calculated for each pixel; programs that draw in real time read it from a
-//! map, which adds an error of its own.
+//! The integral of light times lobe is approximated by the mean of the light times the integral of the lobe.
+//! The mean is that of the surroundings filtered about the mirror direction by a GGX lobe for a view along
+//! the normal (n = v = r), with each direction weighted by its cosine. Here it is calculated for each pixel;
+//! real-time programs read it from a map, which adds another error.
 
 use glam::{Vec2, Vec3};
 
@@ -17,17 +17,17 @@ use crate::{
     },
 };
 
-/// The points by which the mean weight is known.
+/// Number of points for the mean weight.
 const FINE: u32 = 4096;
 
-/// A lobe by which light is averaged about an axis.
+/// A lobe that averages light about an axis.
 pub(super) struct Filter {
     lobes: Lobes,
-    /// True if each direction is weighted by its cosine to the axis besides.
+    /// True if each direction is also weighted by its cosine to the axis.
     by_cosine: bool,
-    /// For the directions of the lobe, and those of the light.
+    /// Sample points for the directions of the lobe, and for those of the light.
     points: Vec<[Vec2; 2]>,
-    /// The mean weight.
+    /// Mean weight.
     norm: f32,
 }
 
@@ -42,12 +42,12 @@ impl Filter {
         filter
     }
 
-    /// That of split sums, for a roughness α.
+    /// The filter of split sums, for a roughness α.
     pub(super) fn ggx(alpha: f32, count: u32) -> Self {
         Self::new(Lobe::ggx(alpha), true, count)
     }
 
-    /// By the cosine: the mean is the irradiance over π.
+    /// The cosine filter: the mean is the irradiance divided by π.
     pub(super) fn cosine(count: u32) -> Self {
         Self::new(Lobe::Cosine, false, count)
     }
@@ -58,7 +58,7 @@ impl Filter {
         self.norm = 1.0;
     }
 
-    /// What a direction of the lobe counts.
+    /// The weight of a direction of the lobe.
     fn weight(&self, l: Vec3) -> f32 {
         match l.z > 0.0 {
             true if self.by_cosine => l.z,

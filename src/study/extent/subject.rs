@@ -1,4 +1,4 @@
-//! The models of the chapter, what approximations know of them, and the light that they then show.
+//! The models of the chapter, the data that approximations use of them, and the resulting light.
 
 use std::{f32::consts::PI, sync::Arc};
 
@@ -30,15 +30,16 @@ pub(super) const EXPONENT: i64 = 120;
 /// A model with settings.
 pub(super) struct Subject {
     pub(super) name: &'static str,
-    /// In sentences.
+    /// Name in sentences.
     pub(super) short: &'static str,
     model: &'static str,
     settings: Vec<Setting>,
-    /// The roughness α of the isotropic GGX lobe that approximations know in the place of its own.
+    /// The roughness α of the isotropic GGX lobe with which approximations replace the model's own.
     pub(super) alpha: f64,
 }
 
-/// The three: GGX as approximations have it, GGX that is wider in one direction, and a model without microfacets.
+/// The three subjects: GGX as used by approximations, GGX that is wider in one direction, and a model without
+/// microfacets.
 pub(super) fn all() -> [Subject; 3] {
     let [n, k] = GOLD.map(Value::Triple);
     let gold = [choice("fresnel", "conductor"), choice("diffuse", "none"), ("ior", n), ("extinction", k)];
@@ -93,7 +94,7 @@ impl Subject {
         scene
     }
 
-    /// What approximations know of it, with so many samples of the light for each of their means.
+    /// The data that approximations use, with this many samples of the light for each of their means.
     pub(super) fn known(&self, lab: &Lab, samples: u32) -> Result<Known, StudyError> {
         let ggx = lab.surface(
             "microfacet",
@@ -109,11 +110,11 @@ impl Subject {
     }
 }
 
-/// The parts of a model that approximations have exactly.
+/// The parts of a model that approximations reproduce exactly.
 struct Body {
     /// The directional albedo of the highlight.
     specular: AlbedoCurve,
-    /// That of the diffuse part, and the mean of light by the cosine, if there is one.
+    /// The directional albedo of the diffuse part, and the cosine filter for light, if there is one.
     diffuse: Option<(AlbedoCurve, Filter)>,
 }
 
@@ -128,7 +129,8 @@ impl Body {
         Self { specular, diffuse: (!is_dark).then(|| (diffuse, Filter::cosine(samples))) }
     }
 
-    /// The light that leaves towards v, from the mean radiance that the highlight and the diffuse part gather.
+    /// The light that leaves towards v, from the mean radiance received by the highlight and the diffuse
+    /// part.
     fn lit(&self, v: Vec3, frame: &Frame, mean: Vec3, diffuse: impl Fn(&Filter) -> Vec3) -> Vec3 {
         let mut sum = self.specular.at(v, frame) * mean;
         if let Some((albedo, filter)) = &self.diffuse {
@@ -138,7 +140,7 @@ impl Body {
     }
 }
 
-/// What approximations know of a model.
+/// The data that approximations use of a model.
 pub(super) struct Known {
     body: Body,
     filter: Filter,
@@ -156,7 +158,7 @@ impl Known {
 pub(super) struct Lamp {
     emitter: Box<dyn Emitter>,
     record: LightRecord,
-    /// Of a rectangle.
+    /// Corners of a rectangle.
     corners: Option<[Vec3; 4]>,
 }
 
@@ -210,7 +212,7 @@ impl Way {
                 Self::Ltc => {
                     let radiance = lamp.record.intensity * lamp.record.colour;
                     let corners = lamp.corners.unwrap_or_default().map(|c| c - p);
-                    // Its back is dark.
+                    // The back of the light is dark.
                     if (p - lamp.record.position).dot(lamp.record.direction) <= 0.0 {
                         return Vec3::ZERO;
                     }

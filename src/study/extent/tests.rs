@@ -21,7 +21,7 @@ fn lab(registry: &Registry) -> Lab<'_> {
     Lab { registry, settings: Settings { quick: true }, figures: 0, tables: 0 }
 }
 
-/// A rectangle that shines with luminance 1, its corners, and what calculates it.
+/// A rectangle with luminance 1, its corners, and its emitter.
 struct Softbox {
     light: Light,
     emitter: Box<dyn Emitter>,
@@ -42,7 +42,7 @@ fn softbox(registry: &Registry, position: Vec3, direction: Vec3) -> Softbox {
     Softbox { emitter, record, corners: lamp.corners().expect("a rectangle"), light }
 }
 
-/// Rectangles around the origin, the last two of which reach below the horizon.
+/// Rectangles around the origin, of which the last two reach below the horizon.
 fn softboxes(registry: &Registry) -> [Softbox; 4] {
     [
         (Vec3::new(0.3, 0.2, 2.0), Vec3::NEG_Z),
@@ -53,7 +53,7 @@ fn softboxes(registry: &Registry) -> [Softbox; 4] {
     .map(|(position, direction)| softbox(registry, position, direction))
 }
 
-/// The integral of a function of the direction over a softbox, seen from the origin, by samples.
+/// The integral of a function of the direction over a softbox, seen from the origin, by sampling.
 fn integral(softbox: &Softbox, of: impl Fn(Vec3) -> f64) -> f64 {
     const COUNT: u32 = 1 << 14;
     let sequence = Sequence::new(9, 1);
@@ -73,11 +73,11 @@ fn the_share_of_a_polygon_is_that_of_the_closed_forms() {
         let half = |a: f64, b: f64| a / a.hypot(1.0) * (b / a.hypot(1.0)).atan();
         let exact = (half(a, b) + half(b, a)) / (2.0 * PI);
         assert!((cosine_share(&corners) - exact).abs() < 1e-12, "{a} {b}");
-        // The other way around it is the same.
+        // The reverse order gives the same.
         let back = [corners[3], corners[2], corners[1], corners[0]];
         assert!((cosine_share(&back) - exact).abs() < 1e-12);
     }
-    // A wall without end, half of it below the horizon, fills half of the light; below there is none.
+    // An infinite wall, half of it below the horizon, provides half of the light; below there is none.
     let wall = |x: f64, z: f64| DVec3::new(x * 1e7, 1.0, z * 1e7);
     let all = [wall(-1.0, -1.0), wall(1.0, -1.0), wall(1.0, 1.0), wall(-1.0, 1.0)];
     assert!((cosine_share(&all) - 0.5).abs() < 1e-6, "{}", cosine_share(&all));
@@ -99,7 +99,7 @@ fn the_identity_is_lamberts_law() {
         {
             assert!((share / exact - 1.0).abs() < 2e-3, "{i}: {share} {exact}");
         }
-        // Wrong twins: a lobe that is a little narrower, and a rectangle that the horizon does not cut.
+        // Wrong twins: a slightly narrower lobe, and a rectangle that the horizon does not clip.
         let narrower = Fitted::of(DMat3::from_diagonal(DVec3::new(0.9, 0.9, 1.0)));
         assert!((narrower.share(&softbox.corners, Vec3::Z, v) / exact - 1.0).abs() > 0.01, "{i}");
         if i >= 2 {
@@ -144,7 +144,7 @@ fn fitted_lobes_are_near_to_ggx_and_far_from_another_width() {
     assert!(misplaced[..11].iter().all(|off| *off < 0.09), "{misplaced:?}");
     assert!(misplaced[11..].iter().all(|off| *off < 0.3), "{misplaced:?}");
     let surface = ggx(0.25);
-    // Along the normal the lobe is round, and it slants towards a grazing view.
+    // The lobe is round along the normal, and slanted towards a grazing view.
     let (_, first, _) = right.all().next().expect("there is one");
     assert!((first.x_axis.x / first.y_axis.y - 1.0).abs() < 0.02 && first.z_axis.x.abs() < 0.01, "{first}");
     let (mut off, mut twin) = (0.0f64, 0.0f64);
@@ -161,7 +161,7 @@ fn fitted_lobes_are_near_to_ggx_and_far_from_another_width() {
     assert!(off < 0.03 && twin > 2.0 * off, "{off} {twin}");
 }
 
-/// The uniform surroundings in which a white surface that keeps all light is as bright as its albedo.
+/// Uniform surroundings in which a white surface that absorbs nothing is as bright as its albedo.
 fn uniform(registry: &Registry) -> (Scene, Arc<Lamp>) {
     let mut scene = lab(registry).scene(SCENE).expect("shipped");
     let mut light = scene.lights.swap_remove(2);
@@ -185,7 +185,7 @@ fn the_split_sum_is_exact_in_uniform_surroundings() {
             for degrees in [0.0, 30.0, 60.0, 75.0] {
                 let v = direction(degrees, 0.0);
                 let exact = albedo::directional(|l| surface.response(l, v, &Frame::LOCAL), v, &Frame::LOCAL);
-                // From far enough, the observer is in one direction.
+                // From far enough, the observer is in a single direction.
                 let leaving = Way::SplitSum.leaving(known, &lamp, v * 1e6);
                 let found = leaving(Vec3::ZERO, Vec3::Z, Vec3::X).as_dvec3();
                 most = most.max(((found - exact) / exact).abs().max_element());
@@ -218,7 +218,7 @@ fn filters_are_mirrors_when_narrow_and_irradiance_when_wide() {
             assert!(of(0.7) > 0.02, "{axis}: a wide lobe is no mirror");
         }
     }
-    // Two ways to the same number: samples, and Lambert's polygon.
+    // Two ways to obtain one number: samples, and Lambert's polygon.
     for softbox in softboxes(&registry) {
         let mean = Filter::cosine(2048).mean((&*softbox.emitter, &softbox.record), Vec3::ZERO, Vec3::Z);
         let exact = diffuse_share(&softbox.corners, Vec3::Z);

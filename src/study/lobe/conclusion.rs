@@ -1,4 +1,4 @@
-//! The conclusion on lobes. Each sentence that depends on a number is chosen by that number.
+//! The conclusion on lobes. Each sentence that depends on a number is selected by that number.
 
 use maud::{Markup, html};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::study::fixed;
 
-/// A lobe narrower than this is very shiny: the highlight of a lamp is about a degree wide.
+/// Width below which a lobe is very shiny: the highlight of a lamp is about a degree wide.
 const SHINY: f64 = 0.02;
 
 /// The fits on which the conclusion is based.
@@ -33,14 +33,14 @@ impl Conclusion<'_> {
         ggx < blinn
     }
 
-    /// True if the numbers show the phenomenon.
+    /// True if the numbers confirm the phenomenon.
     pub(super) fn is_confirmed(&self) -> bool {
         self.glossy_wins() == 2 && self.ggx_has_smaller_median()
     }
 
     /// One sentence for the summary of the study.
     pub(super) fn finding(&self) -> String {
-        // A log error as per cent.
+        // A log error in per cent.
         let off = |error: f64| 100.0 * (error.exp() - 1.0);
         let paint = |paint: usize, model: &str| off(self.paints.error(paint, model));
         let [blinn, ggx] = self.medians();

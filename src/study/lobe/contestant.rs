@@ -12,15 +12,15 @@ use crate::{
     },
 };
 
-/// The widths tried.
+/// Range of widths tried.
 const WIDTHS: (f64, f64) = (0.002, 1.0);
 
-/// A model in the comparison: its specular lobe with a free width.
+/// A model in the comparison: its specular lobe with variable width.
 pub(in crate::study) struct Contestant {
     pub(in crate::study) name: &'static str,
     id: &'static str,
     pub(super) settings: Vec<Setting>,
-    /// Other settings, if they fit better.
+    /// Alternative settings, used if they fit better.
     pub(super) instead: Option<Vec<Setting>>,
     width: fn(f64) -> Vec<Setting>,
     /// Colour, line and mark in plots.
@@ -57,7 +57,7 @@ impl Contestant {
         }
     }
 
-    /// The four of the comparison.
+    /// The four models of the comparison.
     pub(in crate::study) fn all() -> Vec<Self> {
         let simple =
             |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };
@@ -115,7 +115,7 @@ impl Contestant {
         fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, &self.settings, width, samples))
     }
 
-    /// The best fit and its settings; with the better Fresnel term for models with that choice.
+    /// The best fit and its settings; with the better Fresnel term for models that offer the choice.
     pub(super) fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> Found {
         let first = self.fit(registry, samples);
         let bound = first.error;
@@ -149,6 +149,6 @@ pub(super) struct Found {
     pub(super) fit: Fit,
     /// The chosen settings.
     pub(super) settings: Vec<Setting>,
-    /// The error without a choice of the Fresnel term.
+    /// The error without the choice of the Fresnel term.
     pub(super) bound: f64,
 }

@@ -19,12 +19,12 @@ use crate::{
     },
 };
 
-/// A material closer than this to a constant has no lobe.
+/// Distance from a constant below which a material has no lobe.
 const MATTE: f64 = 0.01;
-/// The materials whose lobes are shown.
+/// Materials whose lobes are shown.
 const SHOWN: [&str; 4] = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
 
-/// Directions for the fits of MERL materials, dense about the mirror direction like the database.
+/// Directions for the fits of MERL materials, dense around the mirror direction like the database.
 fn merl_directions() -> Vec<Sample> {
     let pairs = matching::directions(0.0, LARGEST_ANGLE.into());
     pairs.into_iter().map(|(l, v)| Sample { l, v, value: 1.0 }).collect()
@@ -114,8 +114,8 @@ impl Merl {
         median(self.fits.iter().map(|f| f.error(i)).collect())
     }
 
-    /// The median error of GGX without a choice of the Fresnel term, and the number of materials for which it is
-    /// better than Blinn–Phong even so.
+    /// The median error of GGX without the choice of the Fresnel term, and the number of materials for which
+    /// it still beats Blinn–Phong.
     pub(super) fn bound(&self) -> (f64, usize) {
         let bound = |f: &MerlFit| f.fits[self.last()].bound;
         let better = self.fits.iter().filter(|f| bound(f) < f.error(0)).count();

@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Angles of the light in the plots of paints, degrees.
+/// Angles of the light in the plots of paints, in degrees.
 const INCIDENCES: [f32; 2] = [40.0, 60.0];
 
 /// Measured values in one band as samples for fitting; non-positive values are skipped.
@@ -32,8 +32,8 @@ fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -> bo
         .collect()
 }
 
-/// The samples of a paint for the fits: in its brightest band, away from grazing angles, and with the light at an angle
-/// accepted by `keep`.
+/// The samples of a paint for the fits: in its brightest band, away from grazing angles, and with an angle of
+/// the light accepted by `keep`.
 pub(in crate::study) fn paint_samples(
     id: &str,
     keep: impl Fn(f32) -> bool,
@@ -65,7 +65,7 @@ impl Paints {
         PAINTS.iter().map(|(id, _)| paint_errors(lab, id)).collect::<Result<_, _>>().map(Self)
     }
 
-    /// The log error of a model at a paint.
+    /// The log error of a model for a paint.
     pub(super) fn error(&self, paint: usize, model: &str) -> f64 {
         self.0[paint].iter().find(|f| f.0 == model).map_or(f64::NAN, |f| f.1.error)
     }
@@ -120,7 +120,7 @@ impl Paints {
         )
     }
 
-    /// The errors of the table for the light at one angle.
+    /// The errors in the table for one angle of the light.
     fn error_at(&self, lab: &Lab, paint: usize, model: &str, theta: f32) -> Result<f64, StudyError> {
         let samples = paint_samples(PAINTS[paint].0, |t| (t - theta).abs() < 0.5)?;
         let fit = self.0[paint].iter().find(|f| f.0 == model);
@@ -213,7 +213,7 @@ mod tests {
         assert!(!kept.is_empty() && kept.iter().all(|s| s.value > 0.0));
     }
 
-    /// Errors found by another program with other means (a general least-squares solver).
+    /// Errors found by another program with another method (a general least-squares solver).
     #[test]
     fn the_paints_have_the_shape_that_others_found() {
         let registry = Registry::builtin();
@@ -246,7 +246,7 @@ mod tests {
             for (name, expected) in expected {
                 assert!((error(name) - expected).abs() < tolerance, "{paint}, {name}: {}", error(name));
             }
-            // In this order, with room to spare.
+            // In this order, with a margin.
             for pair in expected.windows(2) {
                 assert!(error(pair[0].0) < error(pair[1].0), "{paint}: {pair:?}");
             }

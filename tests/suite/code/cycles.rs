@@ -1,19 +1,19 @@
-//! Files of one module depend on each other in one direction. A file and the `mod.rs` of a folder that it is in are one
-//! unit: `impl Session` may stand beside the file that declares the session.
+//! Files of one module depend on each other in one direction. A file and the `mod.rs` of its folder are one
+//! unit: `impl Session` may be next to the file that declares the session.
 
 use std::collections::BTreeMap;
 
 use crate::code::modules::{Files, module, paths, source, tokens};
 
-/// The modules whose files form no cycles.
+/// Modules whose files form no cycles.
 const MODULES: [&str; 3] = ["panel", "render", "window"];
-/// The words before the name of what a file defines.
+/// Keywords before the name of an item in a file.
 const DEFINES: [&str; 8] = ["fn", "struct", "enum", "trait", "type", "const", "static", "union"];
 
-/// The names of a path, from the root or from a file.
+/// The segments of a path, from the root or from a file.
 type Names<'a> = &'a [&'a str];
 
-/// A source: its words, and the paths that it names.
+/// A source: its words, and the paths in it.
 struct Text<'a> {
     tokens: Vec<&'a str>,
     paths: Vec<Vec<&'a str>>,
@@ -32,7 +32,7 @@ impl<'a> Sources<'a> {
         Self(all.iter().map(|(path, code)| (names(path), (path.as_str(), text(code)))).collect())
     }
 
-    /// The module that a path in a file of the module `at` leads to, and what is left of the path.
+    /// The module to which a path in a file of the module `at` leads, and the rest of the path.
     fn walk<'p>(&self, at: &[&'p str], path: Names<'p>) -> Option<(Vec<&'p str>, Names<'p>)> {
         let mut here = if path[0] == "crate" { Vec::new() } else { at.to_vec() };
         let mut rest = path;
@@ -50,11 +50,12 @@ impl<'a> Sources<'a> {
             }
             rest = tail;
         }
-        // A path that leads nowhere is another crate's, or begins with a type.
+        // An unresolved path belongs to another crate, or begins with a type.
         (rest.len() < path.len() && self.0.contains_key(&here)).then_some((here, rest))
     }
 
-    /// The file that defines what a path in a file of the module `at` names, however often it is handed on.
+    /// The file that defines the target of a path in a file of the module `at`, through any number of
+    /// re-exports.
     fn target<'p>(&'p self, at: Names<'p>, path: Names<'p>) -> Option<&'a str> {
         let (mut here, mut rest) = self.walk(at, path)?;
         loop {
@@ -70,7 +71,7 @@ impl<'a> Sources<'a> {
     }
 }
 
-/// The files of a module, each with those of it that it uses and a path that does; those without any are left out.
+/// The files of a module, each with those that it uses and a path that does; files without any are left out.
 fn edges<'a>(all: &'a Sources, within: &str) -> BTreeMap<&'a str, BTreeMap<&'a str, String>> {
     let mut edges = BTreeMap::<_, BTreeMap<_, _>>::new();
     for (at, (from, text)) in all.0.iter().filter(|(at, _)| at[0] == within) {
@@ -89,7 +90,7 @@ fn edges<'a>(all: &'a Sources, within: &str) -> BTreeMap<&'a str, BTreeMap<&'a s
 fn cycle(all: &Files, within: &str) -> Option<String> {
     let all = Sources::of(all);
     let mut edges = edges(&all, within);
-    // What uses nothing that is left is in no cycle.
+    // A file that uses none of the remaining ones is not in a cycle.
     loop {
         let left: Vec<_> = edges.keys().copied().collect();
         edges.retain(|_, uses| {
@@ -100,7 +101,7 @@ fn cycle(all: &Files, within: &str) -> Option<String> {
             break;
         }
     }
-    // Whichever way leads on, it comes back.
+    // Any way onwards returns.
     let mut way = vec![*edges.keys().next()?];
     loop {
         let last = way[way.len() - 1];

@@ -1,4 +1,5 @@
-//! The program alone is built with the same features as together with its tests, so that Bevy is compiled once.
+//! The program alone is built with the same features as together with its tests, so that Bevy is compiled
+//! once.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -7,7 +8,7 @@ use std::{
 
 use crate::helpers::support::root;
 
-/// The features with which each package is built, as cargo resolves them over these kinds of dependencies.
+/// The features with which each package is built, as resolved by cargo over these kinds of dependencies.
 fn features(kinds: &str) -> BTreeMap<String, BTreeSet<String>> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let output = Command::new(cargo)
@@ -31,7 +32,7 @@ fn the_tests_ask_for_no_other_features_than_the_program() {
     let (program, tests) = (features("normal,build"), features("normal,build,dev"));
     assert!(program.len() > 300 && program.keys().any(|p| p.starts_with("bevy_pbr ")), "{}", program.len());
     for (package, features) in &program {
-        // Those for build scripts and macros are further ones.
+        // Features for build scripts and macros are additional.
         let known = &tests[package];
         assert!(features.is_subset(known), "{package}: {features:?}, with the tests {known:?}");
     }

@@ -29,7 +29,7 @@ fn files(folder: &Path, at: &str, to: &mut Files) {
     }
 }
 
-/// The words and signs of a text; `::` is one.
+/// The words and signs of a text; `::` counts as one.
 pub fn tokens(text: &str) -> Vec<&str> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -42,7 +42,8 @@ pub fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// The paths in a text, each as its names: those of `use` with their groups unfolded, and those within code.
+/// The paths in a text, each as its segments: those of `use` with their groups expanded, and those within
+/// code.
 pub fn paths(text: &str) -> Vec<Vec<&str>> {
     let tokens = tokens(text);
     let (mut found, mut rest, mut before) = (Vec::new(), tokens.as_slice(), "");
@@ -54,7 +55,7 @@ pub fn paths(text: &str) -> Vec<Vec<&str>> {
     found
 }
 
-/// Unfolds the path with which these tokens begin, behind some names; returns the tokens after it.
+/// Expands the path at the start of these tokens, with a given prefix; returns the tokens after it.
 fn unfold<'t, 'a>(
     mut rest: &'t [&'a str],
     names: &[&'a str],
@@ -87,7 +88,7 @@ pub fn module(path: &str) -> &str {
     path.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
-/// The modules that `lib.rs` lists, in its order.
+/// The modules listed in `lib.rs`, in order.
 fn listed(lib: &str) -> Vec<&str> {
     lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')).collect()
 }

@@ -14,7 +14,7 @@ use serde_json::Value as Json;
 
 use crate::helpers::support::{Run, lcm_in, root};
 
-/// A folder for the test, with an empty folder `models`.
+/// A folder for the test, containing an empty folder `models`.
 fn workplace() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("models")).unwrap();
@@ -225,7 +225,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         &model("helped(cos_l)").replace("*/\n", "*/\n#import \"helper.wgsl\"\n"),
     );
     fs::write(folder.path().join("models/notes.txt"), "no model").unwrap();
-    // The list is of declarations, and that of the broken model is right; its problem comes behind the list.
+    // The list shows declarations, and that of the broken model is valid; its problem follows the list.
     let listed = run(folder.path(), "models --models models", "");
     assert_eq!(listed.status, Some(1));
     assert!(listed.err.contains("`cos_m` is not defined"), "{}", listed.err);
@@ -326,7 +326,7 @@ fn shaders_are_exported_edited_and_used() {
         again.err
     );
     assert!(fs::read_to_string(&lambert).unwrap().contains("0.5 * m.base_colour"));
-    // The same as a function.
+    // The copy as a function.
     let exported = export(&at.join("mine"), &Registry::builtin()).unwrap();
     assert_eq!((exported.written.len(), exported.kept, exported.same), (0, vec![lambert], count - 1));
     fs::write(at.join("file"), "").unwrap();

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::helpers::support::{Run, changed, command_in, full_scene, lcm, lcm_in, root};
 
-/// Asserts the status and one line on standard error with a given text.
+/// Asserts the status and one line on standard error that contains a text.
 fn refused(run: &Run, status: i32, expected: &str) {
     assert_eq!(run.status, Some(status), "{}", run.err);
     assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
@@ -126,7 +126,7 @@ fn missing_parts_need_an_answer() {
     for arguments in [&["check", "-"][..], &["check", "-", "--no-defaults"], &["render", "-"]] {
         let run = lcm(arguments, "");
         refused(&run, 1, empty);
-        // Nobody is there to be asked.
+        // There is nobody to ask.
         assert!(!run.err.contains('?'), "{}", run.err);
     }
     assert_eq!(lcm(&["check", "-", "--use-defaults"], "").status, Some(0));
@@ -182,7 +182,7 @@ fn models_are_listed_for_people_and_programs() {
         (Some(0.5), Some(1.0), Some(0.8))
     );
     assert_eq!(k_d["type"], "number");
-    // The rest comes behind them.
+    // The rest follows them.
     let headings = ["Basic", "\nShading models\n", "\nLight types\n", "\nObject types\n"];
     let places: Vec<_> = headings.iter().map(|heading| table.find(heading).expect(heading)).collect();
     assert!(places.is_sorted());
@@ -328,8 +328,8 @@ fn nothing_is_printed_about_a_runtime_folder_that_is_not_set() {
     }
 }
 
-/// Counts the starts of the program, and the addresses that the dynamic linker adjusts in one of them, which is what a
-/// start takes before `main`.
+/// Counts the starts of the program, and the addresses that the dynamic linker relocates in one of them,
+/// which make up the time of a start before `main`.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn starts(arguments: &[&str]) -> (usize, Vec<usize>) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -348,7 +348,7 @@ fn starts(arguments: &[&str]) -> (usize, Vec<usize>) {
     (reports.matches("total startup time").count(), relative)
 }
 
-/// Only a driver needs the variable, so nothing else pays for a second start.
+/// Only a driver needs the variable, so other commands do not pay for a second start.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[test]
 fn the_program_starts_again_only_where_a_driver_is_loaded() {
@@ -374,7 +374,7 @@ fn a_picture_that_takes_long_says_so_on_a_terminal() {
     });
     scene["objects"] = spheres.collect::<Vec<_>>().into();
     std::fs::write(folder.path().join("many.json"), scene.to_string()).expect("written");
-    // On one processor, which needs more than a second for it anywhere.
+    // On one processor, where it takes more than a second on any machine.
     let command = format!(
         "taskset -c 0 {} render many.json -o many.png --renderer cpu --size 2560x1440",
         env!("CARGO_BIN_EXE_lcm")
@@ -385,7 +385,7 @@ fn a_picture_that_takes_long_says_so_on_a_terminal() {
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(said.contains("drawing many.json, 1s so far; Ctrl+C ends it"), "{said}");
     assert!(said.contains("wrote many.png"), "{said}");
-    // Ended meanwhile, it leaves nothing.
+    // Interrupted meanwhile, it leaves nothing.
     let command = format!(
         "exec taskset -c 0 {} render many.json -o new/many.png --renderer cpu",
         env!("CARGO_BIN_EXE_lcm")

@@ -1,5 +1,5 @@
-//! Paths that are no regular files, outputs that would overwrite something, leftovers of killed processes, and texts
-//! unsafe for a terminal. Nothing here may hang: every wait has an end.
+//! Paths other than regular files, outputs that would overwrite something, leftovers of killed processes, and
+//! texts unsafe for a terminal. Nothing here may hang: every wait has a limit.
 
 #![cfg(target_os = "linux")]
 
@@ -45,7 +45,7 @@ use crate::{
 /// Long enough for anything tried here, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// Runs something that must end.
+/// Runs something that must finish.
 fn bounded<T: Send + 'static>(what: &str, work: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, wait) = mpsc::channel();
     thread::spawn(move || done.send(work()));
@@ -59,7 +59,7 @@ struct Ran {
     err: String,
 }
 
-/// Runs a program that must end, and kills it if it does not.
+/// Runs a program that must finish, and kills it if it does not.
 fn run(command: &mut Command) -> Ran {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     let all = |mut from: Box<dyn std::io::Read + Send>| {
@@ -265,7 +265,7 @@ fn settings_that_are_no_small_file_are_the_defaults_at_once() {
         assert!(complaint.contains("cannot be read") && complaint.contains(expected), "{complaint}");
         let at = folder.path().to_owned();
         let saved = bounded("saving settings", move || settings::save(&at, &Settings::default()));
-        // A file too large to be settings may be replaced by them.
+        // A file too large for settings may be replaced by them.
         assert_eq!(saved.is_ok(), expected.contains("MiB"), "{saved:?}");
         let shown = run(screen
             .command(&["view", "--exit-after", "3", "--capture", "window.png"], folder.path())
@@ -365,11 +365,11 @@ fn pictures_go_to_devices_and_pipes() {
     symlink("nowhere/x.png", at.join("dangling.png")).expect("linked");
     let said = "dangling.png could not be written: there is no folder nowhere\n";
     refused(&run(&mut render(at, &["-o", "dangling.png"])), 4, said);
-    // What fails leaves no new folder.
+    // On failure, no new folder remains.
     let long = format!("new/folder/{}.png", "x".repeat(300));
     refused(&run(&mut render(at, &["-o", &long])), 4, "the name is too long");
     assert!(!at.join("new").exists());
-    // A named pipe, with a reader that comes late.
+    // A named pipe with a late reader.
     pipe(&at.join("pipe.png"));
     let from = at.join("pipe.png");
     let reader = thread::spawn(move || {
@@ -380,16 +380,16 @@ fn pictures_go_to_devices_and_pipes() {
     assert_eq!(ran.status, Some(0), "{}", ran.err);
     assert!(bounded("reading", move || reader.join().expect("no panic")).starts_with(PNG));
     assert_eq!(files::kind(&at.join("pipe.png")).expect("there"), Kind::Pipe);
-    // And without one.
+    // And without a reader.
     refused(&run(&mut render(at, &["-o", "pipe.png"])), 4, "nobody reads from it");
-    // The content of the file of standard output stays, and the open file is written to.
+    // The content of the file on standard output is kept, and the open file is written to.
     let script = "echo before > all; \"$LCM\" render --size 32x32 --renderer cpu -o /dev/stdout >> all; echo after >> all";
     assert_eq!(run(&mut shell(at, script)).status, Some(0));
     let all = fs::read(at.join("all")).expect("readable");
     assert!(all.starts_with(b"before\n\x89PNG") && all.ends_with(b"after\n"));
     drop(UnixListener::bind(at.join("socket.png")).expect("bound"));
     refused(&run(&mut render(at, &["-o", "socket.png"])), 4, "is neither a file nor a folder");
-    // A reader that stops early is no error.
+    // A reader that stops early is not an error.
     let ran = run(&mut shell(
         at,
         "\"$LCM\" render --size 2000x2000 --renderer cpu --samples 1 -o /dev/stdout -q | head -c 1",
@@ -444,7 +444,7 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     }
     assert_eq!(fs::read_to_string(at.join("s.json")).expect("there"), scene);
     assert_eq!(fs::read_to_string(at.join("notes.png")).expect("there"), "notes");
-    // An empty file and a picture to be replaced have nothing to lose.
+    // An empty file and a replaceable picture have nothing to lose.
     for _ in 0..2 {
         let ran = run(&mut render(at, &["s.json", "-o", "empty.png"]));
         assert_eq!(ran.status, Some(0), "{}", ran.err);
@@ -463,7 +463,7 @@ fn a_report_is_replaced_only_when_the_user_says_so() {
         refused(&study(arguments), 4, "mine has files that are not a report");
     }
     assert_eq!(fs::read_to_string(at.join("mine/index.html")).expect("there"), "<html>mine</html>");
-    // An empty folder counts as none.
+    // An empty folder counts as free.
     fs::create_dir(at.join("st")).expect("made");
     assert_eq!(study(&["-o", "st"]).status, Some(0));
     let page = at.join("st/index.html");
@@ -536,7 +536,7 @@ fn what_a_killed_process_left_is_gone_after_the_next_save() {
     assert_eq!(names(at), ["a.json", "b.json", "b.png"]);
 }
 
-/// Makes a file two minutes old.
+/// Makes a file look two minutes old.
 fn age(path: &Path) {
     let then = SystemTime::now() - Duration::from_secs(120);
     File::options().write(true).open(path).and_then(|f| f.set_modified(then)).expect("set");
@@ -574,7 +574,7 @@ fn only_what_nobody_holds_and_this_program_wrote_is_litter() {
     }
     fs::write(at.join("c.png.4711.partial"), PNG).expect("written");
     age(&at.join("c.png.4711.partial"));
-    // Links and folders with such names are nobody's litter, and a pipe must not be opened.
+    // Links and folders with such names are not litter, and a pipe must not be opened.
     symlink("a.json", at.join(".lcm-link01.tmp")).expect("linked");
     fs::create_dir(at.join(".lcm-fold01.tmp")).expect("made");
     pipe(&at.join(".lcm-pipe01.tmp"));
@@ -683,7 +683,7 @@ fn a_whole_copy_is_no_litter() {
     let file = at.join("a.json");
     let text = written(&large());
     let copy = |inode: u64| at.join(format!(".lcm-a1B2c3.{inode}-1.whole"));
-    // Interrupted at any place: finished at the start of the window and at the next save alike.
+    // Interrupted at any point: finished at the start of the window and at the next save alike.
     for (length, command) in [(0, None), (1000, None), (text.len() - 1, Some("new.json")), (text.len(), None)]
     {
         fs::write(&file, &text[..length]).expect("written");
@@ -696,7 +696,7 @@ fn a_whole_copy_is_no_litter() {
         assert_eq!(scene_in(&file), large(), "{length}");
         assert!(!copy.exists());
     }
-    // Killed before the first byte was overwritten: the file is as before.
+    // Killed before the first byte was overwritten: the file is unchanged.
     save(&file, &Scene::default(), Expected::Anything).expect("written");
     let metadata = fs::metadata(&file).expect("there");
     let time = metadata.modified().expect("known").duration_since(UNIX_EPOCH).expect("later").as_nanos();
@@ -704,7 +704,7 @@ fn a_whole_copy_is_no_litter() {
     fs::write(at.join(&name), &text).expect("written");
     assert_eq!(files::tidy(at), []);
     assert_eq!(scene_in(&file), large());
-    // Edited since, or gone: only the user can know which one counts.
+    // Edited since, or gone: only the user can decide which one counts.
     fs::write(&file, "edited").expect("written");
     let left = copy(fs::metadata(&file).expect("there").ino());
     fs::write(&left, &text).expect("written");
@@ -757,7 +757,7 @@ fn output_that_cannot_be_written_has_status_4() {
         let script = format!("printf '{table}' | \"$LCM\" {command} lambert > /dev/full");
         refused(&run(&mut shell(at, &script)), 4, "standard output: the disk is full\n");
     }
-    // Nobody is left to inform.
+    // There is nobody left to inform.
     let ran = run(&mut shell(at, "\"$LCM\" --help 2>&1 >&3 3>&- | cat; \"$LCM\" --hlp 2> /dev/full"));
     assert_eq!(ran.status, Some(2));
 }
@@ -789,7 +789,7 @@ fn rows_without_end_take_no_memory_without_end() {
 
 /// Characters that a terminal acts on: colours, a bell, the beginning of the line, the other direction of writing.
 const ODD: &str = "a\u{1b}[31m\u{7}\r\u{9b}2J\u{202e}b";
-/// The same made printable.
+/// The characters made printable.
 const SHOWN: &str = r"a\u{1b}[31m\u{7}\r\u{9b}2J\u{202e}b";
 
 #[test]
@@ -828,7 +828,7 @@ fn what_a_terminal_obeys_does_not_reach_it() {
                 text.chars().find(|c| c.is_control() && *c != '\n' && *c != '\t' || *c == '\u{202e}');
             assert_eq!(obeyed, None, "{arguments:?}: {text:?}");
         }
-        // clap's quotations of it lose their colours.
+        // They lose clap's colours in its quotations.
         assert!(out.contains(r"\u{9b}") || ran.err.contains(r"\u{9b}"), "{arguments:?}: {out}{}", ran.err);
     }
     // Results for programs mean the same.
@@ -902,13 +902,13 @@ fn a_window_that_starts_cleans_up_after_the_one_that_was_killed() {
     assert_eq!(fs::read_to_string(&file).expect("there"), text);
     assert_eq!(names(at), ["a.json", "config"]);
     assert!(!names(&config).iter().any(|name| name.ends_with(".tmp")));
-    // A scene that is no file is reported even without a display.
+    // A scene that is not a regular file is reported even without a display.
     let mut command = screen::lcm(&["view", "pipe"], &config);
     pipe(&at.join("pipe"));
     refused(&run(command.current_dir(at)), 1, "a named pipe");
 }
 
-/// Anything that opens, writes, renames or removes files.
+/// Functions that open, write, rename or remove files.
 const DOORS: [&str; 14] = [
     "fs::read(",
     "fs::read_to_string(",
@@ -948,7 +948,7 @@ fn files_are_opened_in_one_module_only() {
                 // `files::read` is the guard itself.
                 let line = line.replace("files::", "guard::");
                 let door = DOORS.iter().find(|door| line.contains(*door));
-                // Recovery copies have folders and locks of their own; their content goes through the guard.
+                // Recovery copies have separate folders and locks; their content goes through the guard.
                 let own = ["OpenOptions", "fs::remove_", "fs::rename("];
                 let door = door.filter(|door| !path.ends_with("recovery/store.rs") || !own.contains(*door));
                 assert_eq!(door, None, "{}: {line}", path.display());

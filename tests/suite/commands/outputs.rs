@@ -1,4 +1,5 @@
-//! Results replace no input, win or lose whole, and leave nothing behind when a signal ends the program.
+//! Results never replace inputs, are written whole or not at all, and leave nothing behind when a signal ends
+//! the program.
 
 #![cfg(target_os = "linux")]
 
@@ -48,7 +49,7 @@ fn match_never_replaces_the_scene_that_it_reads() {
     ] {
         refused(&matched("s.json", output, b""), 4, expected);
     }
-    // A shell may give it the file as its standard input.
+    // A shell may pass it the file as its standard input.
     let run = command_in(folder.path(), ["match", "-", "--free", "alpha", "-o", "s.json", "--overwrite"])
         .stdin(fs::File::open(at("s.json")).expect("readable"))
         .output()
@@ -124,7 +125,7 @@ fn signal(child: &Child, name: &str) {
 #[test]
 fn an_export_ended_by_a_signal_leaves_nothing() {
     for (name, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
-        // A program is large, so that it takes a while to write; whoever is too late tries again.
+        // A program is large, so it takes a while to write; a late signal means another try.
         let caught = (0..20).any(|_| {
             let folder = folder();
             let mut command = std::process::Command::new("env");

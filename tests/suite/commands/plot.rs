@@ -9,7 +9,8 @@ use lights_camera_models::{
 
 use crate::helpers::support::{Run, command_in, lcm, lcm_in, names, root};
 
-/// The rows of a CSV file below its header, without the name of the curve, which must be the first word of each.
+/// The rows of a CSV file below its header, without the name of the curve, which must be the first word of
+/// each.
 fn rows(csv: &str, curve: &str, header: &str) -> Vec<Vec<String>> {
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some(header));
@@ -36,7 +37,7 @@ fn curves_are_what_evaluate_prints() {
         ("disney:base_colour=200,80,40", "Disney, base colour = (200, 80, 40)", "base_colour=200,80,40"),
         ("ward:alpha_x=0.1", "Ward, roughness along the tangent = 0.1", "alpha_x=0.1"),
     ] {
-        // Another model stands beside it.
+        // Another model is next to it.
         let plot = [model, "lambert", "--theta-i", "60", "--phi-i", "30"];
         let csv = done(&[&["plot"][..], &plot].concat(), "");
         let rows = rows(&csv, name, &format!("{LOBE},f_r,f_g,f_b,luminance"));
@@ -173,7 +174,7 @@ fn files_are_what_their_names_say_and_replace_nothing_else() {
     };
     let read = |name: &str| fs::read(folder.path().join(name)).expect("written");
     for name in ["a.svg", "a.png", "a.csv"] {
-        // The second time replaces the first.
+        // The second run replaces the first.
         for _ in 0..2 {
             let run = plot(&["-o", name]);
             assert_eq!(
@@ -234,7 +235,7 @@ fn the_curve_goes_through_its_points() {
     assert!(line("lambert") < 0.1 && line("phong") > 100.0);
 }
 
-/// A model that is no number where the viewer is far from the normal.
+/// A model that returns NaN where the viewer is far from the normal.
 const BROKEN: &str = r#"/* lcm { "name": "Broken" } */
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(sqrt(dot(frame.n, v) - 0.5)), vec3(0.0));

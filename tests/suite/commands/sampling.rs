@@ -1,5 +1,5 @@
-//! Light with extent on the command line: samples and noise as asked for and as reached, in captions, channels and comparisons;
-//! progress, and ends before the end.
+//! Light with extent on the command line: samples and noise as requested and as reached, in captions,
+//! channels and comparisons; progress, and early termination.
 
 use std::{fs, path::Path, process::Stdio, sync::atomic::AtomicBool, thread, time::Duration};
 
@@ -29,7 +29,7 @@ fn settings() -> Settings {
     Settings { width: SIZE[0], height: SIZE[1], samples: 1, ..Settings::default() }
 }
 
-/// A folder with a scene under a softbox, one of two views under it, and one under a point light.
+/// A folder with a scene under a softbox, one with one of two views under it, and one under a point light.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, scene: &Value| {
@@ -144,7 +144,7 @@ fn options_without_effect_are_told() {
     let (_, said) = drawn(folder.path(), &["softbox.json", "--light-samples", "48", "--noise", "1"]);
     let told = "softbox.json: the noise is not known with fewer than 64 --light-samples, so --noise changes nothing\n";
     assert_eq!(said, format!("{told}wrote p.png: 48 samples of each light\n"));
-    // And too few for what was asked.
+    // And too few for the request.
     let (_, said) = drawn(folder.path(), &["softbox.json", "--light-samples", "64", "--noise", "0.01"]);
     assert!(said.starts_with("softbox.json: after 64 samples the noise is "), "{said}");
     assert!(
@@ -182,7 +182,7 @@ fn captions_and_pictures_say_samples_and_noise_as_reached() {
     // The GPU renderer does not measure noise.
     let gpu = ["softbox.json", "--renderer", "gpu", "--size", "64x36", "-o", "p.png"];
     assert_eq!(drawn(folder.path(), &gpu).1, "wrote p.png: 256 samples of each light\n");
-    // Nothing is said of what does not rest on samples.
+    // Nothing is reported where samples have no effect.
     let point = self::scene(folder.path(), "point.json");
     let plain = caption::of_picture(&point, &[(0, &point, settings().terms)], &registry);
     let picture = reference::render_rgb8(&point, &registry, &settings());
@@ -302,10 +302,10 @@ fn a_picture_with_so_many_samples_is_one_picture_whatever_the_threads() {
     assert!(all.chunks(2).all(|both| both == &all[..2]));
 }
 
-/// Runs the program on a terminal for some seconds, then interrupts it: what it said there.
+/// Runs the program on a terminal for some seconds, then interrupts it; returns its output.
 #[cfg(target_os = "linux")]
 fn on_terminal(folder: &Path, seconds: u32, arguments: &str) -> String {
-    // Whoever runs the tests may ignore some signals, and programs keep to that.
+    // Whoever runs the tests may ignore some signals, and programs respect that.
     let command = format!(
         "timeout --foreground -s INT {seconds} env --default-signal=INT {} {arguments}",
         env!("CARGO_BIN_EXE_lcm")

@@ -1,4 +1,4 @@
-//! Whatever ends the window from outside, unsaved changes outlive it, and the next window offers them.
+//! Whatever ends the window from outside, unsaved changes survive, and the next window offers them.
 
 #![cfg(target_os = "linux")]
 
@@ -29,19 +29,19 @@ use crate::{
 const SIGINT: i32 = 2;
 /// The grey around the picture.
 const SURROUND: u8 = 46;
-/// Software Vulkan on a busy machine takes its time; a window that sleeps would take for ever.
+/// Software Vulkan on a busy machine takes its time; a sleeping window would take forever.
 const LONG: Duration = Duration::from_secs(60);
 /// Ending is prompt. Busy machines get some more.
 const PROMPT: Duration = Duration::from_secs(15);
 
-/// A desk with a screen, a keyboard, a scene file and a folder for what the program keeps.
+/// A desk with a screen, a keyboard, a scene file and a folder for the program's data.
 struct Desk {
     screen: Screen,
     keyboard: RefCell<Keyboard>,
     folder: tempfile::TempDir,
 }
 
-/// A window that runs; killed when dropped.
+/// A running window; killed when dropped.
 struct Window<'a> {
     desk: &'a Desk,
     program: Child,
@@ -69,7 +69,7 @@ impl Desk {
 
     fn command(&self, arguments: &[&str]) -> Command {
         let lcm = lcm(arguments, self.folder.path());
-        // Whoever runs the tests may ignore some signals, and programs keep to that.
+        // Whoever runs the tests may ignore some signals, and programs respect that.
         let mut command = Command::new("env");
         command.arg("--default-signal=INT,HUP,QUIT,TERM").arg(lcm.get_program()).args(lcm.get_args());
         for (name, value) in lcm.get_envs() {
@@ -78,7 +78,7 @@ impl Desk {
                 None => command.env_remove(name),
             };
         }
-        // Libraries complain where it is missing.
+        // Libraries complain if it is missing.
         command.env("XDG_RUNTIME_DIR", self.folder.path());
         command.env("DISPLAY", self.screen.display()).current_dir(self.folder.path()).stdin(Stdio::null());
         command
@@ -93,7 +93,7 @@ impl Desk {
         Window { desk: self, program, said }
     }
 
-    /// Opens the window on the scene, and waits until it shows it.
+    /// Opens the window with the scene, and waits until it is shown.
     fn open(&self, more: &[&str]) -> Window<'_> {
         let mut window = self.start(&[&["room.json"], more].concat());
         window.until("the sphere", |p| p.at(610, 310).iter().all(|c| *c > 150));
@@ -104,7 +104,7 @@ impl Desk {
     fn start_with_question(&self, arguments: &[&str]) -> Window<'_> {
         let mut window = self.start(arguments);
         window.until("a question", asks);
-        // It takes the keyboard once it is laid out.
+        // It gets the keyboard focus once it is laid out.
         thread::sleep(Duration::from_secs(1));
         window
     }
@@ -114,13 +114,13 @@ impl Desk {
         Store::new(self.folder.path().join("data/recovery")).left()
     }
 
-    /// The one copy that was left, which holds the scene with this model.
+    /// The only copy left, which contains the scene with this model.
     fn copy(&self, model: &str) -> PathBuf {
         let mut left = self.left();
         assert_eq!(left.len(), 1, "one copy");
         let left = left.remove(0);
         assert_eq!(left.about.path.as_deref(), Some(&*self.file()));
-        // The words of the default scene end with the first change that they do not describe.
+        // The description of the default scene is removed with the first change that contradicts it.
         let expected = Scene { reflection_model: model.to_owned(), description: None, ..self.saved() };
         assert_eq!(left.scene(&Registry::builtin()), Ok(expected));
         left.journal.file()
@@ -136,7 +136,7 @@ impl Window<'_> {
         fs::read_to_string(&self.said).expect("readable")
     }
 
-    /// Waits until the screen shows what is asked for.
+    /// Waits until the screen satisfies a condition.
     fn until(&mut self, what: &str, shows: impl Fn(&Picture) -> bool) -> Picture {
         let begin = Instant::now();
         loop {
@@ -168,7 +168,7 @@ impl Window<'_> {
         last
     }
 
-    /// Chooses a model by its key, which is an unsaved change, and waits until the picture shows it, no longer.
+    /// Selects a model by its key, which is an unsaved change, and waits only until the picture shows it.
     fn change(&mut self, key: Key) {
         let before = self.at_rest();
         self.desk.press(&[key]);
@@ -179,7 +179,7 @@ impl Window<'_> {
         kill(name, self.program.id());
     }
 
-    /// Waits for the end of the program.
+    /// Waits for the program to end.
     fn ended(mut self) -> (ExitStatus, String) {
         let begin = Instant::now();
         loop {
@@ -213,13 +213,13 @@ fn picture_of(picture: &Picture) -> Vec<[u8; 3]> {
         .collect()
 }
 
-/// True while a question lies over the picture and darkens it.
+/// True while a question covers and darkens the picture.
 fn asks(picture: &Picture) -> bool {
     let [r, g, b] = picture.at(230, 60);
     r == g && g == b && (10..SURROUND).contains(&r)
 }
 
-/// True while the picture can be worked on.
+/// True while the picture can be edited.
 fn asks_nothing(picture: &Picture) -> bool {
     picture.at(230, 60) == [SURROUND; 3]
 }
@@ -240,7 +240,7 @@ fn ctrl_c_asks_about_unsaved_changes_and_the_answer_counts() {
     let mut window = desk.open(&[]);
     window.change(Key::Two);
     for _ in 0..2 {
-        // Whoever stays is asked again the next time.
+        // After staying, the question is asked again the next time.
         window.signal("INT");
         window.until("a question", asks);
         desk.press(&[Key::Escape]);
@@ -317,7 +317,7 @@ fn signals_work_while_the_window_hangs() {
         let desk = Desk::new();
         let mut window = desk.open(&[]);
         window.change(Key::Two);
-        // A screen that no longer answers stops whoever draws on it.
+        // A screen that no longer answers blocks whoever draws on it.
         kill("STOP", desk.screen.process());
         fs::write(desk.file(), fs::read_to_string(desk.file()).expect("there") + " ").expect("writable");
         thread::sleep(Duration::from_secs(1));
@@ -366,14 +366,14 @@ fn what_a_killed_window_left_is_offered_until_the_user_decides() {
         assert!(begin.elapsed() < LONG, "no copy");
         thread::sleep(Duration::from_millis(50));
     }
-    // A window that runs is nobody else's business.
+    // A running window is nobody else's business.
     assert!(desk.left().is_empty());
     window.signal("KILL");
     assert_eq!(window.ended().0.signal(), Some(9));
     let copy = desk.copy("mod_lambert");
     let name = copy.display().to_string();
 
-    // Nobody is there to answer.
+    // There is nobody to answer.
     let output = desk.command(&["view", "--exit-after", "3"]).output().expect("lcm runs");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success() && said.contains(&name), "{said}");
@@ -387,7 +387,7 @@ fn what_a_killed_window_left_is_offered_until_the_user_decides() {
     assert_eq!(window.ended().1, "", "the scene that is shown is saved");
     assert_eq!(desk.copy("mod_lambert"), copy);
 
-    // The recovered document is as unsaved as it was, and belongs to the same file.
+    // The recovered document is as unsaved as before, and belongs to the same file.
     let mut window = desk.start_with_question(&[]);
     desk.press(&[Key::Return]);
     window.until("no question", asks_nothing);
@@ -417,7 +417,7 @@ fn a_copy_that_is_discarded_is_gone() {
     window.signal("TERM");
     window.ended();
     let copy = desk.copy("mod_lambert");
-    // Also where another scene is to be shown.
+    // Also if another scene is to be shown.
     let mut window = desk.start_with_question(&["room.json"]);
     desk.press(&[Key::Tab]);
     desk.press(&[Key::Return]);

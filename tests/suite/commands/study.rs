@@ -1,4 +1,4 @@
-//! `lcm study` from end to end, in its quick setting.
+//! `lcm study` from start to end, in its quick setting.
 
 use std::{fs, path::Path};
 
@@ -26,7 +26,8 @@ fn loads(html: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The numbers of the chapter on OpenPBR: shares of layers that make a whole, and the conclusions drawn from them.
+/// The numbers of the chapter on OpenPBR: shares of layers that add up to a whole, and the conclusions drawn
+/// from them.
 fn layers_add_up(html: &str, folder: &Path) {
     assert!(html.contains("<section id=\"layers\">") && html.contains("href=\"#layers\""));
     let rows = |name: &str| -> Vec<Vec<f64>> {
@@ -40,16 +41,18 @@ fn layers_add_up(html: &str, folder: &Path) {
         assert!((row[1..5].iter().sum::<f64>() - row[5]).abs() < 1e-5 && row[5] < 1.0, "{row:?}");
     }
     let (first, last) = (&energy[0], &energy[energy.len() - 1]);
-    // Along the normal, the coat of index 1.6 has its (0.6/2.6)² = 0.053, less what the fuzz above it takes.
+    // Along the normal, the coat of index 1.6 reflects (0.6/2.6)² = 0.053, minus what the fuzz above it
+    // takes.
     assert!((0.03..0.055).contains(&first[2]) && last[2] > 3.0 * first[2], "{first:?} {last:?}");
     assert!(last[4] < first[4], "the body loses");
-    // Of copper: a coat without darkening, with it, and with a colour; each row name, angle, red, green, blue.
+    // For copper: a coat without darkening, with darkening, and with a colour; each row has name, angle, red,
+    // green, blue.
     let copper = rows("layers_coated_copper.csv");
     let normal: Vec<_> = copper.iter().filter(|row| row[1] == 0.0).collect();
     assert_eq!(normal.len(), 4);
     assert!(normal[2][3] < normal[1][3] && normal[2][5] > normal[1][5], "darkening: {normal:?}");
     assert!(normal[3][4] < 0.5 * normal[2][4], "amber takes blue");
-    // The film of nothing reflects as glass, one of a quarter of a wave less.
+    // A film of zero thickness reflects like glass, one of a quarter of a wavelength less.
     let film = rows("layers_film.csv");
     assert!((film[0][3] - 0.04).abs() < 1e-3, "{:?}", film[0]);
     let least = film.iter().take(film.len() / 2).map(|row| row[3]).fold(1.0, f64::min);
@@ -66,13 +69,13 @@ fn approximations_have_errors(html: &str, folder: &Path) {
     let rms = |row: &[&str]| row[3].parse::<f64>().unwrap();
     for row in &rows {
         let [mean, largest, noise] = [4, 5, 8].map(|i| row[i].parse::<f64>().unwrap());
-        // More than noise, and less than a picture that has nothing to do with the other.
+        // More than noise, and less than an unrelated picture.
         assert!(rms(row) > noise && rms(row) < 1.0 && noise < 0.05, "{row:?}");
         assert!((0.8..1.2).contains(&mean) && largest.abs() > rms(row), "{row:?}");
         let percent = format!("{:.1}\u{a0}%", 100.0 * rms(row));
         assert!(html.contains(&format!("difference, {percent}")), "{row:?}");
     }
-    // One roughness for two is a worse guess than for one.
+    // One roughness for two is a worse approximation than for one.
     let of = |material: &str, approximation: &str| {
         let row = rows.iter().find(|row| row[0].contains(material) && row[2] == approximation).unwrap();
         rms(row)
@@ -90,7 +93,7 @@ fn the_study_writes_a_report_that_stands_alone() {
     for part in ["Question", "Method", "Results", "Conclusion"] {
         assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 6, "{part}");
     }
-    // The content of the numbers, and not only their presence.
+    // The contents of the numbers, not only their presence.
     assert!(html.contains("All four phenomena are shown"), "{}", &html[..4000.min(html.len())]);
     assert_eq!(loads(&html), [""; 0]);
     assert_eq!(loads("<img src=\"https://x\">").len(), 1);
@@ -134,14 +137,14 @@ fn a_report_is_written_whole_or_not_at_all() {
         html: html.to_owned(),
         tables: ["numbers", last].map(|name| Table { name, csv: format!("a,{html}\n") }).into(),
     };
-    // A place that takes no file fails in the same place as a disk that is full.
+    // A place that accepts no files fails in the same place as a full disk.
     let new = around.path().join("deep/new");
     assert!(report("one", "../outside").write(&new).is_err());
     assert!(!new.exists());
     assert_eq!(names(&around.path().join("deep")), [""; 0]);
     report("one", "more").write(&new).unwrap();
     assert_eq!(names(&new), ["index.html", "more.csv", "numbers.csv"]);
-    // Over an earlier report, beside what is somebody's.
+    // Over an earlier report, next to somebody else's files.
     fs::create_dir(new.join("taken.csv")).unwrap();
     assert!(report("two", "taken").write(&new).is_err());
     let content = |name: &str| fs::read_to_string(new.join(name)).unwrap();

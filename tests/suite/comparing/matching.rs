@@ -1,4 +1,4 @@
-//! Matching a view to view A: `lcm match`, and the window with its question, its progress and its step of the history.
+//! Matching a view to view A: `lcm match`, and the window with its question, progress and history step.
 
 use std::{fs, path::Path};
 
@@ -28,7 +28,7 @@ use crate::{
     window::panels::Bench,
 };
 
-/// View A under Phong's model, view B under Blinn's.
+/// View A with Phong's model, view B with Blinn's.
 fn scene() -> Scene {
     let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
     scene.objects[0].material.set("alpha", Value::Integer(32));
@@ -85,13 +85,13 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     let run = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "b.json"], b"");
     assert_eq!((run.status, run.err.as_str()), (Some(0), "wrote b.json\n"));
     assert_eq!(material(&at.join("b.json")).0["alpha"], Value::Integer(alpha));
-    // Nothing is replaced unasked, and nothing is searched before that is known.
+    // Nothing is replaced unasked, and this is checked before the search.
     let run = lcm_in(at, &["match", "a.json", "-o", "b.json"], b"");
     refused(&run, 4, "b.json already exists; it was not overwritten; --overwrite replaces it");
     let arguments = ["match", "a.json", "--on", "highlight", "-o", "b.json", "--overwrite", "-q"];
     assert_eq!(lcm_in(at, &arguments, b"").status, Some(0));
     assert_eq!(material(&at.join("b.json")).0["alpha"], Value::Integer(alpha));
-    // Now it is as near as it gets.
+    // Now it is as close as possible.
     let run = lcm_in(at, &["match", "b.json", "--on", "highlight"], b"");
     assert!(
         run.out.starts_with("view B stays as it is: no other values come nearer to view A\n"),
@@ -136,7 +136,7 @@ fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
     refused(&lcm_in(at, &["match"], b""), 2, "required");
     refused(&lcm_in(at, &["match", "none.json"], b""), 1, "none.json: file not found");
     let folder = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "x/b.json"], b"");
-    // What was found is not lost.
+    // The result is not lost.
     assert_eq!(folder.status, Some(4));
     assert!(folder.out.contains("alpha: 32 → 129"), "{}", folder.out);
     assert!(folder.err.contains("there is no folder x"), "{}", folder.err);
@@ -152,7 +152,7 @@ fn compared() -> Bench {
     bench
 }
 
-/// A bench that is asked how a view of this model shall be matched.
+/// Opens the question how to match a view with this model.
 pub fn ask(bench: &mut Bench, model: &str) {
     let layout = lights_camera_models::scene::comparison::Layout::SideBySide;
     bench.apply(Action::Compare(CompareCommand::Layout(layout)));
@@ -160,7 +160,7 @@ pub fn ask(bench: &mut Bench, model: &str) {
     bench.apply(Action::Match(MatchCommand::Ask(1)));
 }
 
-/// Then it runs, on another one it has ended.
+/// Runs the match, which has ended in the next frame.
 pub fn run(bench: &mut Bench) {
     bench.apply(Action::Match(MatchCommand::Close));
     let values = vec![("k_s", Value::Number(0.3)), ("alpha", Value::Integer(128))];
@@ -233,7 +233,7 @@ fn the_progress_of_a_match_is_shown_and_it_can_be_stopped() {
     assert_eq!(bench.effects, [Effect::CancelMatch]);
 }
 
-/// Lets a window without a window match, until it says how that ended.
+/// Runs a match in a windowless window, until it reports the result.
 fn matched(app: &mut App, effects: Vec<Effect>) -> (Severity, String) {
     let before = app.world().resource::<Session>().messages.added();
     app.world_mut().resource_mut::<Messages<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
@@ -276,7 +276,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     session.apply(Action::Undo, &registry);
     assert_eq!(*session.document, *before);
 
-    // A scene that changes meanwhile is another one.
+    // A scene that changes meanwhile is a different one.
     app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(start(What::Picture)));
     app.update();
     let edit = Edit::Variant(0, VariantField::Exposure(Some(1.0)));
@@ -289,7 +289,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     );
     assert_eq!(app.world().resource::<Session>().document.done(), 1);
 
-    // What cannot be matched is said.
+    // Views that cannot be matched are reported.
     let unknown = Effect::Match { view: 2, what: What::Lobe, parameters: vec!["alpha"] };
     let said = matched(&mut app, vec![unknown]);
     let expected =
@@ -297,7 +297,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     assert_eq!(said, (Severity::Error, expected.to_owned()));
 }
 
-/// With every number of a model free, a view comes at least as near as with any of them alone.
+/// With all numbers of a model free, a view comes at least as close as with any single one.
 #[test]
 fn more_free_parameters_never_end_worse() {
     let registry = Registry::builtin();
@@ -327,7 +327,7 @@ fn more_free_parameters_never_end_worse() {
             let alone = matched(&[alone]);
             assert!(together.after <= 1.01 * alone.after + 1e-4, "{what:?} {model}: {together:?}\n{alone:?}");
         }
-        // What stayed is told, and nothing is told twice.
+        // Unchanged parameters are reported, and nothing is reported twice.
         let mut told: Vec<_> = together.values.iter().map(|(name, _)| *name).chain(together.kept).collect();
         let mut expected = all.clone();
         told.sort_unstable();

@@ -32,7 +32,7 @@ fn left(x: i64, y: i64, c: i64) -> i64 {
     (x * 3 + y * 5 * (c + 1) + 40 * ((x / 16 + y / 16) % 2)) % 256
 }
 
-/// The same, shifted at the left, noisy in the middle, equal at the right.
+/// The first picture shifted on the left, noisy in the middle, equal on the right.
 fn right(x: i64, y: i64, c: i64) -> i64 {
     match x {
         ..60 => left(x + 1, y, c),
@@ -41,7 +41,7 @@ fn right(x: i64, y: i64, c: i64) -> i64 {
     }
 }
 
-/// The first picture, one pixel further right, and around.
+/// The first picture shifted cyclically by one pixel to the right.
 fn shifted(x: i64, y: i64, c: i64) -> i64 {
     left((x + i64::from(WIDTH) - 1) % i64::from(WIDTH), y, c)
 }
@@ -67,7 +67,7 @@ fn four(measured: &Measured) -> [Four; 2] {
     [measured.all, covered].map(|m| [m.rmse, m.psnr, m.ssim, m.flip])
 }
 
-/// The largest differences that are allowed: both calculate in 32 bits in places.
+/// Maximum differences: both calculate in 32 bits in places.
 const TOLERANCE: Four = [1e-9, 1e-6, 2e-6, 2e-5];
 
 fn agree(found: [Four; 2], expected: [Four; 2]) -> bool {
@@ -118,7 +118,7 @@ fn black_and_white_are_as_different_as_can_be() {
     assert!((found.flip - 0.967_390_656).abs() < 1e-5, "{}", found.flip);
 }
 
-/// Two pixels of light, the second covered in half of its samples.
+/// Two pixels of light, the second covered by half of its samples.
 fn light(first: Vec4) -> Shown {
     let pixels = vec![first, Vec4::new(0.1, 0.2, 0.3, 0.5), Vec4::ZERO];
     Shown::of_light(Picture { width: 3, height: 1, pixels }, &Scene::default().display)
@@ -128,7 +128,7 @@ fn light(first: Vec4) -> Shown {
 fn light_is_measured_where_it_is_known() {
     let (a, b) = (light(Vec4::new(0.5, 0.5, 0.5, 1.0)), light(Vec4::new(0.5, 0.9, 0.2, 1.0)));
     let found = measured(&a, &b);
-    // √((0.4² + 0.3²) / 9) of three pixels, of which two are covered.
+    // √((0.4² + 0.3²) / 9) over three pixels, two of which are covered.
     let near = |x: Option<f64>, y: f64| (x.expect("light is known") - y).abs() < 1e-7;
     assert!(near(found.all.light_rmse, 0.25_f64.sqrt() / 3.0), "{found:?}");
     assert!(near(found.covered.expect("covered").light_rmse, (0.25_f64 / 6.0).sqrt()), "{found:?}");
@@ -148,7 +148,7 @@ fn light_is_measured_where_it_is_known() {
         assert!((in_light(channel).expect("one differs") - expected).abs() < 1e-6, "{channel:?}");
     }
     assert_eq!(in_light(Channel::Red), None);
-    // Of a picture of codes, light is not known.
+    // The light of a picture of codes is not known.
     let codes = Shown::of_codes(3, 1, vec![0; 9]).expect("as many as pixels");
     let comparison = Comparison { values: Compared::Light, ..Comparison::default() };
     let pair = Pair::new(&a, &codes).expect("of one size");
@@ -186,7 +186,7 @@ fn maps_show_sign_and_amplification() {
     // Brighter is orange, darker is blue.
     let [[r, _, b], [s, _, c]] = map(Sign::Signed, 3.0);
     assert!(r > b && s < c, "{:?}", map(Sign::Signed, 3.0));
-    // Nothing is the middle.
+    // No difference is the middle.
     let comparison = Comparison { sign: Sign::Signed, ..Comparison::default() };
     let none = Pair::new(&a, &a).expect("of one size").differences(&comparison).expect("known");
     assert_eq!(none.colours(&comparison), [236; 6]);
@@ -226,7 +226,7 @@ fn composed(scene: &Scene, comparison: &Comparison, size: [u32; 2]) -> Vec<u8> {
     compose(comparison, size, &shown).expect("sizes match")
 }
 
-/// The layouts whose pictures are kept.
+/// The layouts with stored pictures.
 fn layouts() -> Vec<(&'static str, usize, Comparison)> {
     let plain = Comparison::default();
     let difference = Comparison { layout: Layout::Difference, ..plain };
@@ -299,7 +299,7 @@ fn cells_are_equal_and_fill_the_picture() {
         }
     }
     assert_eq!(cells(&beside, 1, [3, 3]), None);
-    // Over each other, each has the whole.
+    // On top of each other, each has the whole area.
     for layout in [Layout::Wipe, Layout::Difference, Layout::Blink] {
         let comparison = Comparison { layout, with: 2, ..Comparison::default() };
         let cells = cells(&comparison, 3, [20, 10]).expect("there is room");
@@ -371,7 +371,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Runs it with small pictures.
+/// Runs the program with small pictures.
 fn run(folder: &Path, arguments: &[&str]) -> Run {
     let run = lcm_in(folder, arguments, b"");
     check_wording(&run.err.replace("e.g. ", ""));
@@ -406,7 +406,7 @@ fn the_command_prints_numbers() {
     assert!(number("/covered/pixels") < number("/all/pixels"));
     assert!(number("/largest/difference").abs() > 5.0);
 
-    // The library says the same.
+    // The library returns the same.
     let registry = Registry::builtin();
     let settings = Settings { width: 96, height: 54, ..Settings::default() };
     let shown = [0, 1].map(|view| Shown::of_view(&scene(), view, &registry, &settings).expect("there"));
@@ -420,7 +420,7 @@ fn the_command_prints_numbers() {
     assert_eq!(with(&["all.json", "--with", "D"])["b"]["name"], "dark");
     assert_eq!(with(&["all.json", "--with", "dark"])["b"]["view"], "D");
     assert_eq!(with(&["all.json", "--with", "c"])["b"]["view"], "C");
-    // Equal ones.
+    // Equal views.
     let equal = with(&["plain.json", "plain.json"]);
     let all = &equal["all"];
     assert_eq!(
@@ -460,7 +460,7 @@ fn the_command_compares_pictures() {
     assert_eq!((codes[3 * 90], codes[3 * 96], codes[3 * 193]), (50, 22, 255));
 }
 
-/// Two pictures of 160 pixels across are equal.
+/// Asserts that two pictures with a width of 160 pixels are equal.
 fn same(found: &[u8], expected: &[u8], what: &str) {
     let off = found.iter().zip(expected).position(|(a, b)| a != b).map(|i| (i / 3 % 160, i / 480));
     assert_eq!((off, found.len()), (None, expected.len()), "{what}");
@@ -482,11 +482,11 @@ fn the_command_draws_the_comparison() {
         same(&drawn(&["compare", "all.json", "--layout", id]), &expected, id);
         same(&drawn(&["render", "all.json", "--renderer", "cpu", "--layout", id]), &expected, id);
     }
-    // The picture holds the comparison, and opens as it.
+    // The picture contains the comparison, and opens as it.
     let wiped = drawn(&["compare", "all.json", "--layout", "wipe", "--with", "dark"]);
     fs::rename(folder.path().join("x.png"), folder.path().join("wiped.png")).expect("writable");
     same(&drawn(&["render", "wiped.png", "--renderer", "cpu"]), &wiped, "opened again");
-    // The GPU arranges the same.
+    // The GPU uses the same arrangement.
     for id in ["single", "side_by_side", "wipe", "difference", "blink"] {
         drawn(&["render", "all.json", "--renderer", "cpu", "--layout", id]);
         fs::rename(folder.path().join("x.png"), folder.path().join("cpu.png")).expect("writable");
@@ -723,7 +723,7 @@ fn the_damage_of_a_picture_is_told_in_plain_words() {
         (made(b"IDAT", header(8, 3), &[0, 0]), "it has no palette for its colours"),
         (made(b"IDAT", header(7, 0), &[0, 0]), "its header is wrong"),
         (made(b"tEXt", header(8, 0), &[0, 0]), "it has no pixels"),
-        // A part that a reader has to know.
+        // A chunk that readers must know.
         (made(b"XDAT", header(8, 0), &[0, 0]), "one of its parts is not as it must be in PNG"),
     ] {
         fs::write(folder.path().join("half.png"), bytes).expect("written");
@@ -732,7 +732,7 @@ fn the_damage_of_a_picture_is_told_in_plain_words() {
             format!("half.png: the picture is damaged: {expected}; copy it once more from where it came\n");
         assert_eq!((half.status, half.err), (Some(1), expected));
     }
-    // Whatever is flipped, the decoder's own words do not reach people.
+    // Whatever is flipped, the decoder's own messages do not reach people.
     for at in (8..whole.len()).step_by(7) {
         fs::write(folder.path().join("half.png"), flipped(at, 0x41)).expect("written");
         let half = run(folder.path(), &["compare", "grey.png", "half.png"]);

@@ -49,13 +49,13 @@ fn a_window_shows_the_views_of_a_scene_in_every_layout() {
     fs::write(&file, scene("side_by_side", "")).expect("written");
     let screen = Screen::new(1280, 720);
     let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
-    // Between the panels, the picture is from 208 to 936.
+    // Between the panels, the picture spans 208 to 936.
     let (left, right) = (210..570, 574..934);
     let count = |picture: &Picture, x: &std::ops::Range<u32>, is: fn([u8; 3]) -> bool| {
         picture.count(x.clone(), 70..640, is)
     };
     window.until("both views", |p| count(p, &left, RED) > 3000 && count(p, &right, BLUE) > 3000);
-    // A screen may be looked at while half of a new picture is on it.
+    // The screen may be captured while it shows half of a new picture.
     let picture = window.rest();
     assert_eq!((count(&picture, &left, BLUE), count(&picture, &right, RED)), (0, 0));
 
@@ -73,7 +73,7 @@ fn a_window_shows_the_views_of_a_scene_in_every_layout() {
             && p.count(210..934, top, BLUE) + p.count(210..934, bottom, RED) == 0
     });
 
-    // Viridis: nothing is dark violet, all there is is yellow.
+    // Viridis: nothing is dark violet, the rest is yellow.
     fs::write(&file, scene("difference", "")).expect("written");
     let none = |p: [u8; 3]| p[0].abs_diff(68) < 4 && p[1] < 5 && p[2].abs_diff(84) < 4;
     let most = |p: [u8; 3]| p[0] > 240 && p[1] > 220 && p[2] < 60;
@@ -96,7 +96,7 @@ fn bench() -> Bench {
     bench
 }
 
-/// The place of what a screen reader calls so.
+/// The position of the widget that a screen reader calls by this name.
 fn place(bench: &Bench, label: &str) -> Rect {
     let seen = bench.tree.iter().find(|seen| seen.label.contains(label));
     seen.unwrap_or_else(|| panic!("“{label}” is not shown")).rect
@@ -128,7 +128,7 @@ fn a_second_view_is_added_changed_and_taken_back_by_hand() {
     bench.key(Key::K, CTRL);
     bench.settle();
     assert_eq!(bench.session.active(), 1);
-    // A press of a shading model's key in view A is about the scene.
+    // Pressing a shading model's key in view A changes the scene.
     click(&mut bench, "View A");
     bench.key(Key::F, Modifiers::NONE);
     bench.settle();
@@ -162,7 +162,7 @@ fn the_edge_of_a_wipe_is_dragged_and_moved_by_keys_and_each_drag_is_one_step() {
     bench.key(Key::Period, Modifiers::NONE);
     bench.settle();
     assert!((bench.session.document.comparison.split - split - 0.02).abs() < 1e-3);
-    // The picture and its other view are as large as before, so neither is drawn again.
+    // The picture and its other view have the same size as before, so neither is drawn again.
     let size = |bench: &Bench| bench.area.cells.iter().map(|cell| cell.rect.size()).collect::<Vec<_>>();
     let before = size(&bench);
     assert_eq!(before.len(), 2);
@@ -250,7 +250,7 @@ fn three() -> Bench {
     Bench::new(Session::new(scene))
 }
 
-/// What a view shows, but for names.
+/// The contents of a view, without names.
 fn seen(bench: &Bench, view: usize) -> (String, String, String) {
     let (scene, _) = bench.session.document.seen(view, &bench.registry).expect("there is such a view");
     let object = &scene.objects[0];
@@ -269,7 +269,7 @@ fn views_are_swapped_and_the_others_stay_as_they_are() {
     assert_eq!(after[2..], before[2..]);
     bench.apply(Action::Undo);
     assert_eq!((0..4).map(|view| seen(&bench, view)).collect::<Vec<_>>(), before);
-    // Terms are no part of the scene that would be view A.
+    // Terms are not part of the scene that would become view A.
     bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Specular)))));
     bench.apply(Action::Compare(CompareCommand::Swap(1)));
     assert!(bench.says("terms of its own"));
@@ -396,7 +396,7 @@ fn each_view_has_its_badges_in_every_layout() {
             assert_ne!(a, b, "each counts its own view");
         }
     }
-    // A click on the sign of another view is about that view.
+    // A click on another view's badge applies to that view.
     let mut bench = bench();
     bench.apply(Action::Compare(CompareCommand::Add));
     bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Diffuse)))));
@@ -426,7 +426,7 @@ fn a_view_differs_only_in_what_differs_now() {
     assert!(at("differs from A in") < at("exposure  1 EV"));
     assert!(at("exposure  1 EV") < at("also set in B, to what A has now"));
     assert!(at("also set in B, to what A has now") < at("reflection model  Phong"));
-    // Both are taken back as before.
+    // Both are undone as before.
     click(&mut bench, "exposure: back to A");
     assert!(texts(&mut bench).contains(&"as A".to_owned()));
     click(&mut bench, "reflection model: back to A");

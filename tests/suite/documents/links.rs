@@ -1,4 +1,4 @@
-//! The documents quote only existing things: links, headings, commands, names and paths.
+//! The documents refer only to existing things: links, headings, commands, names and paths.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
@@ -143,7 +143,7 @@ fn every_name_and_path_that_a_page_quotes_is_there() {
         let page = fs::read_to_string(root().join(document)).expect("there");
         for (number, line, _) in lines(&page).filter(|(.., fenced)| !fenced) {
             for span in line.split('`').skip(1).step_by(2) {
-                // A file that the reader is to write is called x, or after its id.
+                // A file that the reader should write is called x, or named after its id.
                 let to_write =
                     ["/x.", "toon.", "/ID", "_ID", "NAME", "renders/"].iter().any(|name| span.contains(name));
                 let commands = ["cargo ", "lcm ", "mdbook ", "xvfb-run ", "LCM_UPDATE"];

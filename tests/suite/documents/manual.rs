@@ -1,4 +1,4 @@
-//! The manual of the menu Help: whole without the folder of the program.
+//! The manual in the Help menu: complete without the folder of the program.
 
 use std::fs;
 
@@ -33,7 +33,7 @@ fn the_manual_has_every_document_and_no_dead_link() {
 fn help_writes_the_manual_where_a_browser_finds_it() {
     let mut bench = Bench::new(Session::default());
     bench.click("Help");
-    // Behind the word is room for a key.
+    // There is space for a key after the word.
     let entry = bench.tree.iter().find(|seen| seen.label.trim() == "Manual").expect("an entry").rect;
     bench.click_at(entry.center(), PointerButton::Primary);
     assert_eq!(bench.effects, [Effect::OpenManual]);
@@ -42,11 +42,11 @@ fn help_writes_the_manual_where_a_browser_finds_it() {
     let inner = folder.path().join("data");
     let file = write(&inner).expect("written");
     assert_eq!(fs::read_to_string(&file).expect("it is there"), page());
-    // An older one is replaced, the same one is left alone.
+    // An older one is replaced, an identical one is left alone.
     fs::write(&file, "old").expect("written");
     assert_eq!(write(&inner), Ok(file.clone()));
     assert_eq!(fs::read_to_string(&file).expect("it is there"), page());
-    // What is in the way is named.
+    // The obstacle is named.
     fs::write(folder.path().join("taken"), "").expect("written");
     let why = write(&folder.path().join("taken")).expect_err("a file is no folder");
     assert!(why.contains("taken"), "{why}");

@@ -1,5 +1,5 @@
-//! The documents: their tables match the registry, their examples match the program, and the tour of the README is
-//! right.
+//! The documents: their tables match the registry, their examples match the program, and the tour of the
+//! README is right.
 
 use std::{fs, io, sync::atomic::AtomicBool};
 
@@ -64,7 +64,7 @@ fn gouraud_shading_loses_the_highlight_as_the_tour_says() {
     assert!(brightest("gouraud") < 240, "it is lost");
 }
 
-/// Portraits side by side in the gallery.
+/// Number of portraits side by side in the gallery.
 const GALLERY_COLUMNS: usize = 4;
 
 /// Rows of a table, with a heading.
@@ -79,7 +79,7 @@ fn code(id: &str) -> String {
     format!("`{id}`")
 }
 
-/// The tables and examples generated from the program, by page and by the name of their place.
+/// The tables and examples generated from the program, by page and name of their position.
 fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
     let registry = Registry::builtin();
     let example = |file: &str, language: &str| {
@@ -213,13 +213,13 @@ fn worked_examples(registry: &Registry) -> Vec<(&'static str, String)> {
     ["blinn_phong", "ashikhmin_shirley", "oren_nayar", "microfacet", "openpbr"].map(example).to_vec()
 }
 
-/// What a match compares.
+/// The quantities compared by a match.
 fn matches() -> String {
     let row = |what: &What| vec![code(what.id()), what.summary().to_owned(), what.unit().to_owned()];
     table(&["`--on`", "what is compared", "error"], What::ALL.iter().map(row))
 }
 
-/// The additions of the crate of the example, with what each takes.
+/// The additions of the example crate, with their files.
 fn extension() -> String {
     let row = |(what, files): (&str, &[&str])| {
         let lines = |file: &&str| {
@@ -242,7 +242,7 @@ fn extension() -> String {
     table(&["addition", "files", "lines"], rows.into_iter().map(row))
 }
 
-/// The parts of the window, from the documentation of the group.
+/// The parts of the window, from the documentation of the plugin group.
 fn parts() -> String {
     let text = fs::read_to_string(root().join("src/window/plugins.rs")).expect("there");
     let plain = |line: &str| line.replace("[`", "`").replace("`]", "`");
@@ -252,7 +252,7 @@ fn parts() -> String {
         .collect()
 }
 
-/// The sets that systems can be ordered by, from their documentation.
+/// The sets by which systems can be ordered, from their documentation.
 fn sets() -> String {
     let text = fs::read_to_string(root().join("src/render/schedule.rs")).expect("there");
     let body =
@@ -546,7 +546,7 @@ fn modules() -> String {
     table
 }
 
-/// The settings of a block `view` of a lesson.
+/// The settings of a lesson's `view` block.
 fn view_settings() -> String {
     let rows = lesson::SETTINGS
         .iter()
@@ -554,7 +554,7 @@ fn view_settings() -> String {
     table(&["setting", "values", "meaning"], rows)
 }
 
-/// What a lesson can point at.
+/// The controls that a lesson can highlight.
 fn lesson_controls() -> String {
     let all = |names: &[&str]| names.iter().map(|name| code(name)).collect::<Vec<_>>().join(", ");
     let rows = [
@@ -588,7 +588,7 @@ fn the_lesson_of_the_manual_is_sound() {
     let registry = Registry::builtin();
     let lesson = lesson::Lesson::read(&root().join("examples/lesson.md"), &registry).expect("sound");
     assert!(lesson.steps.len() > 2 && lesson.steps.iter().filter(|step| step.task.is_some()).count() > 1);
-    // Every kind of block is in the manual.
+    // The manual has every kind of block.
     let manual = fs::read_to_string(root().join("docs/lessons.md")).expect("there");
     for block in ["equation", "scene", "view", "point", "predict", "do", "find"] {
         assert!(manual.contains(&format!("```{block}\n")), "{block}");

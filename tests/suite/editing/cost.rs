@@ -27,7 +27,7 @@ use lights_camera_models::{
 
 const OBJECTS: usize = 2_000;
 const SIZE: u32 = 96;
-/// More bytes than any row of a table has.
+/// More bytes than any row of a table.
 const ROW: u64 = 1024;
 
 fn scene(objects: usize) -> Scene {
@@ -49,7 +49,7 @@ fn renderer(scene: &Scene) -> GpuRenderer {
     renderer
 }
 
-/// Objects that are looked at and bytes that are handed to the renderer in a frame after a change, and in the next.
+/// Objects visited and bytes passed to the renderer in a frame after a change, and in the next.
 fn cost(renderer: &mut GpuRenderer, change: impl FnOnce(&mut World)) -> [(u64, u64); 2] {
     let counts = |renderer: &mut GpuRenderer| {
         let world = renderer.app().world();
@@ -64,7 +64,7 @@ fn cost(renderer: &mut GpuRenderer, change: impl FnOnce(&mut World)) -> [(u64, u
     })
 }
 
-/// The document is shown, as the window does it.
+/// Displays the document, as the window does.
 fn show(world: &mut World, document: &Document) {
     let document = document.clone();
     world
@@ -79,7 +79,7 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
     let registry = Registry::builtin();
     let mut document = Document::new(scene(OBJECTS));
     let mut renderer = renderer(&document);
-    // Views without overrides alone, then one with beside them.
+    // First only views without overrides, then also one with overrides.
     for views in [1, 2] {
         if views == 2 {
             renderer.draw_on_demand();
@@ -107,7 +107,7 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
             surface.material.set("base_colour", Value::Colour([1, 2, views as u8]));
         });
         one("a component", true, costs);
-        // The document learns of it.
+        // The document is informed.
         let shown = renderer.app().world().resource::<CurrentScene>().0.clone();
         document.replace("Change by a system", Selection::Room, shown, &registry);
         let costs = cost(&mut renderer, |world| show(world, &document));
@@ -201,7 +201,7 @@ fn a_change_of_the_models_is_work_in_proportion_to_the_objects() {
         scene.reflection_model = "mine".to_owned();
         scene.objects.iter_mut().for_each(|object| object.material.set("gloss", Value::Number(0.75)));
         let mut session = Session::new(scene.clone());
-        // The parameter goes, and comes back.
+        // The parameter is removed, and comes back.
         for (parameter, left) in [("sheen_of_mine", 0), ("gloss", objects)] {
             put(&mut registry, parameter);
             let before = session.document.visits();

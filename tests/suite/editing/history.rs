@@ -14,7 +14,7 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// Actions that change the scene, one of each kind at least.
+/// Actions that change the scene, at least one of each kind.
 fn changes() -> Vec<Action> {
     let light = |field| Action::Edit(Edit::Light(0, field));
     let object = |field| Action::Edit(Edit::Object(0, field));
@@ -98,12 +98,12 @@ fn every_change_is_a_step_that_is_undone_and_redone_exactly() {
     }
     session.apply(Action::Redo, &registry);
     assert!(session.messages.iter().any(|m| m.text == "There is nothing to redo."));
-    // Anywhere in one jump.
+    // Any number of steps in one jump.
     for at in [0, 7, states.len() - 1, 20] {
         session.apply(Action::GoToStep(at), &registry);
         assert!(states[at].0 == *session.document.scene(), "{at}");
     }
-    // Another change takes the place of what was undone.
+    // Another change replaces what was undone.
     session.apply(Action::Expose(0.25), &registry);
     assert_eq!((session.document.done(), session.document.steps().len()), (21, 21));
 }
@@ -148,7 +148,7 @@ fn parts_keep_their_ids_when_others_come_and_go_and_when_they_come_back() {
     assert_eq!(ids(&session), first);
     session.apply(Action::GoToStep(2), &registry);
     assert_eq!(ids(&session), copied);
-    // Another version of the file: the objects in another order, one gone, one changed, one new.
+    // Another version of the file: the objects in another order, one removed, one changed, one new.
     session.apply(Action::GoToStep(0), &registry);
     let mut scene = session.document.scene().clone();
     scene.objects.swap(0, 4);
@@ -175,14 +175,14 @@ fn a_gesture_is_one_step_and_one_that_leads_nowhere_is_none() {
     assert_eq!(session.document.objects[0].size, 2.0);
     session.apply(Action::Redo, &registry);
     assert!((session.document.objects[0].size - 1.1).abs() < 1e-6);
-    // Another gesture, another step; there and back again, none.
+    // Another gesture is another step; there and back again is none.
     size(&mut session, 1.5);
     session.document.end_gesture();
     assert_eq!(session.document.steps().len(), 2);
     size(&mut session, 1.75);
     size(&mut session, 1.5);
     assert_eq!(session.document.steps().len(), 2);
-    // The same value again is no change.
+    // Setting the same value again is not a change.
     session.document.end_gesture();
     size(&mut session, 1.5);
     assert_eq!(session.document.steps().len(), 2);
@@ -226,7 +226,7 @@ fn history_is_bounded() {
     }
     assert_eq!(document.steps().len(), 500);
     assert_eq!(document.steps().last(), Some("Step 1999"));
-    // A step of a change of all of ten thousand objects keeps twenty thousand.
+    // A step that changes all of ten thousand objects stores twenty thousand.
     let mut document = Document::new(Scene { objects: vec![Object::default(); 10_000], ..Scene::default() });
     for i in 0..40 {
         let size = 0.5 + 0.01 * i as f32;
@@ -235,7 +235,7 @@ fn history_is_bounded() {
         });
     }
     assert_eq!(document.steps().len(), 10);
-    // The first objects all stand in one place, which objects may.
+    // The first objects all have one position, which is allowed.
     assert!(check::scene(&document, &registry).is_empty());
 }
 
@@ -334,7 +334,7 @@ fn a_drag_of_a_knob_is_one_step() {
     let between = exponent(&bench);
     assert!(between != before, "the drag changes it");
     assert_eq!(steps(&bench), ["Shininess of Sphere 1"]);
-    // The slider has the focus still.
+    // The slider still has the focus.
     drag(&mut bench, 24.0);
     assert!(exponent(&bench) != between, "the second drag changes it");
     assert_eq!(steps(&bench), ["Shininess of Sphere 1"; 2]);
@@ -421,7 +421,7 @@ fn a_system_keeps_the_rules_of_room_models_and_display_and_the_selection() {
 #[test]
 fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
     let registry = Registry::builtin();
-    // Others stand where a lamp would hang.
+    // Others are where a lamp would hang.
     let default = Scene::default();
     let middle = (0.5 * default.scene_size.corner()).with_y(8.0);
     let objects = vec![Object { position: middle, ..Object::default() }, Object::default()];
@@ -447,7 +447,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
                 edit(&mut document, LightField::Type(entry.declaration.id.to_owned()));
                 for p in entry.parameters {
                     if let ParameterKind::Number { min, .. } = p.kind {
-                        // Another value than that which the type before may have left.
+                        // Another value than the previous type may have left.
                         let known = document.lights[0].parameters.number(p);
                         let value = if known == min + 0.5 { min + 0.25 } else { min + 0.5 };
                         edit(&mut document, LightField::Parameter(p.name, Value::Number(value)));
@@ -461,7 +461,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
             }
         }
     }
-    // A place that is taken, outside, or no place at all, and a direction that is none.
+    // A position that is taken, outside, or NaN, and a zero direction.
     for position in [middle, Vec3::splat(5.0), document.observer.position, Vec3::splat(99.0), Vec3::NAN] {
         for direction in [Vec3::ZERO, Vec3::NAN, Vec3::X] {
             for id in ["directional", "spot"] {
@@ -471,7 +471,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
             }
         }
     }
-    // The others keep their names, and a type that nobody knows is refused.
+    // The others keep their names, and an unknown type is refused.
     document.insert_light(1, document.lights[0].clone(), "Add", Selection::Room, &registry);
     let name = document.name_of(Selection::Light(1), &registry);
     edit(&mut document, LightField::Type("point".to_owned()));
@@ -482,7 +482,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
     assert!(*document == before);
 }
 
-/// A scene that was built from the default one is not called and described like it, and undoing brings both back.
+/// A scene built from the default one does not keep its name and description, and undoing restores both.
 #[test]
 fn the_words_of_the_default_scene_go_once_they_are_untrue() {
     let registry = Registry::builtin();
@@ -498,18 +498,18 @@ fn the_words_of_the_default_scene_go_once_they_are_untrue() {
         session
     };
     let object = |field| Action::Edit(Edit::Object(0, field));
-    // It is still what it is called.
+    // It still matches its name.
     let moved = after(vec![
         object(ObjectField::Size(3.0)),
         Action::Edit(Edit::ShadingModel("phong".to_owned())),
         Action::Edit(Edit::Display(Display { exposure: 1.0, ..Display::default() })),
     ]);
     assert_eq!(words(&moved), both);
-    // It is matte no longer.
+    // It is no longer matte.
     let shiny = after(vec![Action::Edit(Edit::Model("blinn_phong".to_owned()))]);
     assert_eq!(words(&shiny), (both.0.clone(), None));
     assert_eq!(words(&after(vec![Action::Edit(Edit::Light(0, LightField::Colour([9, 9, 9])))])).1, None);
-    // Nor one light and one sphere.
+    // Nor does it have one light and one sphere.
     for actions in [
         vec![Action::AddObject("torus".to_owned())],
         vec![Action::AddLight("spot".to_owned())],
@@ -526,7 +526,7 @@ fn the_words_of_the_default_scene_go_once_they_are_untrue() {
         session.apply(Action::Redo, &registry);
         assert_eq!(words(&session), (None, None), "{actions:?}");
     }
-    // Words of the user's own stay.
+    // The user's own words are kept.
     let own = Scene { name: Some("Mine".to_owned()), description: Some("Two.".to_owned()), ..default };
     let mut session = Session::new(own);
     session.apply(Action::AddObject("torus".to_owned()), &registry);

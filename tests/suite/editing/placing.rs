@@ -1,4 +1,4 @@
-//! New parts of a scene stand free and in view, and a new light shows the scene without blowing it out.
+//! New parts of a scene are placed free and in view, and a new light shows the scene without blowing it out.
 
 use bevy_egui::egui::{Pos2, Rect, vec2};
 use glam::{Mat3, Quat, Vec3};
@@ -23,7 +23,7 @@ use lights_camera_models::{
 
 use crate::helpers::support::root;
 
-/// A scene of those that are shipped.
+/// One of the shipped scenes.
 fn shipped(name: &str) -> Scene {
     let path = root().join(format!("scenes/{name}.json"));
     load::file(&path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene
@@ -103,7 +103,7 @@ fn copies_stand_free_too() {
     for i in 0..4 {
         session.apply(Action::Duplicate(Selection::Object(0)), &registry);
         let objects = &session.document.objects;
-        // To the right and to the left there is room; then the picture is full.
+        // There is space on the right and on the left; then the picture is full.
         if i < 2 {
             touches_nothing("copy", &session, 1, &registry);
         }
@@ -202,7 +202,7 @@ fn copies_of_neighbours_leave_each_other_room() {
             .into(),
         ..Scene::default()
     });
-    // To the right of the left one stands the other.
+    // To the right of the left one is the other.
     session.apply(Action::Duplicate(Selection::Object(0)), &registry);
     let copy = session.document.objects[1].position;
     assert!(copy.distance(Vec3::new(3.12, 5.0, 5.0)) < 0.05, "{copy}");
@@ -229,10 +229,10 @@ fn new_lights_stand_free_and_in_view() {
     }
 }
 
-/// The brightest channel of each pixel that shows an object, as a factor of what the display can show.
+/// The brightest channel of each pixel that shows an object, relative to the maximum of the display.
 fn brightness(session: &Session, registry: &Registry) -> Vec<f32> {
     let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
-    // Of the objects alone, not of lamps before and behind them.
+    // Only the objects, not lamps in front of and behind them.
     let mut scene = session.document.scene().clone();
     for light in &mut scene.lights {
         if registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent) {
@@ -280,7 +280,7 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
                     |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
                 let more = clipped(&after) - clipped(&before);
                 let light = session.document.lights.last();
-                // Three studios shine from the same places.
+                // Three studio lights shine from the same positions.
                 let most = if kind == "environment" { 0.025 } else { 0.02 };
                 assert!(more < most, "{what}, {kind} {nth}: {more} of the objects clip: {light:?}");
             }

@@ -1,4 +1,4 @@
-//! An hour at the desk: random edits of every kind, undone and redone, come back exactly.
+//! An hour of work: random edits of every kind, undone and redone, are restored exactly.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -30,10 +30,10 @@ use lights_camera_models::{
 
 use crate::renderers::reload::random::Random;
 
-/// As many steps a history keeps.
+/// Number of steps that a history keeps.
 const MOST_STEPS: usize = 500;
 
-/// The state that comes back with a step.
+/// The state restored by a step.
 #[derive(Clone, Debug, PartialEq)]
 struct State {
     scene: Scene,
@@ -41,7 +41,7 @@ struct State {
     objects: Vec<Option<PartId>>,
 }
 
-/// A window's document with a file, and what is known of its past.
+/// A window's document with a file, and its known history.
 struct Desk {
     session: Session,
     files: DiskFiles,
@@ -51,7 +51,7 @@ struct Desk {
     /// Keeps recovery copies.
     keeper: Keeper,
     shared: Arc<Registry>,
-    /// The state after so many steps.
+    /// The state after each step.
     states: Vec<State>,
     /// The selection before and after each step.
     selections: Vec<[Selection; 2]>,
@@ -84,7 +84,7 @@ impl Desk {
         }
     }
 
-    /// Carries out what concerns the file of the document.
+    /// Carries out the effects on the document's file.
     fn carry_out(&mut self, effects: Vec<Effect>) {
         for effect in effects {
             if effect == Effect::DocumentChanged {
@@ -114,7 +114,7 @@ impl Desk {
         from + (to - from) * self.below(1 << 16) as f32 / 65536.0
     }
 
-    /// A place in the room, or now and then outside.
+    /// A position in the room, or sometimes outside.
     fn place(&mut self) -> Vec3 {
         Vec3::from_array([0; 3].map(|_| self.number(-0.5, 10.0)))
     }
@@ -147,7 +147,7 @@ impl Desk {
         self.registry.lights()[self.random.below(lights)].declaration.id.to_owned()
     }
 
-    /// Parameters of some model.
+    /// Parameters of any model.
     fn parameters(&mut self) -> Vec<(&'static str, Value)> {
         let models = self.registry.models().len();
         let model = &self.registry.models()[self.random.below(models)];
@@ -248,7 +248,7 @@ impl Desk {
                 field_of_view: self.number(-5.0, 190.0),
             }),
             7..15 => {
-                // One that is not there, too.
+                // A nonexistent one too.
                 let i = self.light() + usize::from(self.below(20) == 0);
                 Edit::Light(i, self.light_field(i))
             }
@@ -320,7 +320,7 @@ impl Desk {
         self.carry_out(vec![Effect::LookAtFile { discard: false }]);
     }
 
-    /// Something that a user, a system or another program does. Returns what was removed.
+    /// Changes something as a user, a system or another program would. Returns what was removed.
     fn anything(&mut self) -> Option<Selection> {
         let mut removed = None;
         match self.below(40) {
@@ -331,7 +331,7 @@ impl Desk {
                 if self.session.questions.open.is_none() {
                     assert!(!self.session.is_dirty(), "{:?}", self.session.messages);
                     let read = load::file(&self.path, &self.registry, Defaults::Use).unwrap();
-                    // Where a luminous flux counts, an intensity is not written.
+                    // If the luminous flux is set, the intensity is not written.
                     let text = |scene: &Scene| save::to_json(scene, None, &self.registry);
                     assert_eq!(
                         text(&read.scene),
@@ -389,7 +389,7 @@ impl Desk {
         removed
     }
 
-    /// Does something, and records the resulting document.
+    /// Performs an edit, and records the resulting document.
     fn record(&mut self) {
         if self.below(3) > 0 {
             self.session.document.end_gesture();
@@ -405,7 +405,7 @@ impl Desk {
         let now = self.state();
         self.check("an edit");
         for (id, part_type, name) in before {
-            // Until it is given one, or another type.
+            // Until it is named, or changes its type.
             let now = self.unnamed().remove(&(id, part_type.as_str()));
             assert!(now.as_ref().is_none_or(|now| *now == name), "{name} is {now:?}");
         }
@@ -418,11 +418,11 @@ impl Desk {
         self.states.truncate(steps.min(done) + 1);
         self.selections.truncate(steps.min(done));
         if steps > done {
-            // Undoing a removal selects what comes back.
+            // Undoing a removal selects what is restored.
             self.states.push(now);
             self.selections.push([removed.unwrap_or(selection), self.session.selection]);
         } else {
-            // Joined with the last step, or the same as nothing with it.
+            // Merged with the last step, or cancelled out by it.
             assert!(steps == done || now == self.states[steps], "a step that leads back is none");
             if let Some(state) = self.states.last_mut() {
                 *state = now;
@@ -433,7 +433,7 @@ impl Desk {
         }
     }
 
-    /// The names of parts that were given none, by id and type.
+    /// The automatic names of parts, by id and type.
     fn unnamed(&self) -> BTreeMap<(Option<PartId>, &str), String> {
         let document = &self.session.document;
         let name = |part| document.name_of(part, &self.registry);
@@ -445,7 +445,7 @@ impl Desk {
         lights.chain(objects).collect()
     }
 
-    /// The invariants.
+    /// Checks the invariants.
     fn check(&self, after: &str) {
         let document = &self.session.document;
         let problems = check::scene(document, &self.registry);
@@ -473,7 +473,7 @@ impl Desk {
         self.keeper.keep(document, About::default(), &self.shared);
     }
 
-    /// The recovery copy is the document.
+    /// Checks that the recovery copy equals the document.
     fn check_copy(&self) {
         let Settled::Kept { file, .. } = self.keeper.settle(Duration::from_secs(60)) else {
             panic!("there is a copy");
@@ -482,7 +482,7 @@ impl Desk {
         assert_eq!(fs::read_to_string(file).unwrap(), text);
     }
 
-    /// Undoes everything and does it all again.
+    /// Undoes everything and redoes it all.
     fn back_and_forth(&mut self) {
         self.act(Action::GoToStep(self.states.len() - 1));
         for step in (0..self.selections.len()).rev() {
@@ -517,7 +517,7 @@ fn an_hour_of_editing_is_undone_and_redone_exactly() {
         for round in 0..1000 {
             if desk.session.document.steps().len() + 1 >= MOST_STEPS || round % 331 == 330 {
                 desk.back_and_forth();
-                // From somewhere in the middle, other edits take the place of what is undone.
+                // From somewhere in the middle, other edits replace what was undone.
                 let step = desk.below(desk.states.len());
                 desk.act(Action::GoToStep(step));
                 assert_eq!(desk.state(), desk.states[step]);
@@ -528,7 +528,7 @@ fn an_hour_of_editing_is_undone_and_redone_exactly() {
             }
         }
         desk.back_and_forth();
-        // Beyond the bound, the oldest steps give way.
+        // Beyond the limit, the oldest steps are dropped.
         for _ in 0..MOST_STEPS * 3 {
             desk.session.document.end_gesture();
             desk.anything();

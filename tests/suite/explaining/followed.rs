@@ -1,4 +1,4 @@
-//! Equations that can be followed by hand: every line of an explanation gives its own value.
+//! Equations that can be followed by hand: every line of an explanation yields its own value.
 
 use std::fs;
 
@@ -82,12 +82,12 @@ fn definitions_in_a_circle_and_without_end_are_told() {
     }
 }
 
-/// What a line says without the units of light and length, which stand behind its numbers.
+/// A line without the units of light and length, which follow its numbers.
 fn without_units(text: &str) -> String {
     [" cd", " 1/m²", " lx"].into_iter().fold(text.to_owned(), |text, unit| text.replace(unit, ""))
 }
 
-/// The lines of an explanation that say something else than they give.
+/// The lines of an explanation that yield something else than they state.
 fn wrong_lines(text: &str) -> (usize, Vec<String>) {
     let mut wrong = Vec::new();
     let mut count = 0;

@@ -1,5 +1,5 @@
-//! How far an explanation goes: the sentence, the equation, every factor; where numbers come from; what would change the pixel; and
-//! two views beside each other.
+//! The levels of an explanation: the sentence, the equation, every factor; the origin of numbers; what would
+//! change the pixel; and two views side by side.
 
 use bevy_egui::egui::{Key, accesskit::Role, vec2};
 use lights_camera_models::{
@@ -17,7 +17,7 @@ use crate::{
     window::panels::{Bench, Seen},
 };
 
-/// A window on a scene with a pinned pixel near its middle.
+/// A window with a scene and a pinned pixel near its middle.
 fn explaining(scene: Scene) -> Bench {
     let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
     bench.size = vec2(1600.0, 2000.0);
@@ -39,12 +39,12 @@ fn under(model: &str) -> Bench {
     explaining(scene)
 }
 
-/// All that is written.
+/// All painted text.
 fn texts(bench: &mut Bench) -> String {
     bench.texts().join("\n")
 }
 
-/// The first thing whose name begins so.
+/// The first widget whose name begins with this text.
 fn begins(bench: &Bench, start: &str) -> Option<String> {
     bench.tree.iter().find(|seen| seen.label.starts_with(start)).map(|seen| seen.label.clone())
 }
@@ -87,7 +87,7 @@ fn what_would_change_the_pixel_is_a_list_of_knobs() {
     let mut bench = under("blinn_phong");
     bench.click("What would change this pixel?");
     bench.settle();
-    // The field of the list, beside that of the inspector.
+    // The field of the list, next to that of the inspector.
     let top = bench.area.rect.bottom();
     let field = |seen: &&Seen| {
         seen.label == "diffuse coefficient" && seen.role == Role::TextInput && seen.rect.top() > top

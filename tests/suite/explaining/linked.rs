@@ -1,4 +1,5 @@
-//! The symbol that is pointed at lights in the equation, at its knob, in the picture, in Explain and in the plots.
+//! The symbol under the pointer is highlighted in the equation, at its control, in the picture, in Explain
+//! and in the plots.
 //!
 //! `scripts/pictures` writes pictures, to be looked at.
 
@@ -24,7 +25,7 @@ use lights_camera_models::{
 
 use crate::window::panels::{Bench, Seen};
 
-/// A window on a scene under a model, with the panel at the bottom that has this id.
+/// A window with a scene and a model, with the bottom panel that has this id.
 fn bench(model: &str, tab: &str) -> Bench {
     let scene =
         Scene { reflection_model: model.to_owned(), shading_model: "phong".to_owned(), ..Scene::default() };
@@ -37,10 +38,10 @@ fn bench(model: &str, tab: &str) -> Bench {
     bench
 }
 
-/// The same with the middle of the sphere pinned.
+/// The window with the middle of the sphere pinned.
 fn explaining(model: &str) -> Bench {
     let mut bench = bench(model, EXPLAIN_TAB);
-    // All of a light is in sight, down to its angles.
+    // Everything about a light is visible, including its angles.
     bench.size = vec2(1600.0, 2000.0);
     bench.session.view.bottom_height = 1000.0;
     bench.settle();
@@ -52,13 +53,13 @@ fn explaining(model: &str) -> Bench {
     bench
 }
 
-/// Moves the pointer, and lets what it is at light.
+/// Moves the pointer, and lets the highlight appear.
 fn point(bench: &mut Bench, at: Pos2) {
     bench.frame(vec![Event::PointerMoved(at)]);
     (0..3).for_each(|_| drop(bench.frame(Vec::new())));
 }
 
-/// The places that are lit: grounds in the colour of what is chosen. Buttons that are pressed are higher than a line.
+/// The highlighted positions: backgrounds in the selection colour. Pressed buttons are taller than a line.
 fn lit(bench: &mut Bench) -> Vec<Rect> {
     let is_lit = |shape| match shape {
         Shape::Rect(rect) if rect.fill == DARK.chosen && rect.rect.is_positive() => Some(rect.rect),
@@ -67,7 +68,7 @@ fn lit(bench: &mut Bench) -> Vec<Rect> {
     bench.shapes().into_iter().filter_map(is_lit).collect()
 }
 
-/// The texts that are painted, each with its place.
+/// The painted texts, each with its position.
 fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
     let text = |shape| match shape {
         Shape::Text(text) => Some((text.galley.job.text.clone(), text.visual_bounding_rect())),
@@ -76,7 +77,7 @@ fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
     bench.shapes().into_iter().filter_map(text).collect()
 }
 
-/// The places of a text in a part of the window.
+/// The positions of a text in a part of the window.
 fn all(bench: &mut Bench, text: &str, within: Rect) -> Vec<Rect> {
     let is =
         |(said, place): (String, Rect)| (said == text && within.contains(place.center())).then_some(place);
@@ -97,13 +98,13 @@ fn strip(bench: &Bench) -> Rect {
     Rect::from_min_max(Pos2::new(0.0, bench.area.rect.bottom()), bench.size.to_pos2())
 }
 
-/// The slider of a knob, by its name.
+/// The slider of a parameter, by name.
 fn slider(bench: &Bench, name: &str) -> Rect {
     let is = |seen: &&Seen| seen.label == name && seen.role == Role::Slider;
     bench.tree.iter().find(is).unwrap_or_else(|| panic!("no slider {name}")).rect
 }
 
-/// The row of a knob: where its name stands.
+/// The row of a parameter, at its name.
 fn row(bench: &mut Bench, name: &str) -> Rect {
     let panel = inspector(bench);
     first(bench, name, panel)
@@ -133,7 +134,7 @@ const N: [u8; 3] = [0xf6, 0xf6, 0xf6];
 const L: [u8; 3] = [0xf0, 0xe4, 0x42];
 const H: [u8; 3] = [0x2e, 0xd0, 0x9c];
 const CURVE: [u8; 3] = [0, 114, 178];
-/// The width of a vector that lights, and of one beside it.
+/// The width of a highlighted vector, and of one next to it.
 const WIDE: (f32, bool) = (4.5, false);
 const DIM: (f32, bool) = (2.25, true);
 const PLAIN: (f32, bool) = (2.25, false);
@@ -153,7 +154,7 @@ fn a_symbol_of_the_equation_lights_its_knob_and_no_other() {
     point(&mut bench, alpha.center());
     let found = lit(&mut bench);
     assert!(is_lit(&found, shininess) && is_lit(&found, alpha) && !is_lit(&found, specular), "{found:?}");
-    // A frame with a line is seen without the tint.
+    // A frame with a line is visible without the tint.
     let framed = |shape| matches!(shape, Shape::Rect(r) if r.stroke.width > 0.5 && r.rect.contains(shininess.center()) && r.rect.height() < 40.0);
     assert!(bench.shapes().into_iter().any(framed));
     let away = bench.area.rect.center();
@@ -178,7 +179,7 @@ fn a_knob_lights_its_symbol_by_pointer_and_by_focus() {
     point(&mut bench, other.center());
     assert!(!is_lit(&lit(&mut bench), alpha));
 
-    // The focus of the knob lights too, until the pointer is at something else.
+    // The focus of the control highlights too, until the pointer is at something else.
     bench.click_at(knob.center(), PointerButton::Primary);
     bench.frame(vec![Event::PointerGone]);
     bench.settle();
@@ -233,7 +234,7 @@ fn a_number_of_explain_lights_its_vector_and_the_other_way_round() {
         .into_iter()
         .filter(|(text, place)| text.starts_with("= (") && strip.contains(place.center()))
         .collect();
-    // The symbol stands before its numbers.
+    // The symbol precedes its numbers.
     let n = all(&mut bench, "N", strip).into_iter().find(|n| {
         equals.iter().any(|(_, v)| (v.center().y - n.center().y).abs() < 6.0 && v.left() - n.right() < 12.0)
     });
@@ -268,7 +269,7 @@ fn a_number_of_explain_lights_its_vector_and_the_other_way_round() {
 
 #[test]
 fn a_letter_that_an_equation_uses_for_something_else_is_no_vector() {
-    // H(μ) is a function of Hapke's.
+    // H(μ) is one of Hapke's functions.
     let mut bench = explaining("hapke");
     let (panel, picture) = (inspector(&bench), bench.area.rect);
     let h = first(&mut bench, "H", panel);
@@ -306,7 +307,7 @@ fn plotting(model: &str, kind: Kind) -> Bench {
     bench
 }
 
-/// The width of the list beside a plot.
+/// Width of the list next to a plot.
 const LIST: f32 = 372.0;
 
 /// True if the curve of the model stands out.
@@ -567,9 +568,9 @@ fn explain_has_the_columns_that_have_room() {
         bench.session.view.scale = scale;
         bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
         bench.settle();
-        // The middle of the picture, whatever is written over it.
+        // The middle of the picture, even if something is written over it.
         bench.letter(Key::E, "e");
-        // Also what is scrolled out of sight. The inspector, above, says some of it too.
+        // Also where it is scrolled out of view. The inspector, above, shows some of it too.
         let place = |label: &str| {
             let all = bench.tree.iter().filter(|seen| seen.label.starts_with(label)).map(|seen| seen.rect);
             let lowest = all.max_by(|a, b| a.top().total_cmp(&b.top()));
@@ -584,7 +585,7 @@ fn explain_has_the_columns_that_have_room() {
             () => 1,
         };
         assert_eq!(found, columns, "{size:?}, {scale} %: {lefts:?}");
-        // The choice of the point keeps to its column, the scroll bar free.
+        // The choice of the point stays in its column, clear of the scroll bar.
         let edge = if columns == 3 { display - 24.0 } else { place("Copy").right() };
         let last = place("Point: per pixel");
         assert!(last.right() <= edge - 10.0, "{size:?}, {scale} %: {last:?} beyond {edge}");

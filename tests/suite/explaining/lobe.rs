@@ -59,7 +59,7 @@ fn lobes(bench: &Bench) -> Arc<Lobes> {
     lobes_shown(&bench.ctx).unwrap_or_else(|| panic!("there are no lobes: {:?}", explained(&bench.ctx)))
 }
 
-/// The point whose vectors are shown: the one that counts most.
+/// The point whose vectors are shown: the most important one.
 fn spot(bench: &Bench) -> Spot {
     let explained = explained(&bench.ctx).expect("something is explained");
     let seen = explained.explanation.seen.clone().expect("the sphere");
@@ -81,7 +81,7 @@ fn towards_the_observer_its_length_is_the_number_that_is_explained() {
         let right =
             (lit.response.diffuse + lit.response.specular) / (std::f32::consts::PI * geometry.cosine("N·L"));
         assert!((f - right).abs().max_element() < 1e-5 * right.max_element().max(1e-3), "{model}");
-        // What is drawn has that value there.
+        // The drawing has that value there.
         let lobe = &drawn[0].lobe;
         let nearest = (0..lobe.ways.len())
             .max_by(|a, b| lobe.ways[*a].dot(spot.view).total_cmp(&lobe.ways[*b].dot(spot.view)))
@@ -227,7 +227,7 @@ fn each_light_that_reaches_the_point_has_a_lobe() {
     };
     assert_eq!(of(&bench), [0, 1], "not the one behind, nor ambient light");
     assert!(is_written(&mut bench, "Point 1") && is_written(&mut bench, "Point 2"));
-    // More than there are colours: the brightest, and it is said.
+    // More than there are colours: the brightest, with a remark.
     let mut many = three_lights();
     let first = many.lights[0].clone();
     many.lights = (0..9)
@@ -262,7 +262,7 @@ fn it_says_why_there_is_none() {
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.wait_for_lobes();
     assert!(is_written(&mut bench, "specular term of f"));
-    // Where the background is explained, there is nothing to say.
+    // For an explained background, there is no remark.
     let corner = bench.area.rect.left_top() + vec2(24.0, 80.0);
     bench.apply(Action::View(ViewChange::Pin(None)));
     bench.frame(vec![bevy_egui::egui::Event::PointerMoved(corner)]);

@@ -1,5 +1,5 @@
-//! Why one point has its colour, on a page: the sentence and the numbers of `lcm explain`, escaped, in sight on a phone,
-//! and with a remark when they are no longer those of the picture.
+//! The explanation of a point's colour on a page: the sentence and the numbers of `lcm explain`, escaped,
+//! visible on a phone, and with a remark when they no longer match the picture.
 
 use std::{
     fs,
@@ -44,14 +44,14 @@ fn made(scene: &Scene, point: Option<[u32; 2]>) -> (String, Vec<String>) {
     (String::from_utf8(export.files[0].bytes.clone()).expect("UTF-8"), export.notes)
 }
 
-/// The page of a scene that explains a pixel.
+/// The page of a scene with an explained pixel.
 fn page(scene: &Scene, point: [u32; 2]) -> String {
     made(scene, Some(point)).0
 }
 
 const OPENING: &str = "<script type=\"application/octet-stream\" id=\"explained-data\">";
 
-/// What a page explains, by the letters of its views.
+/// The explanations on a page, by the letters of its views.
 fn points(page: &str) -> Value {
     let (_, after) = page.split_once(OPENING).expect("it explains");
     let (data, _) = after.split_once("</script>").expect("it ends");
@@ -66,7 +66,7 @@ fn html_of(page: &str, view: &str) -> String {
     points(page)[view]["html"].as_str().expect("a text").to_owned()
 }
 
-/// What is read of some HTML: spaces in the place of its tags.
+/// The text of some HTML, with spaces instead of tags.
 fn read(html: &str) -> String {
     let mut text = String::new();
     for part in html.split('<') {
@@ -105,7 +105,7 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
         let explained = explain::pixel(&seen_scene, &registry, &settings, at).expect("in the picture");
         let seen = explained.seen.as_ref().unwrap_or_else(|| panic!("{name}: an object"));
         let spot = &seen.spots[seen.main_spot().expect("the equation was evaluated")];
-        // Every line with numbers is there, and the command prints the same.
+        // Every line with numbers is there, and equals the command's output.
         let put: Vec<_> = html.split("<div class=\"put\">").skip(1).collect();
         let put: Vec<_> = put.iter().map(|p| read(p.split("</div>").next().unwrap_or_default())).collect();
         let mut found = 0;
@@ -117,12 +117,12 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
                 assert!(put.iter().any(known), "{name}: {right} is not in {put:?}");
                 found += 1;
             }
-            // Light from everywhere is answered by one term, which has its line also where it has no equation.
+            // Uniform light is answered by one term, which has a line even without an equation.
             if lit.geometry.is_none() && lit.integral.is_none() {
                 let ambient = explain::triple(lit.response.ambient);
                 assert!(html.contains(&format!("title=\"{ambient}\"")), "{name}: I_a = {ambient}");
             }
-            // All digits of the command are under the pointer.
+            // All digits of the command appear under the pointer.
             let error = lit.error();
             let all = match error {
                 Some(error) => explain::measured(lit.contribution, error),
@@ -139,7 +139,7 @@ fn a_page_has_the_sentence_and_the_numbers_that_the_command_prints() {
             assert!(shown.contains(&numbers(&short).join(" ")), "{name}: {short}");
         }
         assert!(found > 0, "{name}");
-        // Numbers of another pixel are found wanting.
+        // Numbers of another pixel are detected.
         let other = html_of(&page(&scene, [at[0] + 20, at[1] + 10]), "A");
         assert_ne!(html, other);
     }
@@ -159,7 +159,8 @@ fn the_command_writes_the_page_that_explains_and_without_the_option_the_same_as_
     let (without, with) = (export("a.html", &[]), export("b.html", &["--explain", "640,300"]));
     assert_eq!(with, page(&scene(Path::new(path)), [640, 300]));
     assert_eq!(without, made(&scene(Path::new(path)), None).0);
-    // What the page has more is in four places; without them it is the page without the option, byte for byte.
+    // The additional parts of the page are in four places; without them it equals the page without the
+    // option, byte for byte.
     let (before, after) = with.split_once(&format!("\n{OPENING}")).expect("it explains");
     let (_, after) = after.split_once("</script>").expect("it ends");
     let mut rest = format!("{before}{after}");
@@ -229,13 +230,13 @@ fn each_view_is_explained_and_what_has_no_equation_has_none() {
     assert_eq!(all.as_object().expect("views").len(), 1 + comparing.variants.len());
     assert_ne!(html("A"), html("B"));
     assert_eq!(all["A"]["at"], all["B"]["at"]);
-    // Gouraud shading: the vertex that counts most.
+    // Gouraud shading: the most important vertex.
     let gouraud = html_of(&page(&scene(&shipped("gouraud_misses_highlight.json")), GOURAUD), "A");
     assert!(gouraud.contains("which counts most here") && gouraud.contains("Mixed from the vertices"));
     // The background has a sentence, and no lights.
     let background = html_of(&page(&Scene::default(), [2, 2]), "A");
     assert!(background.contains("the background shows.") && !background.contains("<details"), "{background}");
-    // Of many lights eight are worked out, the brightest unfolded; the others are one sum.
+    // If there are many lights, eight are worked out, the brightest expanded; the others are summed up.
     let many = scene(&shipped("many_lights.json"));
     let lights = many.lights.len();
     assert!(lights > 9);
@@ -333,7 +334,7 @@ mod seen {
     #[test]
     fn the_cross_and_the_remark_follow_the_camera_and_the_knobs() {
         let Some(browser) = Browser::start() else { return };
-        // The picture beside the panel is 960 × 540.
+        // The picture next to the panel is 960 × 540.
         browser.resize(1344, 540);
         let folder = tempfile::tempdir().expect("a folder");
         opened(&browser, folder.path(), &scene(&shipped("compare_phong_blinn_phong.json")), [780, 220]);
@@ -356,7 +357,8 @@ mod seen {
         state("the camera is back", true, false);
         let sentence = "return document.querySelector('#why .said').textContent";
         let of_a = browser.run(sentence);
-        // A knob, the exposure, the shading model: each makes it another picture, and the button takes all of it back.
+        // A parameter, the exposure, the shading model: each changes the picture, and the button resets
+        // everything.
         let knob = "[data-name=k_d] input[type=number]";
         let value = format!("return document.querySelector({knob:?}).value");
         let before = browser.run(&value);
@@ -378,7 +380,7 @@ mod seen {
         back();
         state("exposure and shading are back", true, false);
         assert_eq!(browser.run("return document.querySelector('#exposure input[type=number]').value"), "0");
-        // Each view has its own.
+        // Each view has a separate explanation.
         browser.run("document.querySelector('#views input[value=B]').click()");
         browser.settle();
         assert_ne!(browser.run(sentence), of_a);

@@ -1,4 +1,4 @@
-//! A pinned point: it stays on its object, whatever the camera and the object do.
+//! A pinned point stays on its object, whatever the camera and the object do.
 
 use bevy_egui::egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, vec2};
 use glam::{Quat, Vec3};
@@ -18,14 +18,14 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// A line of sight to the sphere of the default scene, beside its middle.
+/// A line of sight to the sphere of the default scene, next to its centre.
 const PIN: Pin = Pin { view: 0, at: [0.06, 0.04] };
 
 fn scene(model: &str, shading: &str) -> Scene {
     Scene { reflection_model: model.to_owned(), shading_model: shading.to_owned(), ..Scene::default() }
 }
 
-/// A window in which a pixel of the sphere is pinned.
+/// A window with a pinned pixel of the sphere.
 fn bench(scene: Scene) -> Bench {
     let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
     bench.size = vec2(1280.0, 900.0);
@@ -66,7 +66,7 @@ fn orbit(bench: &mut Bench, axis: Vec3, degrees: f32) {
     bench.settle();
 }
 
-/// The observer of the session looks at the scene again.
+/// Moves the camera back to the session's observer.
 fn home(bench: &mut Bench) {
     let observer = bench.session.document.observer;
     bench.session.facts = lights_camera_models::panel::state::Facts::at(&observer);
@@ -181,7 +181,7 @@ fn a_point_that_nobody_sees_stays_explained_and_that_is_said() {
     assert!(bench.says("The pinned point would be (") && !bench.says("This pixel is ("));
     orbit(&mut bench, Vec3::Y, -180.0);
     assert!(!bench.says("The pinned point"));
-    // Another object comes between.
+    // Another object comes in between.
     let cube = Object {
         object_type: "cube".to_owned(),
         position: Vec3::new(5.0, 5.0, 7.5),
@@ -205,7 +205,7 @@ fn a_point_that_nobody_sees_stays_explained_and_that_is_said() {
     assert!(hidden.says("The pinned point is hidden here by curtain"));
     assert!(point(&hidden).distance(before) < MILLIMETRE);
     assert!(shown(&hidden).pixel.iter().zip(pixel).all(|(a, b)| a.abs_diff(b) <= 1));
-    // The camera turns away: the point is beside the picture, and then behind the camera.
+    // The camera turns away: the point is outside the picture, and then behind the camera.
     for turn in [60.0, 60.0, 60.0] {
         let facts = &mut bench.session.facts;
         facts.camera = Quat::from_rotation_y(f32::to_radians(turn)) * facts.camera;
@@ -231,7 +231,7 @@ fn it_lets_go_of_an_object_that_is_gone() {
         bench.settle();
         assert_eq!(bench.session.view.pinned, None);
     }
-    // Objects before it come and go.
+    // Objects in front of it come and go.
     let mut bench = bench(Scene { objects: vec![other, ball], ..scene("phong", "phong") });
     let before = point(&bench);
     assert_eq!(seen(&bench).object.index, 1);
@@ -250,7 +250,7 @@ fn the_same_pixel_pinned_anew_is_another_point() {
     bench.settle();
     let anew = point(&bench);
     assert!(anew.distance(before) > 0.2 && now(&bench).sight.is_none());
-    // A click at the point, wherever it has gone, lets go of it; a click where it was pinned does not.
+    // A click at the point, wherever it has moved, unpins it; a click where it was pinned does not.
     orbit(&mut bench, Vec3::Y, -40.0);
     let Explanation { pixel, .. } = shown(&bench);
     let at = bench.area.rect.min + vec2(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
@@ -266,12 +266,12 @@ fn the_same_pixel_pinned_anew_is_another_point() {
     };
     click(&mut bench, at);
     assert_eq!(bench.session.view.pinned, None);
-    // Another scene: what is pinned is the pixel.
+    // Another scene: the pixel stays pinned.
     bench.apply(Action::View(ViewChange::Pin(Some(PIN))));
     orbit(&mut bench, Vec3::Y, 40.0);
     let effects = bench.session.apply(Action::New, &bench.registry);
     assert_eq!(effects, [Effect::DocumentChanged]);
-    // The camera goes home, and is not there at once.
+    // The camera returns, but not at once.
     bench.session.facts.camera_left = false;
     bench.settle();
     home(&mut bench);
@@ -299,7 +299,7 @@ fn both_views_show_the_vectors_and_the_lobe_of_the_same_point() {
         };
         assert!(largest(&b) > 1.1 * largest(&a), "each of its own model");
         assert_eq!((now(&bench).view, seen(&bench).model.id), (0, "lambert"), "the numbers are of one");
-        // Both have one scale.
+        // Both share one scale.
         let scales: Vec<_> = words
             .iter()
             .filter_map(|text| text.lines().find(|line| line.starts_with("Length of the vectors")))

@@ -37,7 +37,7 @@ fn near(a: Vec3, b: Vec3, tolerance: f32) -> bool {
     (a - b).abs().max_element() <= tolerance * b.abs().max_element().max(1e-6)
 }
 
-/// The first thing that is wrong with an explanation, where `code` is that of the picture.
+/// The first error in an explanation; `code` is that of the picture.
 fn wrong(explained: &Explanation, code: [u8; 3], light: Vec3) -> Result<(), String> {
     if explained.code() != code {
         return Err(format!("the code is {:?}, in the picture {code:?}", explained.code()));
@@ -70,7 +70,7 @@ fn wrong(explained: &Explanation, code: [u8; 3], light: Vec3) -> Result<(), Stri
     Ok(())
 }
 
-/// Factors make the intensity, responses the contributions, contributions the sum.
+/// Factors multiply to the intensity, responses give the contributions, contributions the sum.
 fn adds_up(explained: &Explanation, spot: &Spot) -> Result<(), String> {
     let mut sum = Vec3::ZERO;
     for lit in &spot.lights {
@@ -106,7 +106,7 @@ fn every_number_leads_to_the_code_of_the_picture() {
             let models = registry.models();
             let model =
                 models[(random(&mut seed) * models.len() as f32) as usize % models.len()].declaration.id;
-            // Sometimes as it is: with overrides of objects.
+            // Sometimes unchanged: with overrides of objects.
             if random(&mut seed) < 0.7 {
                 model.clone_into(&mut scene.reflection_model);
                 shading.declaration.id.clone_into(&mut scene.shading_model);
@@ -198,7 +198,7 @@ fn the_equation_is_evaluated_where_the_shading_model_does() {
     assert!(length < 1.0 - 1e-6, "shortened by interpolation: {length}");
     assert_eq!(pixel.normal, phong.interpolated_normal.normalize());
     assert!(phong.per_pixel.is_none());
-    // What Gouraud shading is compared with is what Phong shading shows.
+    // Gouraud shading is compared with the result of Phong shading.
     let instead = gouraud.per_pixel.expect("evaluated at vertices");
     assert_eq!(
         (instead.position, instead.normal, instead.colour),
@@ -264,7 +264,7 @@ fn each_light_has_its_own_formula() {
     let explained = at(&scene, [80, 30]);
     let spot = &explained.seen.as_ref().expect("the sphere").spots[0];
     let factors = |i: usize| spot.lights[i].factors.iter().map(|f| f.symbol).collect::<Vec<_>>();
-    // The first light is off: the indices are those of the scene all the same.
+    // The first light is off: the indices are still those of the scene.
     assert_eq!(spot.lights.iter().map(|lit| lit.light.index).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
     assert_eq!(factors(0), ["I", "1/d^2"]);
     assert_eq!(factors(1), ["I", "cone(θ, θ_c, s)", "1/d^2"]);
@@ -317,7 +317,7 @@ fn background_hidden_objects_and_darkness_are_said_plainly() {
     let mut hidden = Scene::default();
     hidden.objects[0].visible = false;
     assert!(at(&hidden, MIDDLE).seen.is_none());
-    // Behind a hidden object there is another one, and its number is that of the scene.
+    // There is another object behind a hidden one, and its index is that of the scene.
     hidden.objects.push(Object { name: Some("ball".to_owned()), ..Object::default() });
     let seen = at(&hidden, MIDDLE).seen.expect("the second sphere");
     assert_eq!((seen.object.index, seen.object.name.as_deref()), (1, Some("ball")));
@@ -341,14 +341,14 @@ fn background_hidden_objects_and_darkness_are_said_plainly() {
     assert!(lit.is_behind() && lit.response.specular == Vec3::ZERO && lit.response.diffuse == Vec3::ZERO);
     assert!(explained.to_text().contains("faces away from the light"), "{}", explained.to_text());
 
-    // A light within the object, at the very point.
+    // A light within the object, exactly at the point.
     let mut touching = scene("phong", "phong");
     touching.lights[0].position = Some(lit_point(&touching));
     let explained = at(&touching, MIDDLE);
     assert!(explained.steps.light.is_finite(), "{}", explained.to_text());
 }
 
-/// The point seen in the middle.
+/// The point visible in the middle.
 fn lit_point(scene: &Scene) -> Vec3 {
     at(scene, MIDDLE).seen.expect("the sphere").position
 }
@@ -396,7 +396,7 @@ fn clipping_at_the_near_plane_and_large_triangles_are_explained_too() {
     let registry = Registry::builtin();
     for shading in ["flat", "gouraud", "phong", "derivative"] {
         let mut scene = scene("blinn_phong", shading);
-        // A cube of few, large polygons that reaches beyond the eye.
+        // A cube of few, large polygons that reaches behind the eye.
         scene.objects[0] = Object {
             object_type: "cube".to_owned(),
             size: 9.0,

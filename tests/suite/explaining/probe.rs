@@ -1,4 +1,4 @@
-//! The panel that explains a pixel: which pixel, the numbers of the picture, and what is drawn over it.
+//! The panel that explains a pixel: which pixel, the numbers of the picture, and the overlay.
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{Quat, Vec3};
@@ -51,7 +51,7 @@ fn point_at_sphere(bench: &mut Bench) {
     point(bench, at);
 }
 
-/// What is explained now.
+/// The present explanation.
 fn shown(bench: &Bench) -> Explanation {
     explained(&bench.ctx).expect("something is explained").explanation.clone()
 }
@@ -61,7 +61,7 @@ fn middle(bench: &Bench) -> Pos2 {
     bench.area.cells.first().map_or(bench.area.rect, |cell| cell.rect).center() + vec2(13.0, 7.0)
 }
 
-/// The corner of the picture, where nothing is.
+/// The corner of the picture, which is empty.
 fn corner(bench: &Bench) -> Pos2 {
     bench.area.rect.left_top() + vec2(20.0, 60.0)
 }
@@ -77,7 +77,7 @@ fn alt_click(bench: &mut Bench, at: Pos2) {
     bench.settle();
 }
 
-/// Those that every model has.
+/// The letters of every model.
 const LETTERS: [&str; 3] = ["N", "L", "V"];
 
 fn has_vectors(bench: &mut Bench) -> bool {
@@ -181,7 +181,7 @@ fn a_presentation_keeps_the_vectors_of_a_pinned_pixel() {
     point_at_sphere(&mut bench);
     bench.key(Key::F5, Modifiers::NONE);
     bench.settle();
-    // The equation of Lambert, which is in the picture, has no V.
+    // Lambert's equation, which is in the picture, has no V.
     let has_v = |bench: &mut Bench| bench.words().iter().any(|word| word == "V");
     assert!(bench.session.view.presenting && !has_v(&mut bench), "nothing is pinned");
     bench.key(Key::F5, Modifiers::NONE);
@@ -218,7 +218,7 @@ fn the_pointer_is_followed_unless_a_pixel_is_pinned() {
     assert!(has_vectors(&mut bench));
     point(&mut bench, away);
     assert!(shown(&bench).seen.is_none() && bench.says("Background") && !has_vectors(&mut bench));
-    // Once it has left, the last pixel stays explained; its vectors hide.
+    // Once it has left, the last pixel stays explained; its vectors are hidden.
     point(&mut bench, at);
     let panel = bench.find("Copy").expect("there").rect.center();
     bench.frame(vec![Event::PointerMoved(panel)]);
@@ -269,7 +269,7 @@ fn it_works_by_keyboard_alone() {
     bench.type_into("column of the pixel", "17");
     bench.key(Key::Enter, Modifiers::NONE);
     assert_eq!(shown(&bench).pixel, [17, size[1] / 2]);
-    // Folded away, it is shown again before it is let go of.
+    // When collapsed, it is shown again before it is unpinned.
     bench.apply(Action::View(ViewChange::Bottom(false)));
     bench.letter(Key::E, "e");
     assert!(bench.session.view.pinned.is_some() && bench.session.view.bottom_open);

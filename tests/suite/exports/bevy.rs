@@ -1,4 +1,5 @@
-//! Exported Bevy projects: they are built with the libraries of this build, and draw the picture of `lcm render`.
+//! Exported Bevy projects: they are built with the libraries of this build, and draw the picture of `lcm
+//! render`.
 
 use std::{
     fs,
@@ -52,7 +53,7 @@ fn everything() -> String {
     )
 }
 
-/// Seen from above, gamma-naive, through a tone mapping that is a table, without light but one.
+/// Seen from above, gamma-naive, with a table for tone mapping, and with a single light.
 fn odd() -> String {
     format!(
         "{:#}",
@@ -67,7 +68,8 @@ fn odd() -> String {
     )
 }
 
-/// A softbox, a tube and a dim studio, which exported projects take 64 samples of in each frame. They show no lamps.
+/// A softbox, a tube and a dim studio, of which exported projects take 64 samples in each frame. They do not
+/// draw the lamps themselves.
 fn extent() -> String {
     let sphere = |x: f32, model: &str, shading: &str| json!({ "type": "sphere", "position": [x, 5, 5], "size": 3, "reflection_model": model, "shading_model": shading });
     format!(
@@ -88,13 +90,13 @@ fn extent() -> String {
     )
 }
 
-/// The folder of the workspace in which exported projects are built, beside the libraries.
+/// The workspace folder in which exported projects are built, next to the libraries.
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("exported")
 }
 
-/// A package that asks for everything that this one asks for, so that cargo builds the projects with the same features
-/// of Bevy, which are built already.
+/// A package with the dependencies of this one, so that cargo builds the projects with the same features of
+/// Bevy, which have already been built.
 fn like_the_lab(folder: &Path) {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("readable");
     let begin = manifest.find("[dependencies]").expect("dependencies");
@@ -105,7 +107,7 @@ fn like_the_lab(folder: &Path) {
     fs::write(folder.join("src/lib.rs"), "").expect("writable");
 }
 
-/// Builds projects in one workspace; the folder of the programs.
+/// Builds projects in one workspace, and returns the folder of the programs.
 fn build(names: &[&str]) -> PathBuf {
     let workspace = workspace();
     like_the_lab(&workspace.join("like_the_lab"));
@@ -153,7 +155,7 @@ fn difference(a: &[u8], b: &[u8]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// The share of the bytes of two pictures that differ by more than two codes.
+/// The fraction of bytes in two pictures that differ by more than two codes.
 fn share_of_others(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
     let others = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
@@ -163,11 +165,11 @@ fn share_of_others(a: &[u8], b: &[u8]) -> f64 {
 #[test]
 fn exported_projects_compile_without_warnings_and_draw_the_picture_of_the_lab() {
     let workspace = workspace();
-    // Nothing is left of what another version exported.
+    // Nothing remains from the export of another version.
     let _ = fs::remove_dir_all(&workspace);
     fs::create_dir_all(&workspace).expect("writable");
     let names = ["exported_default", "exported_everything", "exported_odd", "exported_models"];
-    // More models at once than a system of Bevy takes parameters.
+    // More models at once than the maximum number of a system's parameters in Bevy.
     let matrix = fs::read_to_string(root().join("scenes/model_matrix.json")).expect("readable");
     let mut matrix: serde_json::Value = serde_json::from_str(&matrix).expect("JSON");
     matrix["objects"].as_array_mut().expect("a list").truncate(18);
@@ -216,7 +218,7 @@ fn exported_projects_compile_without_warnings_and_draw_the_picture_of_the_lab() 
         let own = pixels(&file);
         let lab = pixels(&workspace.join(format!("{name}.png")));
         if name == EXTENT {
-            // Edges are smoothed otherwise by the CPU renderer.
+            // The CPU renderer smooths edges differently.
             assert!(share_of_others(&own, &lab) < 0.005, "{}", share_of_others(&own, &lab));
             assert!(share_of_others(&own, &pictures[2]) > 0.2, "the wrong twin");
         } else {
@@ -257,7 +259,7 @@ fn exported_projects_are_formatted_and_hold_nothing_of_the_lab() {
         .output()
         .expect("rustfmt is part of Rust");
     assert!(formatted.status.success(), "{}", String::from_utf8_lossy(&formatted.stdout));
-    // Nobody has to install packages of the system before the first build.
+    // Nobody has to install system packages before the first build.
     let manifest = fs::read_to_string(project.join("Cargo.toml")).expect("text");
     for feature in ["wayland", "bevy_audio", "bevy_gilrs"] {
         assert!(!manifest.contains(feature), "{feature}");

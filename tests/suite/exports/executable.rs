@@ -19,7 +19,7 @@ use crate::{
     renderers::golden::read_png,
 };
 
-/// A folder with an exported program, and an empty one to run it in.
+/// A folder with an exported program, and an empty one in which to run it.
 struct Shelf {
     folder: tempfile::TempDir,
     empty: tempfile::TempDir,
@@ -34,7 +34,7 @@ impl Shelf {
         self.folder.path().join(name)
     }
 
-    /// The program itself, in the folder of the scenes.
+    /// Runs the program itself, in the folder of the scenes.
     fn lcm(&self, arguments: &[&str]) {
         let run = lcm_in(self.folder.path(), arguments, b"");
         assert_eq!(run.status, Some(0), "{arguments:?}: {}", run.err);
@@ -55,14 +55,14 @@ impl Shelf {
         self.command(program, arguments).output().expect("it runs")
     }
 
-    /// Its picture of its scene.
+    /// The picture of its own scene, drawn by an exported program.
     fn picture(&self, program: &str) -> Vec<u8> {
         let output = self.run(program, &["render", "--renderer", "cpu", "--size", "160x90", "-o", "x.png"]);
         assert!(output.status.success(), "{}", said(&output));
         read_png(&self.empty.path().join("x.png")).expect("a picture").2
     }
 
-    /// The picture that the program itself makes.
+    /// The picture drawn by the program itself.
     fn expected(&self, arguments: &[&str]) -> Vec<u8> {
         let more = ["--renderer", "cpu", "--size", "160x90", "-o", "expected.png"];
         self.lcm(&[&["render"], arguments, &more].concat());
@@ -90,7 +90,7 @@ fn a_program_renders_its_scene_as_the_lab_does() {
     // The wrong twin: the default scene, which a program without a scene shows.
     assert_ne!(shelf.expected(&[]), expected);
 
-    // Without -o its picture has the name of the scene's file, and other scenes are still read.
+    // Without -o the picture has the name of the scene's file, and other scenes can still be read.
     assert!(shelf.run("shapes", &["render", "--renderer", "cpu", "--size", "16x9"]).status.success());
     assert!(shelf.empty.path().join("renders/shapes_and_lights.png").exists());
     let other = shelf.run("shapes", &["check", &shipped("default.json")]);
@@ -115,7 +115,7 @@ fn a_program_exported_from_an_exported_one_carries_one_scene() {
     shelf.lcm(&["export", &scene, "--as", "executable", "-o", "straight"]);
     assert_eq!(length(&shelf.at("second")), length(&shelf.at("straight")));
     assert!(length(&shelf.at("second")) - own < 1 << 16);
-    // Its own scene goes on by default.
+    // Its own scene is the default.
     let run = shelf.run("second", &["export", "--as", "executable", "-o", "third"]);
     assert!(run.status.success(), "{}", said(&run));
     fs::rename(shelf.empty.path().join("third"), shelf.at("third")).expect("moved");
@@ -125,7 +125,7 @@ fn a_program_exported_from_an_exported_one_carries_one_scene() {
 #[test]
 fn what_a_scene_needs_travels_along() {
     let shelf = Shelf::new();
-    // A lamp from a file that no program has, in a folder of its own.
+    // A lamp from a file that no program has, in a separate folder.
     fs::create_dir(shelf.at("lamps")).expect("made");
     let lamp = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 90 180\n0\n900 300 30\n";
     fs::write(shelf.at("lamps/mine.ies"), lamp).expect("written");
@@ -146,11 +146,11 @@ fn what_a_scene_needs_travels_along() {
     for name in ["lamps", "models"] {
         fs::remove_dir_all(shelf.at(name)).expect("removed");
     }
-    // On the first start the files are unpacked, on the next they are there.
+    // On the first start the files are unpacked, on the next they exist.
     for _ in 0..2 {
         assert_eq!(shelf.picture("room"), expected);
     }
-    // What became of them since is told with the remedy.
+    // Later changes to them are reported with a remedy.
     let inside = shelf.empty.path().join("data/inside");
     let folder = inside.join(&names(&inside)[0]);
     let remedy = format!("delete the folder {}, and it is unpacked anew", folder.display());
@@ -184,7 +184,7 @@ fn edited_shaders_travel_along() {
     let text = fs::read_to_string(&path).expect("there");
     let broken = text.replace("fn response", "fn respond");
     assert_ne!(broken, text);
-    // An edit that shows without a GPU: one that is wrong.
+    // An edit that has an effect without a GPU: an invalid one.
     fs::write(&path, broken).expect("written");
     shelf.lcm(&["export", "--as", "executable", "-o", "plain"]);
     let run = lcm_in(
@@ -251,7 +251,7 @@ fn the_window_opens_on_the_scene() {
     let mut lab = Command::new(env!("CARGO_BIN_EXE_lcm"));
     alone(&mut lab, shelf.empty.path()).current_dir(shelf.empty.path()).arg("view").arg(&scene);
     let expected = capture(lab.args(arguments).args(["--size", "1000x600"]));
-    // The picture between the panels is the same; the panels know of a file in one of them.
+    // The picture between the panels is equal; the panels differ, since one of them knows a file.
     let mut same = 0;
     for x in (320..640).step_by(4) {
         for y in (100..500).step_by(4) {

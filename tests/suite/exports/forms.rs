@@ -1,4 +1,5 @@
-//! Exports on disk: whole or absent, never over something unasked, and refused with all reasons.
+//! Exports on disk: whole or not at all, never replacing anything without being asked, and refused with all
+//! reasons.
 
 use std::{
     fs,
@@ -30,7 +31,7 @@ fn refused(run: &Run, status: i32, expected: &str) {
     check_wording(&run.err);
 }
 
-/// All that is below a folder, by its paths.
+/// All paths below a folder.
 fn below(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for name in names(folder) {
@@ -120,12 +121,12 @@ fn an_export_replaces_nothing_unasked_and_then_all_of_it() {
     assert_eq!(names(&place), ["meshes", "scene.xml"]);
     assert_ne!(fs::read(place.join("scene.xml")).expect("there"), b"changed");
 
-    // An empty folder holds nothing to lose.
+    // An empty folder has nothing to lose.
     fs::create_dir(folder.path().join("empty")).expect("made");
     let run = export(folder.path(), &["--as", "mitsuba", "-o", "empty"]);
     assert_eq!(run.status, Some(0), "{}", run.err);
 
-    // Whoever takes the place for the folder around it loses nothing.
+    // Confusing the destination with its enclosing folder loses nothing.
     let home = folder.path().join("home");
     fs::create_dir(&home).expect("made");
     fs::write(home.join("thesis.tex"), "years").expect("written");
@@ -150,7 +151,7 @@ fn a_file_is_no_place_for_a_folder_nor_a_folder_for_a_file() {
         let run = export(folder.path(), &[&["--as", "executable", "-o", "folder"], more].concat());
         refused(&run, 4, "folder is a folder, but this form makes a file; it was not overwritten");
     }
-    // A file in the place of the folder around it.
+    // A file in place of the enclosing folder.
     for place in ["file/out", "file/deep/out"] {
         let run = export(folder.path(), &["--as", "mitsuba", "-o", place]);
         refused(&run, 4, &format!("{place} could not be written: file is not a folder\n"));
@@ -166,7 +167,7 @@ fn the_folder_of_the_terminal_is_not_replaced() {
     for place in [".", "..", "../deep", "../../here/deep"] {
         for more in [&[][..], &["--overwrite"]] {
             let run = export(&here, &[&["--as", "mitsuba", "-o", place], more].concat());
-            // Without being asked, a folder that holds something stays anyway.
+            // Without the flag, a folder with contents is kept anyway.
             let expected = match (place, more) {
                 ("..", []) => ".. exists; it was not overwritten".to_owned(),
                 _ => format!(
@@ -215,7 +216,7 @@ fn a_folder_with_an_input_is_never_replaced() {
     let run = export(folder.path(), &["out/room.json", "--as", "mitsuba", "-o", "out", "--overwrite"]);
     refused(&run, 4, "out holds out/room.json, which is read by this command; it was not overwritten");
 
-    // A lamp that the scene names, and a model that it uses.
+    // A lamp named in the scene, and a model that it uses.
     let lamp = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/wall_washer.ies"));
     fs::write(at("lamps").join("mine.ies"), lamp).expect("written");
     let text = save::to_json(&Scene::default(), None, &Registry::builtin());
@@ -281,7 +282,7 @@ fn what_cannot_be_exported_is_refused_part_by_part_and_leaves_nothing() {
         assert_eq!((run.status, lines.as_slice()), (Some(1), &expected[..]));
         assert_eq!(below(folder.path()), ["room.json"]);
     }
-    // A reason is given once for all that it is about.
+    // A reason that applies to several parts is given once.
     let strauss = scene.objects[0].clone();
     for x in [4.0, 5.0] {
         scene.objects.push(Object { name: None, position: glam::Vec3::splat(x), ..strauss.clone() });
@@ -290,14 +291,14 @@ fn what_cannot_be_exported_is_refused_part_by_part_and_leaves_nothing() {
     let run = export(folder.path(), &["room.json", "--as", "mitsuba", "-o", "out"]);
     let expected = "objects[0] (\"Ball\"), objects[3] and objects[4]: Mitsuba has no counterpart of the reflection model strauss\n";
     assert!(run.err.contains(expected) && run.err.lines().count() == 3, "{}", run.err);
-    // An invalid scene is refused before that.
+    // An invalid scene is refused earlier.
     fs::write(folder.path().join("bad.json"), "{ \"objects\": 7 }").expect("written");
     let run = export(folder.path(), &["bad.json", "--as", "mitsuba", "-o", "out", "--use-defaults"]);
     refused(&run, 1, "bad.json:1");
     assert_eq!(below(folder.path()), ["bad.json", "room.json"]);
 }
 
-/// What is text says so; programs carry the whole scene.
+/// Text formats report it; programs contain the whole scene.
 #[test]
 fn no_form_loses_light_with_extent() {
     let registry = Registry::builtin();
@@ -323,7 +324,7 @@ fn no_form_loses_light_with_extent() {
             };
             assert!(marks.iter().any(|mark| text.contains(mark)), "{} loses {id}", form.id);
         }
-        // Mitsuba has one light from all around.
+        // Mitsuba allows one light from all directions.
         scene.lights.push(Light { light_type: "ambient".to_owned(), ..Light::default() });
         let both = made(form("mitsuba").expect("listed"), &scene);
         assert_eq!(both.is_err(), id == "environment");
@@ -338,13 +339,13 @@ fn no_form_loses_light_with_extent() {
 #[test]
 #[cfg(target_os = "linux")]
 fn where_nothing_can_be_written_nothing_is_left() {
-    // Nobody makes files there, whoever runs the tests.
+    // Nobody can create files there, whoever runs the tests.
     for place in ["/proc/out", "/proc/deep/er/out"] {
         let run = lcm_in(Path::new("/"), &["export", "--as", "mitsuba", "-o", place], b"");
         refused(&run, 4, &format!("{place} could not be written: "));
         assert!(!run.err.contains("os error") && !run.err.contains(".lcm-"), "{}", run.err);
     }
-    // The folders that were made for it go again.
+    // The folders created for it are removed.
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("deep/er/out");
     let bad = Export { files: vec![File::new("a", "a"), File::new("../b", "b")], notes: Vec::new() };
@@ -375,7 +376,7 @@ fn a_form_that_makes_one_file_replaces_one_file() {
     assert_eq!(names(folder.path()), ["file.txt"]);
 }
 
-/// Whenever the program is interrupted, there is the whole export or none, and the next one tidies up.
+/// Whenever the program is interrupted, the export is complete or absent, and the next one tidies up.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_export_leaves_no_half_folder() {
@@ -432,7 +433,7 @@ fn nothing_of_somebody_else_is_replaced_even_when_asked() {
         lcm_in(folder.path(), &["export", "--as", form, "-o", place, "--overwrite"], &[])
     };
     assert_eq!(run("bevy", "project").status, Some(0));
-    // An export of another scene, and what cargo makes, give way.
+    // An export of another scene, and files made by cargo, are replaced.
     fs::create_dir(at("project/target")).expect("writable");
     for file in ["target/x", "Cargo.lock", "assets/shaders/old_phong.wgsl"] {
         fs::write(at("project").join(file), "x").expect("writable");
@@ -450,7 +451,7 @@ fn nothing_of_somebody_else_is_replaced_even_when_asked() {
     }
     fs::create_dir(at("project/.git")).expect("writable");
     assert!(run("bevy", "project").err.contains("project has .git, which"), "an empty folder is one too");
-    // Files of another kind stay; those of the same kind give way.
+    // Files of another kind are kept; those of the same kind are replaced.
     fs::write(at("thesis.tex"), "\\documentclass{book}").expect("writable");
     let refused = run("html", "thesis.tex");
     assert_eq!(refused.status, Some(4));
@@ -482,7 +483,7 @@ fn an_export_of_a_scene_with_views_says_which_one_it_is() {
     scene["variants"] = serde_json::json!([{ "name": "Half", "exposure": 1.0, "shading_model": "flat" }]);
     fs::write(folder.path().join("room.json"), scene.to_string()).expect("written");
     let all = [("mitsuba", "scene.xml"), ("bevy", "src/main.rs"), ("wgsl", "manifest.json"), ("html", "")];
-    // A page holds all views unless one is asked for.
+    // A page contains all views unless one is requested.
     let run = export(folder.path(), &["room.json", "--as", "html", "-o", "all.html"]);
     assert_eq!((run.status, run.err.contains("--view")), (Some(0), false), "{}", run.err);
     for (form, file) in all {

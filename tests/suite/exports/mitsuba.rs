@@ -1,4 +1,4 @@
-//! Mitsuba 3 as a witness: it renders exported scenes, and its pictures are ours, in linear light.
+//! Mitsuba 3 as a witness: it renders exported scenes, and its pictures equal ours, in linear light.
 //!
 //! Mitsuba comes from PyPI (`pip install mitsuba`); without it these tests are skipped. `$LCM_PYTHON` names the Python
 //! that has it.
@@ -29,14 +29,14 @@ for path in sys.argv[1:]:
     np.array(mi.render(scene, spp=256), dtype='<f4').tofile(path + '.raw')
 ";
 
-/// The Python that has Mitsuba, if there is one.
+/// The Python that has Mitsuba, if any.
 static PYTHON: LazyLock<Option<String>> = LazyLock::new(|| {
     let python = env::var("LCM_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let found = Command::new(&python).args(["-c", "import mitsuba, numpy"]).output();
     found.is_ok_and(|output| output.status.success()).then_some(python)
 });
 
-/// Skips a test, and says so.
+/// Skips a test, with a message.
 fn skipped() -> bool {
     let is_missing = PYTHON.is_none();
     if is_missing {
@@ -81,8 +81,8 @@ fn ours(scene: &Scene) -> Picture {
     reference::render(scene, &Registry::builtin(), &settings)
 }
 
-/// The error of each pixel within the objects, relative to the mean light there, from the smallest. Edges are left
-/// out: four samples are not 256.
+/// The relative error of each pixel within the objects, relative to the mean light there, in ascending order.
+/// Edges are left out: four samples are not 256.
 fn errors(ours: &Picture, theirs: &[Vec3]) -> Vec<f32> {
     let (width, height) = (ours.width as usize, ours.height as usize);
     let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
@@ -101,13 +101,13 @@ fn errors(ours: &Picture, theirs: &[Vec3]) -> Vec<f32> {
     errors
 }
 
-/// Mean error, and the error that all but one in fifty pixels keep to.
+/// Mean error, and the error not exceeded by 49 of 50 pixels.
 fn compare(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
     let errors = errors(ours, theirs);
     (errors.iter().sum::<f32>() / errors.len() as f32, errors[errors.len() * 49 / 50])
 }
 
-/// One object, close, and finely tessellated.
+/// A single close-up object with a fine tessellation.
 fn scene(object_type: &str, model: &str, values: &[(&'static str, Value)]) -> Scene {
     let mut object = Object {
         object_type: object_type.to_owned(),
@@ -149,7 +149,7 @@ fn light(id: &str, change: impl FnOnce(&mut Light)) -> Light {
     light
 }
 
-/// Compares exported scenes, each with a name and a bound of the mean error.
+/// Compares exported scenes, each with a name and a bound for the mean error.
 fn agree(scenes: &[(&str, Scene, f32)]) {
     let pictures = theirs(&scenes.iter().map(|(_, scene, _)| scene).collect::<Vec<_>>());
     let mut wrong = Vec::new();
@@ -237,8 +237,9 @@ fn lights_and_shapes_look_the_same_in_mitsuba() {
     ]);
 }
 
-/// Light with extent: the difference of the means over pixels within the object, relative, and the part of those pixels that
-/// differ by more than three standard errors of both and the rounding of the picture. The noise is that of five pixels around.
+/// For light with extent: the relative difference of the means over pixels within the object, and the
+/// fraction of those pixels that differ by more than three standard errors of both and the rounding of the
+/// picture. The noise is that of five surrounding pixels.
 fn unlike(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
     let (width, height) = (ours.width as usize, ours.height as usize);
     let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
@@ -305,14 +306,14 @@ fn light_with_extent_is_the_same_in_mitsuba() {
         ("rectangle on gold", gold),
         ("uniform environment on gold", everywhere),
     ];
-    // Lamps that are seen would cover what is compared.
+    // Visible lamps would cover the compared area.
     let hidden = |mut scene: Scene| {
         scene.lights.iter_mut().for_each(|light| light.parameters.set("visible", choice("false")));
         scene
     };
     let all = all.map(|(name, scene)| (name, hidden(scene)));
     let pictures = theirs(&all.iter().map(|(_, scene)| scene).collect::<Vec<_>>());
-    /// The most that means may differ by, relatively.
+    /// Maximum relative difference of the means.
     const MOST: f32 = 1e-3;
     let mut wrong = Vec::new();
     for ((name, scene), theirs) in all.iter().zip(&pictures) {

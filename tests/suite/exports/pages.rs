@@ -1,4 +1,5 @@
-//! Pages: small, closed, and with the pictures of `lcm render`, drawn by Chromium with WebGPU and with WebGL 2.
+//! Pages: small, self-contained, and with the pictures of `lcm render`, drawn by Chromium with WebGPU and
+//! with WebGL 2.
 
 #![cfg(target_os = "linux")]
 
@@ -64,7 +65,7 @@ fn every_shipped_scene_is_a_page_within_the_limit() {
     }
 }
 
-/// Translation to GLSL ES 3.00 is a part of making a page.
+/// Translation to GLSL ES 3.00 is part of making a page.
 #[test]
 fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
     let registry = Registry::builtin();
@@ -86,7 +87,7 @@ fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
         page(&scene).unwrap_or_else(|e| panic!("{}: {e}", entry.declaration.id));
     }
     scene.lights = all;
-    // All models under all lights at once are more than a page holds.
+    // All models under all lights at once exceed a page.
     for some in scene.objects.clone().chunks(12) {
         scene.objects = some.to_vec();
         page(&scene).expect("all lights at once");
@@ -153,8 +154,8 @@ fn difference(a: &[u8], b: &[u8]) -> Difference {
     }
 }
 
-/// One sample per pixel, so that no edge is smoothed: the page smooths colours as they are shown, and the program light.
-/// Corners stand on a grid in the page, which moves a few pixels of silhouettes; no others may differ.
+/// One sample per pixel, so that no edge is smoothed: the page smooths display colours, and the program
+/// light. The page snaps corners to a grid, which moves a few pixels of silhouettes; no others may differ.
 const MEAN: f64 = 0.15;
 const BEYOND: f64 = 0.004;
 
@@ -163,7 +164,7 @@ fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
     let size = format!("{WIDTH}x{HEIGHT}");
     let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
     let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
-    // A page takes 64 samples of light with extent, and the CPU renderer alone can be told so.
+    // A page takes 64 samples of light with extent, and only the CPU renderer can be set to that.
     let lit = load::file(Path::new(scene), &Registry::builtin(), Defaults::Refuse).expect("valid").scene;
     let extended = has_extent(lit.shining(), &Registry::builtin());
     arguments.extend(match extended {
@@ -179,7 +180,7 @@ fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
     pixels
 }
 
-/// Sets a control of the panel as a user does, and waits until the picture followed.
+/// Sets a control of the panel as a user does, and waits until the picture has followed.
 fn set(browser: &Browser, selector: &str, value: &str) {
     browser.run(&format!(
         "const control = document.querySelector({selector:?});
@@ -193,7 +194,7 @@ fn set(browser: &Browser, selector: &str, value: &str) {
     browser.settle();
 }
 
-/// A scene, and knobs that are turned in its page.
+/// A scene, and controls that are changed in its page.
 struct Case {
     scene: &'static str,
     shading: Option<&'static str>,
@@ -222,7 +223,7 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         shaded("gouraud_misses_highlight.json", "gouraud"),
         shaded("superellipsoids.json", "derivative"),
         case("portrait.json"),
-        // Under uniform light, the albedo curve has to follow the knob.
+        // Under uniform light, the albedo curve must follow the control.
         knob("portrait.json", "alpha_x", json!(0.6), "0.6"),
         // And here the lobe's as well.
         knob("white_furnace.json", "alpha_y", json!(0.7), "0.7"),
@@ -245,7 +246,7 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
             serde_json::from_str(&fs::read_to_string(shipped(case.scene)).expect("readable")).expect("JSON");
         let mut original = scene(&shipped(case.scene));
         let registry = Registry::builtin();
-        // What knobs do is seen without noise, too: under two lamps and uniform light.
+        // The effect of controls is also visible without noise: under two lamps and uniform light.
         if case.knob.is_some() && has_extent(original.shining(), &registry) {
             original.lights.clone_from(&lamps.lights);
             text["lights"] = json!(lamps.lights);
@@ -287,7 +288,7 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         if case.shading.is_some() || case.knob.is_some() {
             continue;
         }
-        // A wrong twin would be found.
+        // A wrong twin would be detected.
         let wrong = rendered(&shipped(case.scene), folder.path(), &["--exposure", "0.1"]);
         let off = difference(&wrong, &expected);
         assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
@@ -295,8 +296,8 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
     assert_eq!(seen, 2 * cases.len());
 }
 
-/// The page takes the first samples of those that the program takes, so that even the noise is the same. The light itself is
-/// left out of the picture: pages do not show it.
+/// The page takes the first samples of those taken by the program, so that even the noise is equal. The light
+/// itself is left out of the picture: pages do not show it.
 #[test]
 fn pages_have_light_with_extent() {
     let Some(browser) = Browser::start() else { return };
@@ -366,7 +367,7 @@ fn a_page_holds_every_view_with_a_switch() {
         // Another view is another picture.
         let off = difference(&expected("A"), &expected("B"));
         assert!(off.mean > MEAN || off.beyond > BEYOND, "{off:?}");
-        // The panel follows: the model, its knobs, the exposure.
+        // The panel follows: the model, its controls, the exposure.
         let model = "return document.querySelector('#model h2').textContent";
         let of_a = text(model);
         set(&browser, "#views input[value=B]", "");
@@ -383,7 +384,7 @@ fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
     assert!(left_out.len() == 1 && left_out[0].starts_with("view C (AgX) is left out: "), "{left_out:?}");
 }
 
-/// A model whose lobe only the program can calculate.
+/// A model with a lobe that only the program can calculate.
 const BORROWED: &str = "/* lcm { \"lobe\": \"microfacet\", \"parameters\": [\"alpha_x\", \"k_s\"] } */
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s * lobe_albedo(dot(frame.n, v)) * max(dot(frame.n, l), 0.0)));
@@ -432,7 +433,7 @@ fn a_page_reacts_to_fingers_keys_and_taps() {
     let drawn = browser.run("return document.body.dataset.drawn");
     std::thread::sleep(std::time::Duration::from_millis(300));
     assert_eq!(browser.run("return document.body.dataset.drawn"), drawn);
-    // A picture that the system takes away comes back.
+    // A picture discarded by the system is restored.
     browser.run(
         "const canvas = document.querySelector('canvas');
         document.body.dataset.state = 'busy';
@@ -441,7 +442,7 @@ fn a_page_reacts_to_fingers_keys_and_taps() {
     browser.settle();
     let again = browser.look().0;
     assert!(difference(&first, &again).mean < 0.01, "{:?}", difference(&first, &again));
-    // A tap on the teapot at the right selects it.
+    // A tap on the teapot on the right selects it.
     let tap = "const picture = document.getElementById('picture');
         const at = { pointerId: 1, isPrimary: true, clientX: 0.8 * picture.clientWidth, clientY: 0.5 * picture.clientHeight };
         picture.setPointerCapture = () => {};
@@ -449,7 +450,7 @@ fn a_page_reacts_to_fingers_keys_and_taps() {
         picture.dispatchEvent(new PointerEvent('pointerup', at));
         return document.getElementById('object').value";
     assert_ne!(browser.run(tap), "0");
-    // Everything to touch is large enough, and has a name.
+    // All touch targets are large enough, and have names.
     let small = browser.run(
         "return [...document.querySelectorAll('button, select, input, summary')]
             .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 40 && e.type !== 'radio')
@@ -463,7 +464,7 @@ fn a_page_reacts_to_fingers_keys_and_taps() {
     assert_eq!(nameless, json!([]));
 }
 
-/// Larger than a browser takes as arguments of a function.
+/// Larger than the number of function arguments that a browser accepts.
 #[test]
 fn pages_with_large_meshes_draw_with_webgpu_and_webgl() {
     let Some(browser) = Browser::start() else { return };
@@ -524,7 +525,7 @@ fn a_browser_that_cannot_read_the_program_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("page.html");
     let page = String::from_utf8(page(&scene(&shipped("default.json"))).expect("a page")).expect("UTF-8");
-    // As in a browser that does not know a part of the language.
+    // As in a browser that does not support a part of the language.
     fs::write(&file, page.replacen("class Uniform {", "class Uniform { #?", 1)).expect("written");
     browser.visit(file.to_str().expect("Unicode"));
     browser.settle();

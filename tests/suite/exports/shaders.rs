@@ -1,4 +1,4 @@
-//! Exported shaders: other compilers accept them, and their manifests hold the numbers of the scene.
+//! Exported shaders: other compilers accept them, and their manifests contain the numbers of the scene.
 
 use std::{fs, path::Path, process::Command};
 
@@ -9,7 +9,7 @@ use crate::helpers::{
     support::{full_scene, lcm_in, shipped_scenes},
 };
 
-/// Exports one object of a scene; the manifest.
+/// Exports one object of a scene, and returns the manifest.
 fn export(folder: &Path, scene: &str, form: &str, more: &[&str]) -> Value {
     let run =
         lcm_in(folder, &[&["export", scene, "--as", form, "-o", form, "--overwrite"], more].concat(), &[]);
@@ -18,7 +18,7 @@ fn export(folder: &Path, scene: &str, form: &str, more: &[&str]) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Runs a compiler of the package glslang-tools or spirv-tools, which scripts/test installs.
+/// Runs a compiler from the package glslang-tools or spirv-tools, which scripts/test installs.
 fn accepted(tool: &str, arguments: &[&str], folder: &Path) {
     let output = match Command::new(tool).args(arguments).current_dir(folder).output() {
         Ok(output) => output,
@@ -62,7 +62,7 @@ fn other_compilers_accept_the_shaders_of_every_model() {
         fs::write(folder.path().join("scene.json"), scene.to_string()).expect("writable");
         other_compilers_accept(folder.path(), "scene.json", &[]);
     }
-    // The wrong twin: a compiler finds a mistake.
+    // The wrong twin: a compiler reports an error.
     let broken =
         fs::read_to_string(folder.path().join("glsl/shader.frag")).expect("text").replace("vec3(", "vec5(");
     fs::write(folder.path().join("glsl/shader.frag"), broken).expect("writable");
@@ -109,7 +109,8 @@ fn the_manifest_has_the_numbers_of_the_scene_at_their_offsets() {
     assert_eq!(field("view", "observer_position")["value"], json!([5.0, 5.0, 9.5]));
     let exposure = field("view", "exposure")["value"].as_f64().expect("a number");
     assert!((exposure - (-1.5f64).exp2()).abs() < 1e-6);
-    // The offsets are those of the shader: vectors begin at multiples of 16, and the next number may fill the gap.
+    // The offsets are those of the shader: vectors begin at multiples of 16, and the next number may fill the
+    // gap.
     assert_eq!(field("view", "observer_position")["offset"], 64);
     assert_eq!(field("view", "exposure")["offset"], 76);
     // A vertex has as many attributes as the shader reads.

@@ -1,4 +1,5 @@
-//! Exports from the window: the menu, the dialog, the question, progress and cancel; and what is on disk at the end.
+//! Exports from the window: the menu, the dialog, the question, progress and cancellation; and the result on
+//! disk.
 
 use std::{fs, path::Path};
 
@@ -71,7 +72,7 @@ fn the_shader_of_the_object_goes_to_the_clipboard() {
     assert!(text.contains("#version 450 core") && text.contains("incident_point"), "{text}");
 }
 
-/// Lets a window without a window export, until it says how that ended.
+/// Runs an export in a windowless window, until it reports the result.
 fn export(app: &mut App, effect: Effect) -> Vec<(Severity, String)> {
     let before = app.world().resource::<Session>().messages.len();
     app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(effect));
@@ -103,7 +104,7 @@ fn an_export_of_the_window_is_on_disk_at_the_end_and_says_so() {
     let project = folder.path().join("project");
     assert_eq!(said, [(Severity::Info, format!("Exported as Bevy project to {}.", project.display()))]);
     assert_eq!(names(&project), ["Cargo.toml", "assets", "src"]);
-    // The same place again: a question, and the folder is left alone.
+    // The same place again: a question, and the folder is left unchanged.
     fs::write(project.join("mine.txt"), "notes").expect("writable");
     let said = export(&mut app, to("bevy", "project", false));
     assert_eq!(said, []);
@@ -111,7 +112,7 @@ fn an_export_of_the_window_is_on_disk_at_the_end_and_says_so() {
     let asked = session.questions.open.take();
     assert_eq!(asked, Some(Question::ReplaceExport { form: "bevy", path: project.clone() }));
     assert!(project.join("mine.txt").exists());
-    // What a form cannot hold is said, and nothing is written.
+    // Parts that a form cannot contain are reported, and nothing is written.
     session.document.change(
         "Tone mapping",
         lights_camera_models::document::Extent::Rest,
@@ -126,14 +127,14 @@ fn an_export_of_the_window_is_on_disk_at_the_end_and_says_so() {
     assert_eq!(names(folder.path()), ["project", "room.json"]);
 }
 
-/// A window without a window that writes pages.
+/// A windowless window that writes pages.
 pub struct Opened {
     app: App,
     folder: std::path::PathBuf,
 }
 
 impl Opened {
-    /// One that shows a scene.
+    /// Opens a scene.
     pub fn new(scene: &Path) -> Self {
         let plugins = LabPlugins::default().scene(scene).size(64, 36).exit_after(100_000).headless();
         Self {
@@ -149,7 +150,7 @@ impl Opened {
         session.view.pinned = Some(pin);
     }
 
-    /// The page that it writes.
+    /// Writes the page, and returns it.
     pub fn page(&mut self, name: &str) -> String {
         let path = self.folder.join(name);
         let said =

@@ -29,7 +29,7 @@ const ARGUMENTS: [&str; 9] = [
     "--hide-scrollbars",
 ];
 
-/// A browser, gone when dropped.
+/// A browser, closed when dropped.
 pub struct Browser {
     driver: Child,
     port: u16,
@@ -65,7 +65,7 @@ impl Browser {
         Some(browser)
     }
 
-    /// One command; panics with the answer if it is an error.
+    /// Sends one command; panics with the answer if it is an error.
     fn ask(&self, method: &str, path: &str, body: &Value) -> Value {
         let body = if method == "POST" { body.to_string() } else { String::new() };
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
@@ -98,14 +98,14 @@ impl Browser {
         value
     }
 
-    /// The value of a function's body in the page.
+    /// The value returned by a function body run in the page.
     pub fn run(&self, script: &str) -> Value {
         self.ask("POST", "/execute/sync", &json!({ "script": script, "args": [] }))
     }
 
-    /// Opens a page of an export, and waits until it drew, or said why not.
+    /// Opens a page of an export, and waits until it has drawn, or reported why it cannot.
     pub fn open(&self, file: &Path, fragment: &str) {
-        // A change of the fragment alone would not load it again.
+        // A change of the fragment alone would not reload it.
         self.ask("POST", "/url", &json!({ "url": "about:blank" }));
         self.visit(&format!("{}#{fragment}", file.display()));
         self.settle();
@@ -113,18 +113,18 @@ impl Browser {
         assert_eq!(failure, "", "{}", file.display());
     }
 
-    /// Opens a file, with a fragment of its address.
+    /// Opens a file, with a fragment in its address.
     pub fn visit(&self, address: &str) {
         self.ask("POST", "/url", &json!({ "url": format!("file://{address}") }));
     }
 
-    /// Waits until the picture shows everything that was set, or the page said that it cannot.
+    /// Waits until the picture shows all settings, or the page has reported that it cannot.
     pub fn settle(&self) {
         let state = "return document.body?.dataset.state ?? null";
         self.wait(state, |state| state == "ready" || state == "failed");
     }
 
-    /// Waits until a value is as wanted.
+    /// Waits until a value satisfies a condition.
     pub fn wait(&self, script: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         let begin = Instant::now();
         loop {
@@ -137,14 +137,14 @@ impl Browser {
         }
     }
 
-    /// Gives the page a size, as if on a screen of it.
+    /// Resizes the page, as if on a screen of that size.
     pub fn resize(&self, width: u32, height: u32) {
         let parameters = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         let command = json!({ "cmd": "Emulation.setDeviceMetricsOverride", "params": parameters });
         self.ask("POST", "/goog/cdp/execute", &command);
     }
 
-    /// The page as it is seen: red, green and blue of each pixel, and the width.
+    /// The visible page: red, green and blue of each pixel, and the width.
     pub fn look(&self) -> (Vec<u8>, usize) {
         let answer = self.ask("GET", "/screenshot", &Value::Null);
         let png = STANDARD.decode(answer.as_str().expect("base64")).expect("base64");

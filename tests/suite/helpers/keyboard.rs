@@ -1,4 +1,5 @@
-//! Pressing keys and moving the pointer on a virtual screen: the few requests of the X protocol that this takes, those of its extension XTEST.
+//! Key presses and pointer movements on a virtual screen, with the few necessary requests of the X protocol
+//! and of its extension XTEST.
 
 #![cfg(target_os = "linux")]
 
@@ -9,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-/// Keys by their numbers on a PC keyboard, as Xvfb has one.
+/// Keys by their numbers on a PC keyboard, as in Xvfb.
 #[derive(Clone, Copy)]
 pub enum Key {
     Escape = 9,
@@ -33,17 +34,17 @@ pub enum Key {
     F5 = 71,
 }
 
-/// A keyboard at a screen.
+/// A keyboard attached to a screen.
 pub struct Keyboard {
     server: UnixStream,
-    /// The number of the extension.
+    /// Number of the extension.
     xtest: u8,
-    /// The window that all others are in.
+    /// The window that contains all others.
     root: u32,
 }
 
 impl Keyboard {
-    /// At the screen of that name, such as ":99".
+    /// Connects to the screen with this name, such as ":99".
     pub fn new(display: &str) -> Self {
         let path = format!("/tmp/.X11-unix/X{}", display.trim_start_matches(':'));
         let mut server = UnixStream::connect(path).expect("the server listens");
@@ -54,7 +55,7 @@ impl Keyboard {
         assert_eq!(head[0], 1, "the server refuses");
         let mut facts = vec![0; 4 * usize::from(u16::from_le_bytes([head[6], head[7]]))];
         server.read_exact(&mut facts).expect("answered");
-        // Behind the name of the maker and the formats of pixels, 8 bytes each, comes the first screen.
+        // The first screen follows the name of the maker and the pixel formats, 8 bytes each.
         let maker = usize::from(u16::from_le_bytes([facts[16], facts[17]])).next_multiple_of(4);
         let root = number(&facts, 32 + maker + 8 * usize::from(facts[21]));
         let mut keyboard = Self { server, xtest: 0, root };
@@ -65,8 +66,8 @@ impl Keyboard {
         keyboard
     }
 
-    /// Presses keys together and lets them go. They reach the window that is shown, as if it had been clicked: without
-    /// a window manager nobody else sees to that.
+    /// Presses keys together and releases them. They reach the visible window, as if it had been clicked:
+    /// without a window manager nobody else does this.
     pub fn press(&mut self, keys: &[Key]) {
         let window = self.window();
         // SetInputFocus.
@@ -77,32 +78,32 @@ impl Keyboard {
         for key in keys.iter().rev() {
             self.fake(3, *key);
         }
-        // As between two strokes of a fast typist.
+        // As between two keystrokes of a fast typist.
         thread::sleep(Duration::from_millis(50));
     }
 
-    /// Moves the pointer to a place on the screen, as a tablet does.
+    /// Moves the pointer to a position on the screen, like a tablet.
     pub fn point_at(&mut self, x: i16, y: i16) {
         self.fake_at(6, 0, x, y);
     }
 
-    /// Moves the pointer by a way, as a mouse does.
+    /// Moves the pointer by an offset, like a mouse.
     pub fn move_by(&mut self, x: i16, y: i16) {
         self.fake_at(6, 1, x, y);
     }
 
-    /// Presses the left button of the pointer, or lets it go.
+    /// Presses or releases the left button of the pointer.
     pub fn button(&mut self, pressed: bool) {
         self.fake_at(if pressed { 4 } else { 5 }, 1, 0, 0);
     }
 
-    /// The window that is shown.
+    /// The visible window.
     fn window(&mut self) -> u32 {
         // QueryTree.
         let (_, children) = self.ask(&[&[15, 0, 2, 0][..], &self.root.to_le_bytes()].concat());
         let mut children = children.chunks_exact(4).map(|child| number(child, 0));
         children
-            // GetWindowAttributes: a window that is shown has the state 2.
+            // GetWindowAttributes: a visible window has the state 2.
             .find(|child| self.ask(&[&[3, 0, 2, 0][..], &child.to_le_bytes()].concat()).0[26] == 2)
             .expect("a window is shown")
     }
@@ -122,13 +123,13 @@ impl Keyboard {
         self.server.write_all(&[head, &rest].concat()).expect("sent");
     }
 
-    /// The reply to a request, and what follows it.
+    /// The reply to a request, and the data after it.
     fn ask(&mut self, request: &[u8]) -> ([u8; 32], Vec<u8>) {
         self.server.write_all(request).expect("sent");
         let mut reply = [0; 32];
         loop {
             self.server.read_exact(&mut reply).expect("answered");
-            // Anything but an answer or an error is an event, and none is wanted.
+            // Anything except a reply or an error is an event, which is ignored.
             assert_ne!(reply[0], 0, "the server refuses {request:?}: {reply:?}");
             if reply[0] == 1 {
                 break;

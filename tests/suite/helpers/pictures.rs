@@ -31,7 +31,7 @@ pub fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
     renderer.read_linear().expect("the picture can be read")
 }
 
-/// A scene with one object that fills much of the picture and one light beside the observer.
+/// A scene with one object that fills much of the picture and one light next to the observer.
 pub fn close_up(shape: &str, light: &str) -> Scene {
     let registry = Registry::builtin();
     // Types from elsewhere are set up by their tests.
@@ -44,7 +44,7 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
             colour: [255, 240, 200],
             intensity: match declaration.map(|d| d.unit) {
                 Some("cd") => 9.0,
-                // Of a lamp of about 1000 cd.
+                // Equivalent to a lamp of about 1000 cd.
                 Some("×") => 0.009,
                 _ => 0.8,
             },
@@ -72,21 +72,22 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
 /// The difference of two linear pictures.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Difference {
-    /// Pixels that an object covers in the first picture.
+    /// Number of pixels covered by an object in the first picture.
     pub covered: usize,
-    /// Pixels that differ by more than the tolerance, but lie at a silhouette or between their
+    /// Number of pixels that differ by more than the tolerance, but are at a silhouette or between their
     /// neighbours: coverage.
     pub edges: usize,
-    /// Pixels that differ otherwise.
+    /// Number of pixels that differ otherwise.
     pub wrong: usize,
-    /// The largest relative difference of a pixel that is no edge.
+    /// The largest relative difference of a pixel that is not an edge.
     pub worst: f32,
 }
 
-/// Compares a picture of the GPU with one of the CPU renderer. A pixel agrees if it is within `tolerance` relative (to
-/// its value, or to 0.001 where it is darker) beyond the effect, at the local contrast, of half a step of the
-/// 1/256-pixel grid to which hardware may or may not snap corners; otherwise it counts as an edge if the background
-/// shows beside it or each channel lies between those of its neighbours in the CPU's picture, else as wrong.
+/// Compares a picture of the GPU with one of the CPU renderer. A pixel agrees if it is within `tolerance`
+/// relative (to its value, or to 0.001 where it is darker) beyond the effect, at the local contrast, of half
+/// a step of the 1/256-pixel grid to which hardware may or may not snap corners; otherwise it counts as an
+/// edge if it has the background next to it or if each channel is between those of its neighbours in the
+/// CPU's picture, and else as wrong.
 pub fn compare(gpu: &[Vec3], cpu: &reference::Picture, background: Vec3, tolerance: f32) -> Difference {
     let (w, h) = (cpu.width as i32, cpu.height as i32);
     let at = |x: i32, y: i32| {
@@ -114,8 +115,8 @@ pub fn compare(gpu: &[Vec3], cpu: &reference::Picture, background: Vec3, toleran
                 difference.worst = difference.worst.max(error);
                 continue;
             }
-            // Colour is evaluated at the pixel's centre even where that lies outside the triangle, so at
-            // an edge it may overshoot a little.
+            // Colour is evaluated at the pixel's centre even if it is outside the triangle, so at an edge it
+            // may overshoot slightly.
             let slack = (high * tolerance + 0.1 * (high - low)).max(Vec3::splat(1e-5));
             if silhouette || (g.cmpge(low - slack).all() && g.cmple(high + slack).all()) {
                 difference.edges += 1;

@@ -1,5 +1,4 @@
-//! A virtual screen: programs that open windows run on it, and what they show can be looked at while
-//! they run.
+//! A virtual screen: programs with windows run on it, and their output can be examined while they run.
 
 #![cfg(target_os = "linux")]
 
@@ -13,11 +12,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A virtual screen of its own, gone when dropped.
+/// A separate virtual screen, closed when dropped.
 pub struct Screen {
     server: Child,
     display: String,
-    /// The folder in which the server keeps its screen, for all to read.
+    /// The folder in which the server stores its framebuffer, readable by all.
     memory: tempfile::TempDir,
 }
 
@@ -48,12 +47,12 @@ impl Screen {
         Self { server, display: format!(":{}", line.trim()), memory }
     }
 
-    /// The name by which programs find it.
+    /// The display name for programs.
     pub fn display(&self) -> &str {
         &self.display
     }
 
-    /// The process that is the screen.
+    /// The process of the server.
     pub fn process(&self) -> u32 {
         self.server.id()
     }
@@ -75,7 +74,7 @@ impl Screen {
         self.start_with(|config| lcm(arguments, config))
     }
 
-    /// Starts a program that is given a folder for its settings, and leaves it running until the result is dropped.
+    /// Starts a program with a folder for its settings, and leaves it running until the result is dropped.
     pub fn start_with(&self, command: impl FnOnce(&Path) -> Command) -> Running<'_> {
         let folder = tempfile::tempdir().expect("a folder");
         let said = folder.path().join("said");
@@ -103,14 +102,14 @@ impl Drop for Screen {
     }
 }
 
-/// The program, with a folder for its settings and its data, and without any display.
+/// The program, with a folder for its settings and data, and without any display.
 pub fn lcm(arguments: &[&str], config: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
     alone(&mut command, config).args(arguments);
     command
 }
 
-/// A program with a folder for its settings and its data, and without any display.
+/// Sets a folder for a program's settings and data, without any display.
 pub fn alone<'a>(command: &'a mut Command, config: &Path) -> &'a mut Command {
     command
         .env("LCM_CONFIG_DIR", config)
@@ -121,7 +120,7 @@ pub fn alone<'a>(command: &'a mut Command, config: &Path) -> &'a mut Command {
         .stdin(Stdio::null())
 }
 
-/// A program with a window that is open; killed when dropped.
+/// A program with an open window; killed when dropped.
 pub struct Running<'a> {
     screen: &'a Screen,
     program: Child,
@@ -133,12 +132,12 @@ impl Running<'_> {
     /// Software Vulkan on a busy machine takes its time.
     const DEADLINE: Duration = Duration::from_secs(60);
 
-    /// The program's output to standard error so far.
+    /// The program's standard error so far.
     pub fn said(&self) -> String {
         fs::read_to_string(&self.said).expect("readable")
     }
 
-    /// Asks the program to end, as Ctrl+C does, and waits until it has. Returns what it wrote to standard error.
+    /// Asks the program to end, as Ctrl+C does, and waits until it has. Returns its standard error.
     pub fn ended(mut self) -> String {
         let ask = format!("kill -INT {}", self.program.id());
         assert!(Command::new("sh").args(["-c", &ask]).status().expect("a shell").success());
@@ -150,7 +149,7 @@ impl Running<'_> {
         self.said()
     }
 
-    /// Waits until the screen shows what is asked for.
+    /// Waits until the screen satisfies a condition.
     pub fn until(&mut self, what: &str, mut shows: impl FnMut(&Picture) -> bool) -> Picture {
         let begin = Instant::now();
         loop {
@@ -187,7 +186,7 @@ impl Running<'_> {
     /// Processor time that the program has used, in ticks of the clock (usually of 10 ms).
     pub fn ticks(&self) -> u64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", self.program.id())).expect("it runs");
-        // The name in parentheses may hold anything; user and system time are the 14th and 15th field.
+        // The name in parentheses may contain anything; user and system time are the 14th and 15th fields.
         let fields = stat.rsplit(')').next().unwrap_or_default();
         fields.split_whitespace().skip(11).take(2).map(|t| t.parse::<u64>().expect("a number")).sum()
     }
@@ -208,7 +207,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A PNG file.
+    /// Reads a PNG file.
     pub fn read(path: &Path) -> Self {
         let decoder = png::Decoder::new(BufReader::new(fs::File::open(path).expect("the capture exists")));
         let mut reader = decoder.read_info().expect("a PNG file");
@@ -218,7 +217,7 @@ impl Picture {
         Self { width: info.width, height: info.height, pixels }
     }
 
-    /// The memory of an X server as `XWDFile.h` describes it: a header of 32-bit numbers, the most
+    /// Reads the framebuffer of an X server as described in `XWDFile.h`: a header of 32-bit numbers, the most
     /// significant byte first; a table of colours; the pixels.
     fn from_xwd(bytes: &[u8]) -> Self {
         let number = |i: usize| {
@@ -252,7 +251,7 @@ impl Picture {
         y.flat_map(move |y| x.clone().map(move |x| (x, y))).map(|(x, y)| self.at(x, y))
     }
 
-    /// The number of different colours in a part.
+    /// The number of different colours in an area.
     pub fn colours(&self, x: Range<u32>, y: Range<u32>) -> usize {
         let mut seen: Vec<_> = self.part(x, y).collect();
         seen.sort_unstable();
@@ -260,7 +259,7 @@ impl Picture {
         seen.len()
     }
 
-    /// The number of pixels of a part that satisfy a condition.
+    /// The number of pixels in an area that satisfy a condition.
     pub fn count(&self, x: Range<u32>, y: Range<u32>, is: impl Fn([u8; 3]) -> bool) -> usize {
         self.part(x, y).filter(|p| is(*p)).count()
     }

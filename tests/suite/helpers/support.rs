@@ -23,7 +23,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Messages are well-formed: a question stands at the end, and nothing is joined twice.
+/// Messages are well-formed: a question is at the end, and nothing is joined twice.
 pub fn check_wording(messages: &str) {
     for message in messages.lines().map(str::trim) {
         let wrong =
@@ -46,7 +46,7 @@ pub fn shipped_scenes() -> Vec<PathBuf> {
     scenes
 }
 
-/// A scene that gives every field, as JSON to break.
+/// A scene with every field, as JSON to break.
 pub fn full_scene() -> Value {
     json!({
         "name": "Everything",
@@ -148,7 +148,7 @@ impl From<Output> for Run {
     }
 }
 
-/// The names in a folder, in order.
+/// The names in a folder, sorted.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("readable");
     let mut names: Vec<_> =

@@ -1,5 +1,5 @@
-//! A corpus of hostile models: short files that would crash or freeze their readers. Each is refused with its place and
-//! the limit, within a bound on time and memory, and the rest of the folder keeps working.
+//! A corpus of hostile models: short files that would crash or freeze their readers. Each is refused with its
+//! position and the limit, within bounds on time and memory, and the rest of the folder keeps working.
 
 use std::{
     fs,
@@ -25,9 +25,9 @@ use lights_camera_models::{
 
 use crate::helpers::support::{command_in, lcm_in, root};
 
-/// The stack of a thread of Bevy.
+/// The stack size of a Bevy thread.
 const STACK: usize = 2 << 20;
-/// No single case may take longer, even on a busy machine.
+/// Maximum duration of a single case, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A model whose response is `y`; `items` come before the function, `body` is in it.
@@ -38,7 +38,7 @@ fn model(items: &str, body: &str) -> String {
     )
 }
 
-/// Something repeated, with its number.
+/// Something repeated, with its index.
 fn repeated(count: usize, each: impl Fn(usize) -> String) -> String {
     (0..count).map(each).collect()
 }
@@ -286,8 +286,8 @@ fn every_hostile_model_is_refused_with_its_place_and_the_limit() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Models at the limits, in every direction in which something recurses; in the others as far as software Vulkan takes
-/// no more than a second.
+/// Models at the limits, in every way in which something recurses; in other respects, up to what software
+/// Vulkan handles within a second.
 fn at_the_limit() -> Vec<(&'static str, String)> {
     let most = limits::LIMITS;
     let nested = |count: usize, open: &str, close: &str| {
@@ -425,7 +425,7 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
             };
             small.spawn_scoped(scope, call).expect("a thread").join().expect("no panic");
         });
-        // Our checks need next to nothing of the caller's stack.
+        // Our checks need almost none of the caller's stack.
         thread::scope(|scope| {
             let tiny = thread::Builder::new().stack_size(STACK / 16);
             let call = || assert!(validate(&composed).is_ok(), "{id}");
@@ -448,7 +448,7 @@ struct Watched {
     status: Option<i32>,
     out: String,
     err: String,
-    /// The most memory, bytes; 0 if the system does not report it.
+    /// Maximum memory, in bytes; 0 if the system does not report it.
     memory: u64,
 }
 
@@ -489,7 +489,7 @@ fn pump(from: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> 
     })
 }
 
-/// The most memory that a process has used.
+/// The maximum memory used by a process.
 fn peak(child: &Child) -> u64 {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or_default();
@@ -527,7 +527,7 @@ fn no_command_dies_of_a_hostile_model_and_the_others_go_on_working() {
         run
     };
     let list = run("models");
-    // Listed are those that are right; the others are errors.
+    // Valid ones are listed; the others are errors.
     assert_eq!(list.status, Some(1), "{}", list.err);
     assert!(list.out.contains("good"), "{}", list.out);
     assert_eq!(run("check good.json").status, Some(0));
@@ -573,7 +573,7 @@ fn models_at_the_limits_are_drawn() {
     }
 }
 
-/// What is said of a function that the interpreter stops.
+/// The message about a function stopped by the interpreter.
 const TOO_LONG: &str = "a function runs too long: more than 131072 instructions in its loops for one direction; a loop may be endless";
 
 /// Endless where the light is above the surface, which the text does not reveal.
@@ -630,7 +630,7 @@ fn a_check_tells_of_models_that_no_renderer_runs_or_the_gpu_alone() {
         assert_eq!((checked.status, checked.out.as_str()), (Some(1), ""), "{}", checked.err);
         assert_eq!(checked.err.trim_end(), too_long(id, id));
     }
-    // Of one model, the values of another scene may be right.
+    // The values of another scene may be valid for the same model.
     let rounds = model("", &long.replace("20000u", "u32(m.rounds)")).replace(
         "lcm {}",
         r#"lcm { "parameters": [{ "name": "rounds", "min": 0, "max": 20000, "default": 5 }] }"#,

@@ -1,6 +1,6 @@
-//! Every reader of text and files from outside against one table of hostile inputs: deep nesting, a mebibyte of one
-//! sign or one phrase, files cut off, with a zero byte and with bytes that are not UTF-8. Each is answered, read or
-//! refused, on a small stack, without a panic and long before a quadratic reader would be done.
+//! Every reader of external text and files against one table of hostile inputs: deep nesting, a mebibyte of
+//! one character or one phrase, files cut off, with a zero byte and with bytes that are not UTF-8. Each is
+//! read or refused, on a small stack, without a panic and long before a quadratic reader would finish.
 
 use std::{
     fs,
@@ -25,17 +25,17 @@ use rayon::prelude::*;
 
 use crate::helpers::support::root;
 
-/// The stack of a thread of Bevy.
+/// The stack size of a Bevy thread.
 const STACK: usize = 2 << 20;
-/// The time for one input. What is meant to take two seconds takes ten times as long without optimisation on a busy
-/// machine; a quadratic reader takes minutes, and an endless one for ever.
+/// Maximum time for one input. What should take two seconds takes ten times as long without optimisation on a
+/// busy machine; a quadratic reader takes minutes, and an endless one forever.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// The size of the inputs.
 const SIZE: usize = 1 << 20;
 
 static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
 
-/// A reader, and what belongs around hostile text so that it is read at all.
+/// A reader, and the text that must surround hostile text for it to be read at all.
 struct Reader {
     name: &'static str,
     around: [String; 2],
@@ -46,7 +46,7 @@ struct Reader {
     read: fn(&[u8]) -> Result<(), String>,
 }
 
-/// Signs that mean something in one language or another.
+/// Characters with a meaning in one language or another.
 const SIGNS: &[&str] = &[
     "[", "]", "(", ")", "{", "}", "<", ">", "\"", "'", "*", "_", "`", "~", "#", "\\", "/", "|", "=", ":",
     ",", ";", "-", "+", ".", "!", "&", "^", "@", "0", "a", "é", " ", "\n", "\r", "\t", "\0",
@@ -84,7 +84,7 @@ fn in_folder(name: &str, bytes: &[u8], read: impl Fn(&Path) -> Option<String>) -
     read(folder.path()).map_or(Ok(()), Err)
 }
 
-/// A copy of unsaved work that another window left: the file about it.
+/// A copy of unsaved work left by another window: the file about it.
 fn recovery(bytes: &[u8]) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let store = Store::new(folder.path().to_owned());
@@ -354,7 +354,7 @@ fn inputs(reader: &Reader) -> Vec<(String, Vec<u8>)> {
     let room = SIZE - before.len() - after.len();
     let shown = |text: &str| text.escape_debug().to_string();
     for (open, close) in reader.pairs {
-        // The deepest nesting, and a little beyond the limits of libraries.
+        // The deepest nesting, and slightly beyond the limits of libraries.
         for count in [room / (open.len() + close.len()), 300] {
             add(
                 format!("{count} × {} and back", shown(open)),
@@ -380,7 +380,7 @@ fn inputs(reader: &Reader) -> Vec<(String, Vec<u8>)> {
     inputs
 }
 
-/// Reads all inputs of a reader, one after the other; the names of those that fail it.
+/// Reads all inputs of a reader, one after the other, and returns the names of those that fail.
 fn failures(reader: &Reader) -> Vec<String> {
     let mut failures = Vec::new();
     for (name, input) in inputs(reader) {
@@ -394,7 +394,7 @@ fn failures(reader: &Reader) -> Vec<String> {
         match answer.recv_timeout(PATIENCE) {
             Ok(()) => {}
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                // Nothing can end a thread: the next ones would be slow, too.
+                // A thread cannot be ended: the next ones would be slow too.
                 failures.push(format!("{name} takes more than {PATIENCE:?}"));
                 return failures;
             }
@@ -416,7 +416,7 @@ fn every_reader_answers_every_hostile_input() {
 
 #[test]
 fn what_is_put_around_hostile_text_is_read() {
-    // Else the table would test nothing but the first line of each file.
+    // Otherwise the table would test only the first line of each file.
     for reader in readers() {
         let good = match reader.name {
             "steps" | "question" => "a\n",
@@ -438,7 +438,7 @@ fn what_is_put_around_hostile_text_is_read() {
         let text = [reader.around[0].as_str(), good, &reader.around[1]].concat();
         let said = (reader.read)(text.as_bytes());
         let expected = match reader.name {
-            // Without its answers; the reader got to them.
+            // Without its answers; the reader reached them.
             "question" => "a question has two answers at least",
             _ => "",
         };

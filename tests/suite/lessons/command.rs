@@ -75,7 +75,7 @@ fn all_problems_are_printed_with_file_line_and_caret() {
     assert_eq!(none.status, Some(2));
 }
 
-/// A lesson with this in its only step.
+/// A lesson with a single step.
 fn lesson_with(front: &str, step: &str) -> String {
     format!("---\ntitle: T\nsummary: S.\n{front}---\n\n## One\n\nText.\n\n{step}\n")
 }
@@ -107,11 +107,11 @@ fn a_lesson_reads_no_file_outside_its_folder() {
             }
         }
     }
-    // What stays inside is read, and its problem reported.
+    // A path that stays inside is read, and its problem reported.
     fs::write(folder.join("lesson.md"), lesson_with("scene: here.json\n", "")).expect("writable");
     let run = lcm(&["lesson", "check", &folder.display().to_string()], "");
     assert!(run.status == Some(1) && run.err.contains("here.json"), "{}", run.err);
-    // The text of a folder is in the folder, too.
+    // The text of a folder is in the folder too.
     fs::remove_file(folder.join("lesson.md")).expect("there");
     symlink("../secret.json", folder.join("lesson.md")).expect("made");
     let run = lcm(&["lesson", "check", &folder.display().to_string()], "");

@@ -1,4 +1,5 @@
-//! Lessons in the window, without a window: the panel, the user's own document aside, progress, the way in.
+//! Lessons in the window, without a window: the panel, the user's own document kept aside, progress, ways to
+//! start.
 
 use std::collections::BTreeSet;
 
@@ -31,7 +32,7 @@ use crate::window::panels::Bench;
 
 const ALT: Modifiers = Modifiers::ALT;
 
-/// A lesson with a step of each sort.
+/// A lesson with a step of each kind.
 const TEXT: &str = r#"---
 title: Light and angle
 summary: How the angle of the light changes a colour.
@@ -125,7 +126,7 @@ impl Desk {
     }
 }
 
-/// Applies an action, and carries out what needs files.
+/// Applies an action, and carries out the effects that need files.
 fn apply(bench: &mut Bench, action: Action) -> Vec<Effect> {
     let mut files = DiskFiles::new(None, None);
     apply_with(bench, action, &mut files)
@@ -136,7 +137,7 @@ fn apply_with(bench: &mut Bench, action: Action, files: &mut DiskFiles) -> Vec<E
     let mut done = Vec::new();
     while let Some(effect) = pending.pop() {
         done.push(effect.clone());
-        // Nothing goes into the folders of whoever runs the tests.
+        // Nothing is written to the folders of whoever runs the tests.
         if matches!(effect, Effect::SaveProgress(_) | Effect::SaveSettings) {
             continue;
         }
@@ -168,7 +169,7 @@ fn edit_alpha(bench: &mut Bench, alpha: i64) {
     apply(bench, Action::Edit(Edit::Object(0, field)));
 }
 
-/// A window with work that is nowhere else, and with choices of the view.
+/// A window with unsaved work, and with settings of the view.
 fn busy() -> Session {
     let registry = Registry::builtin();
     let mut session = Session::new(Scene { name: Some("Mine".to_owned()), ..Scene::default() });
@@ -274,7 +275,7 @@ fn what_would_lose_the_own_document_asks_about_it_and_not_about_the_lesson() {
         let effects = bench.session.apply(action.clone(), &bench.registry);
         assert_eq!(effects, [Effect::Camera(CameraChange::Exchange)], "{action:?}");
         assert!(matches!(bench.session.questions.open, Some(Question::Unsaved { .. })));
-        // The question is about what is on screen.
+        // The question refers to what is on screen.
         assert_eq!((bench.session.title().as_str(), bench.session.lesson.is_none()), ("Mine", true));
         bench.settle();
         assert!(bench.says("“Mine” has unsaved changes.") && !bench.says("Step 2 of 4"));
@@ -285,7 +286,7 @@ fn what_would_lose_the_own_document_asks_about_it_and_not_about_the_lesson() {
             "{action:?}: the lesson goes on"
         );
         assert_eq!(bench.session.own_title(), "Mine");
-        // Given up, the document goes.
+        // When given up, the document is discarded.
         bench.session.apply(action.clone(), &bench.registry);
         let effects = bench.session.apply(Action::Answer(Answer::Discard), &bench.registry);
         match action {
@@ -348,7 +349,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     assert_eq!(read.reflection_model, "phong");
     assert!(bench.says("A copy of this scene was saved to") && bench.session.lesson.is_some());
     assert_eq!((bench.session.path.clone(), bench.session.own_path()), (None, Some(own.as_path())));
-    // What is there is replaced after a question only.
+    // It is replaced only after a question.
     let typed = desk.folder.path().join("copy");
     apply_with(&mut bench, Action::SaveAs(typed), &mut files);
     assert_eq!(bench.session.questions.open, Some(Question::ReplaceScene { path: copy.clone() }));
@@ -359,7 +360,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
         load::file(&copy, &registry, Defaults::Refuse).expect("legal").scene.reflection_model,
         "lambert"
     );
-    // Back home, saving needs no question.
+    // Back in the document, saving needs no question.
     go(&mut bench, LessonCommand::Leave);
     apply(&mut bench, Action::Edit(Edit::ShadingModel("phong".to_owned())));
     apply_with(&mut bench, Action::Save, &mut files);
@@ -394,7 +395,7 @@ fn the_own_file_replaces_nothing_while_a_lesson_is_shown_and_is_looked_at_afterw
 fn previous_and_again_begin_a_step_as_it_began() {
     let desk = Desk::new();
     let mut bench = desk.bench(Session::default());
-    // What the learner changes goes along.
+    // The learner's changes are kept.
     apply(&mut bench, Action::Edit(Edit::SceneDescription("changed".to_owned())));
     go(&mut bench, LessonCommand::Next);
     let description = |bench: &Bench| bench.session.document.description.clone();
@@ -497,7 +498,7 @@ fn an_answer_is_chosen_by_mouse_or_key_and_only_the_right_one_does_the_task() {
     assert!(bench.says("It faces the light.") && bench.says("The right one.: right") && bench.says("Done"));
     assert_eq!(done(&bench), [1].into());
     assert!(bench.says("Right.") && bench.says("2 tries") && !bench.says("Wrong. Try another answer."));
-    // It is kept, and no further look at an answer counts.
+    // It is kept, and further views of an answer do not count.
     bench.click("The left one.: wrong");
     let past = bench.session.progress.lessons.values().next().expect("it is kept").clone();
     assert_eq!(past.tries, [(1, 2)].into());
@@ -517,7 +518,7 @@ fn next_asks_before_a_task_is_skipped_and_the_step_is_not_done() {
     bench.click("Next");
     bench.click("Skip the task");
     assert_eq!((step(&bench), done(&bench).len()), (2, 0));
-    // A step without a task never asks, and neither does one that is done.
+    // A step without a task never asks, nor does one that is done.
     go(&mut bench, LessonCommand::GoTo(1));
     bench.click("The right one.");
     bench.click("Next");
@@ -665,7 +666,7 @@ fn a_lesson_with_problems_is_not_opened_and_every_problem_is_said() {
     assert!(said.iter().filter(|text| text.contains("broken.md")).count() >= 3, "{said:?}");
     let line = TEXT.lines().position(|line| line.starts_with("until: knob.alpha")).expect("there") + 1;
     assert!(said.iter().any(|text| text.contains(&format!(":{line}:"))), "{said:?}");
-    // Nor is one that is not there.
+    // Nor is a nonexistent one.
     go(&mut bench, LessonCommand::Open(LessonSource::File("/nowhere/x.md".into())));
     assert!(bench.session.messages.last().is_some_and(|note| note.text.contains("/nowhere/x.md")));
 }
@@ -690,7 +691,7 @@ fn an_edited_lesson_is_read_again_and_keeps_the_step() {
     assert!(bench.says("A much shinier sphere."));
     let alpha = |bench: &Bench| bench.session.document.objects[0].material.0.get("alpha").cloned();
     assert_eq!((step(&bench), alpha(&bench)), (2, Some(Value::Integer(33))), "text alone changes no scene");
-    // With errors the last good version stays, and they are said where the author looks.
+    // With errors the last valid version stays, and they are reported where the author looks.
     write(&TEXT.replace("knob.alpha >", "knob.alpha >>"));
     look(&mut bench);
     assert!(bench.says("A much shinier sphere.") && bench.says("The file has errors"));
@@ -705,7 +706,7 @@ fn an_edited_lesson_is_read_again_and_keeps_the_step() {
     assert!(!bench.says("The file has errors"));
     assert_eq!((step(&bench), alpha(&bench)), (2, Some(Value::Integer(60))), "its scene is another one");
     assert_eq!(bench.session.own_title(), "Mine");
-    // Steps may go.
+    // Steps may be removed.
     write(TEXT.split("## Do it").next().expect("text"));
     look(&mut bench);
     assert_eq!((step(&bench), bench.session.lesson.as_ref().expect("open").lesson.steps.len()), (1, 2));
@@ -738,7 +739,7 @@ fn every_key_of_lessons() {
     assert_eq!(step(&bench), 1);
     bench.key(Key::ArrowLeft, ALT);
     assert_eq!(step(&bench), 0);
-    // F6 leads to the way on, and Enter goes on and on.
+    // F6 leads to the next button, and Enter continues.
     bench.key(Key::F6, Modifiers::NONE);
     bench.key(Key::F6, Modifiers::NONE);
     assert_eq!(focused(&bench), "Next");
@@ -760,7 +761,7 @@ fn every_key_of_lessons() {
     bench.key(Key::Escape, Modifiers::NONE);
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(!bench.session.view.presenting && bench.session.lesson.is_some());
-    // Without a lesson they say so.
+    // Without a lesson they report it.
     go(&mut bench, LessonCommand::Leave);
     bench.key(Key::ArrowRight, ALT);
     assert!(bench.says("No lesson is open: Help › Lessons lists them."));
@@ -852,7 +853,7 @@ fn the_scene_list_is_below_the_lesson_and_unfolds() {
     assert_eq!(bench.session.selection, Selection::Light(0));
     bench.click("Scene list");
     assert!(bench.find("Observer").is_none());
-    // It is all of the left side again.
+    // It takes all of the left side again.
     go(&mut bench, LessonCommand::Leave);
     assert!(bench.find("Observer").is_some() && bench.find("Next").is_none());
     assert!(bench.area.rect.left() < 220.0);
@@ -916,7 +917,7 @@ fn the_width_of_the_lesson_and_that_of_the_scene_list_are_kept_apart() {
 
 // ── pointing ──
 
-/// Rings in the colour of the accent, as wide as those that point.
+/// Rings in the accent colour with the width of highlights.
 fn rings(bench: &mut Bench) -> Vec<Rect> {
     let shapes = bench.shapes();
     let ring = |shape: &Shape| match shape {
@@ -950,7 +951,7 @@ fn the_controls_that_a_step_names_get_a_ring_and_come_into_view() {
     assert!(!bench.ctx.has_requested_repaint(), "{:?}", bench.ctx.repaint_causes());
     go(&mut bench, LessonCommand::GoTo(3));
     assert_eq!(rings(&mut bench), []);
-    // The window is the learner’s: what was scrolled away stays away.
+    // The window is the learner's: what was scrolled away stays away.
     go(&mut bench, LessonCommand::Leave);
     assert_eq!(rings(&mut bench), []);
 }
@@ -1025,7 +1026,7 @@ fn the_start_has_three_doors() {
             bench.tree.iter().find(|seen| seen.label.starts_with("Begin here")).expect("a lesson").clone();
         assert!(door.label.contains(&first.title) && door.rect.top() > bench.area.rect.bottom());
         assert!(bench.find("Example: Default scene").is_some());
-        // Nothing lies over anything else.
+        // Nothing overlaps anything else.
         let doors: Vec<_> =
             ["All lessons ▾", "New reflection model…", "New model…", "Example: Default scene"]
                 .into_iter()
@@ -1077,7 +1078,7 @@ fn the_door_goes_on_with_the_last_lesson() {
         (bench.session.lesson.as_ref().map(|open| open.source.clone()), step(&bench)),
         (Some(second), 2)
     );
-    // Once it is finished, the first that is not.
+    // Once it is finished, the first unfinished one.
     go(&mut bench, LessonCommand::GoTo(steps - 1));
     while bench.session.lesson.is_some() {
         go(&mut bench, LessonCommand::Next);
@@ -1102,7 +1103,7 @@ fn to_look_at_a_lesson_is_not_to_begin_it() {
     let door = format!("Begin here: {} min, {}", LESSONS[0].minutes.expect("given"), LESSONS[0].title);
     assert!(bench.find(&door).is_some());
     assert!(bench.tree.iter().all(|seen| !seen.label.starts_with("Go on")));
-    // An answer is a beginning, also a wrong one.
+    // Any answer counts as a start, even a wrong one.
     go(&mut bench, LessonCommand::Open(LessonSource::Shipped(3)));
     let at = LESSONS[3].steps.iter().position(|step| matches!(step.task, Some(Task::Predict { .. })));
     go(&mut bench, LessonCommand::GoTo(at.expect("it asks something")));

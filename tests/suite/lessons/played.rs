@@ -1,5 +1,5 @@
-//! Every shipped lesson from start to end: each task can be solved as its text asks, is not solved before, and is not
-//! solved by a plausible mistake.
+//! Every shipped lesson from start to end: each task can be solved as its text asks, is not solved before,
+//! and is not solved by a plausible mistake.
 
 use lights_camera_models::{
     document::Selection,
@@ -13,17 +13,17 @@ use lights_camera_models::{
 use serde::de::DeserializeSeed as _;
 use serde_json::{Value, json};
 
-/// Width and height of the picture that the learner sees.
+/// Width and height of the picture seen by the learner.
 const SIZE: [u32; 2] = [320, 180];
 
-/// What a learner does.
+/// An action of a learner.
 enum Deed {
-    /// Changes values of the scene: where, in the notation of JSON pointers, and what.
+    /// Changes values of the scene, given by JSON pointers.
     Set(&'static [(&'static str, fn() -> Value)]),
-    /// Looks for a pixel on an object, and pins it: one for which the task is done, or for a mistake one for which it is
+    /// Finds a pixel on an object, and pins it: one that completes the task or, for a mistake, one that does
     /// not.
     Pin,
-    /// Shows a term alone.
+    /// Shows a single term.
     Terms(TermSelection),
 }
 
@@ -49,7 +49,7 @@ impl Learner {
         }
     }
 
-    /// Enters a step, as the window does: its scene, its selection, its pin, its terms.
+    /// Enters a step, as the window does: its scene, selection, pin and terms.
     fn enter(&mut self, lesson: &Lesson, step: usize) {
         self.scene = lesson.state(step, &self.registry).expect(&lesson.id);
         let window = &lesson.steps[step].window;
@@ -65,7 +65,7 @@ impl Learner {
         }
     }
 
-    /// The scene that the active view shows.
+    /// The scene shown by the active view.
     fn seen(&self) -> Scene {
         let (scene, _) = self.scene.seen(self.window.active, &self.registry).expect("the view is there");
         scene
@@ -94,12 +94,12 @@ impl Learner {
         self.asks(|situation| goal.until.holds(situation))
     }
 
-    /// What the window says of a task that is not done.
+    /// The window's message about a task that is not done.
     fn unmet(&mut self, goal: &Goal) -> Option<String> {
         self.asks(|situation| goal.until.unmet(situation))
     }
 
-    /// Does something; true if the goal is reached then.
+    /// Performs an action; true if it reaches the goal.
     fn does(&mut self, deed: &Deed, goal: &Goal, wanted: bool) -> bool {
         match deed {
             Deed::Set(values) => {
@@ -117,7 +117,7 @@ impl Learner {
                 self.holds(goal)
             }
             Deed::Pin => {
-                // The coarse net first: most tasks have many solutions.
+                // The coarse grid first: most tasks have many solutions.
                 for stride in [9, 5, 2] {
                     for y in (stride / 2..SIZE[1]).step_by(stride as usize) {
                         for x in (stride / 2..SIZE[0]).step_by(stride as usize) {
@@ -299,7 +299,7 @@ fn every_task_of_every_lesson_can_be_solved_and_a_mistake_does_not_solve_it() {
 
 #[test]
 fn the_lessons_are_of_a_length_for_one_sitting() {
-    // Each lesson says how long it takes, and none takes a lecture.
+    // Each lesson states its duration, and none takes a whole lecture.
     for lesson in LESSONS.iter() {
         assert!(lesson.minutes.is_some_and(|minutes| (5..=20).contains(&minutes)), "{}", lesson.id);
         assert!(lesson.summary.ends_with('.') && (5..=9).contains(&lesson.steps.len()), "{}", lesson.id);

@@ -127,7 +127,7 @@ fn without_a_window_changes_are_checked_too() {
     assert_eq!(world.resource::<SceneEntities>().refused().len(), 2);
     assert!(world.resource::<CurrentScene>().0 == scene);
     assert!(frame(&mut renderer) == before);
-    // What is spawned is drawn in the same frame, what is despawned is gone.
+    // A spawned part is drawn in the same frame, a despawned one is gone.
     let world = renderer.app().world_mut();
     let place = scene.objects[0].position + 1.6 * Vec3::Z;
     let torus = Transform::from_translation(place).with_scale(Vec3::splat(0.5));
@@ -206,7 +206,7 @@ fn last_parts_that_a_system_deletes_in_each_frame_give_one_message() {
         said.extend_from_slice(renderer.app().world().resource::<SceneEntities>().refused());
     }
     assert_eq!(said.len(), 3, "{said:?}");
-    // One that goes, since another comes, is no last one.
+    // A removed part is not the last one if another is added.
     delete(&mut renderer);
     let spot = (Spot::default(), Transform::from_xyz(6.0, 8.0, 6.0));
     let spot = renderer.app().world_mut().spawn(spot).id();
@@ -341,7 +341,7 @@ impl LightType for Glow {
 
 #[test]
 fn types_that_only_the_registry_knows_are_components_too() {
-    // As `cli::main_with` hands them over.
+    // As passed on by `cli::main_with`.
     let mut registry = Registry::builtin();
     registry.add_light_type::<Glow>();
     let mut options = ViewOptions::default();

@@ -1,4 +1,4 @@
-//! A model, a light type and an object type from outside the crate, registered through the public calls, work
+//! A model, a light type and an object type from another crate, registered through the public methods, work
 //! everywhere.
 
 use std::path::Path;
@@ -127,15 +127,15 @@ impl LightType for Skylight {
 /// The extents of a brick.
 const EXTENTS: Parameter =
     Parameter::triple("extents", 0.1..=1.0, [1.0, 0.5, 0.7]).symbol("e").help("A parameter.");
-/// The form of its top.
+/// The shape of the top.
 const TOP: Parameter =
     Parameter::choice("top", &[("flat", "Flat"), ("roof", "Roof")], 0).symbol("").help("A parameter.");
 /// The height of a roof.
 const PITCH: Parameter =
     Parameter::number("pitch", 0.1..=1.0, 0.5).symbol("p").help("A parameter.").used_when("top", &["roof"]);
-/// Copies, one on the other.
+/// Number of copies, on top of each other.
 const COURSES: Parameter = Parameter::integer("courses", 1..=4, 1).symbol("c").help("A parameter.");
-/// Of which only the red counts: how far it leans.
+/// The lean, in which only the red channel counts.
 const LEAN: Parameter = Parameter::colour("lean", [0; 3]).symbol("l").unit("").help("A parameter.");
 
 parameters! {
@@ -335,7 +335,7 @@ fn lights_whose_parameters_outgrow_the_buffer_are_drawn() {
     }
     let shown = on_gpu(&mut renderer, &scene);
     assert!(alike(&shown, &scene));
-    // The wrong twin: another colour of the last one alone.
+    // The wrong twin: another colour only for the last one.
     let mut wrong = scene.clone();
     wrong.lights[251].parameters.set("zenith", Value::Colour([255; 3]));
     wrong.lights[251].intensity = 0.05;
@@ -550,7 +550,7 @@ fn parameters_of_every_kind_have_knobs() {
 #[test]
 fn every_type_of_parameter_of_a_shading_model_reaches_both_renderers() {
     let registry = registry();
-    // The parameters stand in rows of different layouts: with a curve and without, and with three harmonics.
+    // The parameters are in rows of different layouts: with a curve and without, and with three harmonics.
     let curved = |anisotropic| {
         let mut all = registry.models().iter();
         all.find(|m| m.has_curve() && m.declaration.anisotropic == anisotropic).expect("one").declaration.id
@@ -628,7 +628,7 @@ fn parameters_of_a_shading_model_stand_in_materials_and_have_knobs() {
         let said = read(&file(&wrong)).expect_err("illegal").to_string();
         assert!(said.contains(message), "{said}");
     }
-    // Under another shading model they are kept, and shown as such.
+    // With another shading model they are kept, and marked as such.
     let mut bench = Bench::with_registry(Session::new(loaded), registry);
     bench.apply(Action::Select(Selection::Object(0)));
     assert!(bench.says("Tinted shading"));

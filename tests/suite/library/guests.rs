@@ -1,4 +1,4 @@
-//! Panels from outside the crate: their places, their state, and what they may do.
+//! Panels from other crates: their places, their state, and their abilities.
 
 use bevy::ecs::{resource::Resource, world::World};
 use bevy_egui::egui::{Rect, Shape, Ui, vec2};
@@ -17,7 +17,7 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// What the guest found in the world.
+/// The press that the guest found in the world.
 #[derive(Resource, Default)]
 struct Pressed(u32);
 
@@ -73,7 +73,7 @@ fn bench(scale: u16, guests: Vec<Guest>) -> Bench {
     bench
 }
 
-/// The place of a text that is painted.
+/// The position of a painted text.
 fn place(bench: &mut Bench, words: &str) -> Option<Rect> {
     bench.shapes().into_iter().find_map(|shape| match shape {
         Shape::Text(text) if text.galley.text() == words => Some(text.visual_bounding_rect()),
@@ -106,7 +106,7 @@ fn guests_beside_the_picture_are_whole_in_view_and_leave_room_for_the_lists() {
         let status = height / zoom - 24.0;
         let mut last = 0.0;
         for (title, row) in [("First", "first row 1"), ("Second", "second row 1"), ("Third", "third row 0")] {
-            // In large type, what is below is scrolled to.
+            // In large type, content below is scrolled to.
             let before = format!("{} was shown before", title.to_lowercase());
             let row = if scale == 100 { row } else { &before };
             let head = bench.find(title).unwrap_or_else(|| panic!("{title} at {scale} %")).rect;
@@ -115,11 +115,11 @@ fn guests_beside_the_picture_are_whole_in_view_and_leave_room_for_the_lists() {
             assert!(title != "Third" || head.top() > last, "in the order in which they were added");
             last = head.top();
         }
-        // The list of the scene and the properties keep at least half of their side.
+        // The scene list and the properties keep at least half of their side.
         let first = bench.find("First").expect("a title").rect.top();
         let second = bench.find("Second").expect("a title").rect.top();
         assert!(first > 0.5 * height / zoom && second > 0.4 * height / zoom, "{scale} %: {first}, {second}");
-        // What does not fit is scrolled, and covers nothing.
+        // Content that does not fit is scrolled, and covers nothing.
         let beyond = place(&mut bench, "third row 99");
         assert!(beyond.is_none_or(|beyond| beyond.top() > status), "{scale} %: {beyond:?}");
         assert!(bench.find("Messages: 0").is_some());

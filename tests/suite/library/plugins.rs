@@ -1,5 +1,5 @@
-//! The window as plugins: each part can be left out, what is registered is known everywhere, and the order of systems
-//! is checked. What needs a window runs in a process of its own, on a virtual screen: [`stage`].
+//! The window as plugins: each part can be left out, registered types are known everywhere, and the order of
+//! systems is checked. Tests that need a window run in a separate process, on a virtual screen: [`stage`].
 
 use std::{
     collections::BTreeSet,
@@ -79,7 +79,7 @@ pub fn app(plugins: PluginGroupBuilder, extend: impl FnOnce(&mut App)) -> App {
     app
 }
 
-/// All parts of the window, without the window itself and what is the user's.
+/// All parts of the window, without the window itself and the user's data.
 pub fn whole() -> PluginGroupBuilder {
     LabPlugins::default()
         .build()
@@ -93,7 +93,7 @@ fn count<T: Component>(app: &mut App) -> usize {
     app.world_mut().query::<&T>().iter(app.world()).count()
 }
 
-/// Frames until the picture is drawn.
+/// Runs frames until the picture is drawn.
 pub fn draw(app: &mut App) {
     let done = |app: &mut App| {
         let mut views = app.world_mut().query::<&Drawing>();
@@ -169,7 +169,7 @@ fn what_is_registered_after_the_plugins_is_known_to_the_scene_that_they_open() {
     assert_ne!(session.document.reflection_model, "toon");
 }
 
-/// A scene under the model of the example.
+/// A scene with the model of the example.
 fn toon_scene(text: &str) -> String {
     let mut scene: serde_json::Value = serde_json::from_str(text).expect("JSON");
     scene["reflection_model"] = "toon".into();
@@ -290,14 +290,14 @@ fn systems_of_others_run_before_and_after_the_sets_of_the_lab() {
 
 // ── programs ──
 
-/// What a process of its own does: one of [`programs`](stage). Another process starts it by [`STAGE`].
+/// The variable that tells a child process which of the [`programs`](stage) it runs.
 const STAGE: &str = "LCM_TEST_STAGE";
 
-/// The file that a stage writes, and the arguments of one that is a command line.
+/// The file written by a stage, and the arguments of a stage that is a command line.
 const FILE: &str = "LCM_TEST_FILE";
 const ARGUMENTS: &str = "LCM_TEST_ARGUMENTS";
 
-/// Programs that tests start: this is no test unless it is told which one it is.
+/// Programs started by tests: not a test unless the environment selects one.
 #[test]
 fn stage() {
     let Ok(program) = env::var(STAGE) else { return };
@@ -485,7 +485,7 @@ fn every_command_reads_the_scene_format_of_an_extended_program() {
     );
     let unknown = Command::new(env!("CARGO_BIN_EXE_lcm")).args(["check", &*balls]).output().expect("it runs");
     assert!(said(&unknown).contains(".spheres is not the extension of a scene"), "{}", said(&unknown));
-    // The window's plugins, too, in whatever order.
+    // The window's plugins too, in any order.
     fs::write(&file, "4 5 5 2\n6 5 5 2\n").expect("writable");
     let mut app = app(LabPlugins::default().scene(&file).size(64, 36).headless().build(), |app| {
         app.add_scene_format(crate::scenes::formats::example::Spheres);
@@ -508,7 +508,7 @@ fn a_program_without_a_display_says_so_and_ends() {
 mod on_screen {
     use super::*;
 
-    /// The window that a stage captures.
+    /// The window captured by a stage.
     fn capture(mut command: Command, config: &Path, screen: &Screen) -> Picture {
         let output = command.env("DISPLAY", screen.display()).output().expect("it runs");
         assert!(output.status.success(), "{}", said(&output));
@@ -544,7 +544,7 @@ mod on_screen {
         assert!(has_section(&picture));
     }
 
-    /// True if the blue slider of the panel of the example stands low at the right.
+    /// True if the example panel's blue slider is at the lower right.
     fn has_section(picture: &Picture) -> bool {
         picture.count(940..1270, 560..690, |c| c == [0x1f, 0x3a, 0x57]) > 50
     }
@@ -568,7 +568,7 @@ mod on_screen {
             seen.insert(lit);
             seen.len() > 3
         });
-        // Its light is clipped, which is told although the picture never rests.
+        // Its light is clipped, which is reported although the picture never rests.
         let badge = |picture: &Picture| picture.count(210..480, 40..75, |c| c == [0xf0, 0xc0, 0x50]) > 60;
         running.until("the badge of clipping", badge);
         for (name, logged) in [("window", "objects"), ("panel", "")] {

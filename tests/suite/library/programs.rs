@@ -1,4 +1,4 @@
-//! Programs made with the library, with a name and folders of their own: this file runs itself as one.
+//! Programs made with the library, with a separate name and folders: this file runs itself as one.
 
 #![cfg(target_os = "linux")]
 
@@ -23,7 +23,7 @@ use crate::{
     library::extension::Toon,
 };
 
-/// The arguments of the program that a child is.
+/// The arguments of the program run by a child process.
 const ARGUMENTS: &str = "LCM_TEST_ARGUMENTS";
 
 /// The frame in which the system panics, after it changed the scene in an earlier one.
@@ -39,7 +39,7 @@ fn breaking(mut frame: Local<u32>, mut session: ResMut<Session>, registry: Res<R
     assert!(*frame < LAST, "the forty frames are over");
 }
 
-/// Run by the tests below in a process of its own: windows are for the first thread.
+/// Run by the tests below in a separate process: windows need the main thread.
 #[test]
 #[ignore = "a program, run by other tests"]
 fn a_program() {
@@ -56,7 +56,7 @@ fn a_program() {
             }
         },
     );
-    // What the command line would give to the system.
+    // What the command line would pass to the system.
     std::process::exit(i32::from(code != std::process::ExitCode::SUCCESS));
 }
 
@@ -118,7 +118,7 @@ fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
     let mut open = program(&format!("view {} --exit-after 3", file.display()), folder.path());
     let (_, err) = said(open.env("DISPLAY", screen.display()));
     assert!(!err.contains("toon"), "{err}");
-    // What is missing is asked about, accepted or refused, as in the laboratory itself.
+    // Missing parts are asked about, accepted or refused, as in the lab itself.
     let mut lacking = scene.clone();
     lacking.as_object_mut().expect("an object").remove("shading_model");
     fs::write(&file, lacking.to_string()).expect("written");
@@ -132,7 +132,7 @@ fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
     }
     let err = said_of("--no-defaults");
     assert!(err.contains("shading_model") && err.contains("--use-defaults"), "{err}");
-    // A type that nobody registers is still an error.
+    // An unregistered type is still an error.
     scene["reflection_model"] = "tune".into();
     fs::write(&file, scene.to_string()).expect("written");
     let (_, err) = said(open.env("DISPLAY", screen.display()));
@@ -156,7 +156,7 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     let scene = fs::read_to_string(left[0].journal.file()).expect("the copy");
     assert!(scene.contains("\"Unsaved\""), "{scene}");
     drop(left);
-    // It is asked about at the next start.
+    // It is offered at the next start.
     let mut next = program("view --exit-after 3", folder.path());
     let (_, err) = said(next.env("DISPLAY", screen.display()));
     assert!(err.contains("unsaved"), "{err}");

@@ -1,5 +1,5 @@
-//! Mistakes in what other crates register: each is named with its type, its place and what would be right, before
-//! anything is drawn.
+//! Errors in types registered by other crates: each is reported with its type, its position and the remedy,
+//! before anything is drawn.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -28,7 +28,7 @@ fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 const MODEL: reflection::Declaration =
     reflection::Declaration::new("paper", "Paper", PAPER).reciprocal().energy_conserving().non_negative();
 
-/// A model, but for its declaration and its parameters.
+/// A model, without its declaration and its parameters.
 macro_rules! model {
     ($name:ident, $declaration:expr, { $($field:ident: $kind:ident = $parameter:expr),* }) => {
         parameters! {
@@ -47,7 +47,7 @@ macro_rules! model {
     };
 }
 
-/// A light type, but for its declaration and its parameters.
+/// A light type, without its declaration and its parameters.
 macro_rules! light {
     ($name:ident, $declaration:expr) => {
         light!($name, $declaration, {});
@@ -66,7 +66,7 @@ macro_rules! light {
     };
 }
 
-/// The text of a light from above.
+/// The WGSL of a light from above.
 macro_rules! lamp {
     ($id:literal) => {
         Source::new(
@@ -81,7 +81,7 @@ macro_rules! lamp {
 }
 const LAMP: light::Declaration = light::Declaration::new("lamp", "Lamp", lamp!("lamp"));
 
-/// A shading model, but for its declaration.
+/// A shading model, without its declaration.
 macro_rules! shading {
     ($name:ident, $declaration:expr) => {
         shading!($name, $declaration, {});
@@ -113,7 +113,7 @@ fn shade_pixel(passed: Varying) -> vec3<f32> {
 const SHADING: shading::Declaration =
     shading::Declaration::new("plain", "Plain", Stage::Pixel, 'N', Source::new("plain.wgsl", STAGES));
 
-/// An object type, but for its declaration and a change of its mesh, a tetrahedron.
+/// An object type, without its declaration and a change of its mesh, a tetrahedron.
 macro_rules! shape {
     ($name:ident, $declaration:expr, $change:expr) => {
         parameters! {
@@ -151,7 +151,7 @@ fn tetrahedron() -> PolygonMesh {
     mesh
 }
 
-/// Asserts that the outcome is an error whose message has all of these parts, and names type and id.
+/// Asserts that the outcome is an error whose message contains all of these parts, and names type and id.
 #[track_caller]
 fn refused<T>(
     outcome: Result<&mut Registry, RegistrationError>,
@@ -274,7 +274,7 @@ fn parameters_have_names_ranges_and_defaults_that_work() {
     model_refused::<When>(&["parameter `bands`: used_when: it must name a parameter of this model"]);
 }
 
-/// The text of a light with parameters: those that a light of that id may have.
+/// The WGSL of a light with parameters: those that a light with this id may have.
 const DIMMED: Source = Source::new(
     "lamp.wgsl",
     "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
@@ -473,7 +473,7 @@ fn shade_pixel(passed: Varying) -> vec3<f32> {
     const E: Parameter = Parameter::colour("e", [0; 3]);
     shading!(Many, with(STAGES), { a: colour = A, b: colour = B, c: colour = C, d: colour = D, e: colour = E, steps: number = STEPS, k_d: number = K_D });
     shading_refused::<Many>(&["its parameters take 17 numbers, at most 16 fit; a colour takes three"]);
-    // The other way round: a reflection model that uses the name otherwise.
+    // The other way round: a reflection model that uses the name differently.
     const STEPS_AS_COLOUR: Parameter = Parameter::colour("steps", [0; 3]);
     model!(Later, MODEL, { steps: colour = STEPS_AS_COLOUR });
     let said = registry.try_add_reflection_model::<Later>().map(drop).expect_err("another type");
@@ -572,7 +572,7 @@ fn the_calls_that_panic_say_the_same() {
     });
     let said = panic.expect_err("it is wrong").downcast::<String>().expect("a message");
     assert_eq!(*said, expected);
-    // Wrong WGSL alone leaves the rest of the program usable: it is reported where it is drawn with.
+    // Invalid WGSL alone leaves the rest of the program usable: it is reported where it is used.
     model!(BadText, MODEL.wgsl(Source::new("paper.wgsl", "fn response() {}")), {});
     assert!(Registry::builtin().add_reflection_model::<BadText>().model("paper").is_some());
 }

@@ -1,4 +1,5 @@
-//! The public tests for models, light types and object types: what is right passes, and a wrong twin of each fails.
+//! The public tests for models, light types and object types: valid ones pass, and a wrong twin of each
+//! fails.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -14,7 +15,7 @@ use lights_camera_models::{
     testing,
 };
 
-/// Paper that scatters this part of the light, in Rust; in WGSL it scatters all of it.
+/// Paper that scatters this fraction of the light in Rust; in WGSL it scatters all of it.
 macro_rules! paper {
     ($name:ident, $share:literal, $declaration:expr) => {
         parameters! {
@@ -71,7 +72,7 @@ fn what_is_right_passes() {
     testing::assert_shading::<Banded>();
 }
 
-/// Light in bands, with that exponent in Rust, declared for that stage.
+/// Light in bands, with this exponent in Rust, declared for this stage.
 macro_rules! banded {
     ($name:ident, $stage:expr, $power:literal) => {
         parameters! {
@@ -194,7 +195,7 @@ fn a_model_that_is_black_in_one_language_fails() {
     testing::assert_parity::<Black>();
 }
 
-/// A lamp with that part of the light in Rust, and all in WGSL, and with that solid angle.
+/// A lamp with this fraction of the light in Rust, and all of it in WGSL, and with this solid angle.
 macro_rules! downlight {
     ($name:ident, $intensity:expr, $solid_angle:expr) => {
         parameters! {

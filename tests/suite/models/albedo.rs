@@ -82,7 +82,7 @@ fn ggx(l: Vec3, v: Vec3, frame: &Frame, alpha_x: f32, alpha_y: f32) -> f32 {
     PI * d * visibility * l.z
 }
 
-/// The same in WGSL.
+/// The lobe in WGSL.
 macro_rules! ggx {
     () => {
         "
@@ -377,7 +377,7 @@ fn the_lobe_in_the_row_is_the_lobe_of_the_model() {
     assert!(worst(&|l, v| ggx(l, v, &Frame::LOCAL, 0.9, 0.4)) > 1e-2);
 }
 
-/// Whether every response of the GPU is that of a surface.
+/// True if the responses of the GPU agree with those of a surface.
 fn agrees(model: &ModelEntry, set: &Values, surface: &dyn reflection::Surface) -> bool {
     let pairs: Vec<_> = (0..400)
         .map(|i| {
@@ -535,7 +535,7 @@ fn light_from_everywhere_gives_the_same_picture_on_both_machines() {
             scene.objects[0].material.set("alpha_x", Value::Number(0.9));
             scene.objects[0].material.set("alpha_y", Value::Number(0.3));
             let lamps = close_up("torus", "point").lights;
-            // Lit first by a lamp alone: the curve is filled when the ambient light appears.
+            // Lit first only by a lamp: the curve is filled when the ambient light appears.
             draw(&Scene { lights: lamps, ..scene.clone() });
             let gpu = draw(&scene);
             let d = compare(&gpu, &reference::render(&scene, &registry, &settings), background, 1e-3);

@@ -25,7 +25,8 @@ const DECLARED: &str = r#"
     ],
 "#;
 
-/// A model that returns its curves: at the view in the ambient and diffuse term, the means in the specular one.
+/// A model that returns its curves: at the view in the ambient and diffuse terms, the means in the specular
+/// term.
 fn text(declared: &str) -> String {
     format!(
         "/* lcm {{ {declared} }} */
@@ -88,7 +89,7 @@ fn the_curves_of_a_custom_model_are_the_albedos_of_the_models_that_they_name() {
             assert!(near(found.ambient.x, lobe(0.8)), "{degrees}: {} {}", found.ambient.x, lobe(0.8));
             assert!(near(found.ambient.y, whole), "{degrees}: {} {whole}", found.ambient.y);
             assert!(near(found.ambient.z, coat), "{degrees}: {} {coat}", found.ambient.z);
-            // The wrong twin: the default of the parameter in place of its value.
+            // The wrong twin: the default of the parameter instead of its value.
             let default = microfacet(&settings(0.3, "dielectric"), v);
             assert!(alpha < 0.5 || !near(found.ambient.z, default), "{degrees}: {default}");
             let tint = Encoding::Srgb.decode([255, 128, 64]);

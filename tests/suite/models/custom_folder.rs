@@ -22,10 +22,10 @@ use serde_json::{Value as Json, json};
 
 use crate::helpers::support::{Run, check_wording, lcm_in};
 
-/// The number of models in a large folder.
+/// Number of models in a large folder.
 const MANY: usize = 500;
 
-/// A model with a parameter of its own.
+/// A model with a separate parameter.
 fn model(parameter: &str) -> String {
     format!(
         "/* lcm {{ \"parameters\": [\"base_colour\", {{ \"name\": \"{parameter}\", \"max\": 9 }}] }} */
@@ -48,7 +48,7 @@ impl Bench {
         Self { folder }
     }
 
-    /// Many good models, fuzz_0 to fuzz_499, and files that are broken in various ways.
+    /// Many valid models, fuzz_0 to fuzz_499, and files that are broken in various ways.
     fn crowded() -> Self {
         let bench = Self::new();
         for i in 0..MANY {
@@ -221,11 +221,11 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
             assert!(!told.err.contains(other), "{command} tells of {other}: {}", told.err);
         }
     }
-    // A file that is no model is none of its errors.
+    // A file that is not a model is not one of its errors.
     let told = bench.run("evaluate huge", ANGLES);
     assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{}", told.err);
     assert!(told.err.contains("models/huge.wgsl is no model: it neither begins with"), "{}", told.err);
-    // A scene names it, too.
+    // A scene names it too.
     let told = bench.run("check -", &scene("nothing", &json!({}), None));
     assert_eq!(told.status, Some(1));
     let said = "the file of that custom model has an error: models/nothing.wgsl:1:1";
@@ -272,7 +272,7 @@ fn messages_list_and_suggest_what_only_declarations_know() {
     ] {
         assert!(unknown.err.contains(expected), "{expected} is not in {}", unknown.err);
     }
-    // In the order of the names, after the built-in ones, even if one was read before the others.
+    // Sorted by name, after the built-in ones, even if one was read before the others.
     let mixed = bench.run("check -", &scene("fuzz_77", &json!({}), Some("fuzzz_321")));
     let places =
         ["\"phong\"", "\"fuzz_0\"", "\"fuzz_1\"", "\"fuzz_77\"", "\"fuzz_78\""].map(|id| mixed.err.find(id));
@@ -291,7 +291,7 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
     assert!(listed.err.contains("custom models the declarations alone were read"), "{}", listed.err);
     let all: Vec<Json> = serde_json::from_str(&listed.out).unwrap();
     let models: Vec<_> = all.iter().filter(|entry| entry["kind"] == "reflection model").collect();
-    // The declaration of the broken one is right.
+    // The declaration of the broken one is valid.
     assert_eq!(models.len(), Registry::builtin().models().len() + MANY + 1);
     assert!(read(&listed).0.is_empty(), "{}", listed.err);
     for expected in [
@@ -339,7 +339,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
         extents(&registry),
         [("a", Extent::Declaration), ("b", Extent::Whole), ("c", Extent::Declaration)]
     );
-    // A scene that starts to use models wants the rest of them.
+    // A scene that begins to use models needs the rest of them.
     let mut scene = Scene { reflection_model: "c".to_owned(), ..Scene::default() };
     scene.objects[0].reflection_model = Some("b".to_owned());
     let wanted =
@@ -356,7 +356,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     assert_eq!(declare_rest(&mut registry).files, 0);
     bench.put("a.wgsl", &model("another_name"));
     bench.put("d.wgsl", &model("depth_d"));
-    // Users of a model that is known whole follow it.
+    // Scenes that use a completely known model follow it.
     bench.put("b.wgsl", &model("renamed"));
     assert_eq!(declare_rest(&mut registry).files, 2);
     assert_eq!(registry.model("a").unwrap().parameters[1].name, "another_name");
@@ -366,7 +366,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     bench.put("a.wgsl", "fn helper() -> f32 { return 1.0; }");
     assert_eq!(declare_rest(&mut registry).files, 1);
     assert!(registry.model("a").is_none() && registry.sources().get("models/a.wgsl").is_some());
-    // An error found in reading the rest leaves the stand-in.
+    // An error found in reading the rest leaves the fallback.
     bench.put("d.wgsl", &model("depth_d").replace("m.base_colour", "m.base_color"));
     assert!(matches!(read_model("d", &mut registry), Reading::Broken(_)));
     assert!(registry.broken_model("d").unwrap().contains("d.wgsl:3:"));

@@ -1,4 +1,4 @@
-//! Models as one file: the contents of a file, messages about errors, and the picture.
+//! Models in single files: the contents of a file, messages about errors, and the picture.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ use crate::{
     helpers::support::check_wording,
 };
 
-/// The path of a model with that id.
+/// The path of a model with this id.
 fn path(id: &str) -> std::path::PathBuf {
     Path::new("somewhere").join(format!("{id}.wgsl"))
 }
@@ -177,7 +177,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
     ] {
         check(declaration, expected);
     }
-    // Of a parameter.
+    // For a parameter.
     for (fields, expected) in [
         (
             r#""type": "nummer""#,
@@ -240,7 +240,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             &format!("parameters[0].{expected}"),
         );
     }
-    // All of them at once, in the order of the file.
+    // All at once, in the order of the file.
     let said =
         said("{\n\"nam\": 1,\n\"laws\": [1],\n\"parameters\": [\"x\", { \"name\": \"y\", \"min\": 3 }]\n}");
     let lines: Vec<_> = said.lines().map(|l| l.split(':').nth(1).unwrap_or_default()).collect();
@@ -279,7 +279,7 @@ fn lobes_follow_the_parameters_of_the_model() {
         said("[{ \"shape\": \"ggx\", \"exponent\": \"alpha\" }]"),
         Lobes::new(&[(Lobe::ggx((2.0f32 / 16.0).sqrt()), 1.0)])
     );
-    // Those of a built-in model, by the declared parameters alone.
+    // The lobes of a built-in model, with only the declared parameters.
     let phong = Registry::builtin();
     let phong = |values: &Values| phong.model("phong").unwrap().instantiate(values, Encoding::Srgb).lobes();
     assert_eq!(said("\"phong\""), phong(&values));
@@ -313,7 +313,7 @@ fn a_file_without_a_good_name_or_declaration_is_refused() {
         said_of("mine", "fn response() {}").contains("1:1: the declaration is missing; a model begins with")
     );
     assert!(said_of("mine", "\n  /* lcm { }").contains("2:3: the comment is not closed"));
-    // Other comments may stand before it, and in it.
+    // Other comments may come before it, and inside.
     assert_eq!(said_of("mine", &format!("// Licence\n/* lcms */\n{good}")), "");
     assert_eq!(said("{ /* a comment */ \"name\": \"x\", // and this\n }"), "");
     assert!(custom::is_model(&good) && custom::is_model("fn response() {}"));
@@ -427,13 +427,13 @@ fn renderer(registry: &Registry) -> GpuRenderer {
     .expect("software Vulkan is installed")
 }
 
-/// The same from the CPU renderer.
+/// The picture by the CPU renderer.
 fn on_cpu(registry: &Registry, scene: &Scene) -> reference::Picture {
     let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
     reference::render(scene, registry, &settings)
 }
 
-/// A built-in model as a file, registered under another id.
+/// A built-in model as a file, registered with another id.
 fn duplicated(model: &ModelEntry) -> (Registry, CustomModel) {
     let registry = Registry::builtin();
     let id = format!("{}_copy", model.declaration.id);
@@ -515,7 +515,8 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
             let copied = on_gpu(&mut gpu, &scene);
             let error =
                 original.iter().zip(&copied).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
-            // Curves of albedo are integrated from the Rust functions here and from the interpreted file there.
+            // Curves of albedo are integrated from the Rust functions here and from the interpreted file
+            // there.
             assert!(error < 1e-3, "{id} {}: {error}", shading.declaration.id);
             let lit = original.iter().filter(|p| **p != Encoding::Srgb.decode(BACKGROUND)).count();
             assert!(lit > 300, "{id} {}: {lit}", shading.declaration.id);

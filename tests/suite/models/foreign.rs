@@ -1,5 +1,5 @@
-//! WGSL that other crates compiled in: what is wrong with it takes no other picture away, is reported with file and
-//! line, and is mended while the program runs.
+//! WGSL compiled into other crates: errors in it do not affect other pictures, are reported with file and
+//! line, and can be fixed while the program runs.
 
 use std::{fs, thread, time::Duration};
 
@@ -44,7 +44,7 @@ impl LightType for Lamp {
     }
 }
 
-/// The text without the mistake.
+/// The text without the error.
 const MENDED: &str = "fn incident_lamp(light: Light, p: vec3<f32>) -> Incident {\n    return Incident(vec3(0.0, 1.0, 0.0), vec3(light.intensity), 0u);\n}\n";
 
 /// A model whose WGSL has another name for its function.
@@ -169,7 +169,7 @@ fn a_broken_model_is_drawn_as_a_grey_stand_in_and_reported() {
     };
     let [r, g, b] = middle(&grey);
     assert!(r == g && g == b && r > 20, "{:?}", middle(&grey));
-    // One that is right is drawn as it is.
+    // A valid one is drawn as it is.
     scene.reflection_model = "red".to_owned();
     let [r, g, b] = middle(&picture(&mut with, &scene));
     assert!(r > 100 && (g, b) == (0, 0), "{r} {g} {b}");
@@ -191,13 +191,13 @@ fn files_in_the_folder_of_another_crate_are_followed() {
     assert_eq!(status(&mut with).troubles, []);
     let lit = picture(&mut with, &lit_by_lamp());
     assert!(lit != dark, "it shines");
-    // Another mistake leaves the last good version.
+    // Another error leaves the last valid version.
     fs::write(&file, MENDED.replace("0u", "0.5")).expect("writable");
     look_at(&mut with, &file);
     let troubles = status(&mut with).troubles;
     assert_eq!(troubles[0].stale, ["Lambert"], "{troubles:?}");
     assert!(picture(&mut with, &lit_by_lamp()) == lit);
-    // A file with the name of one of ours is theirs alone.
+    // A file with the name of one of ours belongs only to that crate.
     let ours = folder.path().join("loop.wgsl");
     fs::write(&ours, "fn illuminate( {").expect("writable");
     look_at(&mut with, &ours);

@@ -9,7 +9,7 @@ use lights_camera_models::{
 };
 use proptest::prelude::*;
 
-/// A comparison, for every model.
+/// Runs a comparison for every model.
 fn agree(compare: fn(&ModelEntry, &Sources) -> testing::Outcome) {
     for model in Registry::builtin().models() {
         assert_eq!(compare(model, &Sources::default()), Ok(()), "{}", model.declaration.id);
@@ -76,7 +76,8 @@ fn mutated(text: &str, seed: &mut u64) -> String {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Mutations that are still valid, one in some dozens, crash neither the compilation of the program nor its run.
+    /// Mutations that are still valid, one in several dozens, crash neither the compilation of the program
+    /// nor its run.
     #[test]
     fn mutated_models_never_panic(start in any::<u64>()) {
         let registry = Registry::builtin();

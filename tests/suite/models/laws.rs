@@ -1,5 +1,5 @@
-//! The laws of every registered model, over random directions and parameters: asserted if the model declares them, and
-//! found violated otherwise.
+//! The laws of every registered model, over random directions and parameters: asserted if the model declares
+//! them, and found violated otherwise.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -10,7 +10,7 @@ use lights_camera_models::{
     testing::{self, laws::albedo},
 };
 
-/// A law, for every model.
+/// Checks a law for every model.
 fn hold(law: fn(&ModelEntry) -> testing::Outcome) {
     for model in Registry::builtin().models() {
         assert_eq!(law(model), Ok(()), "{}", model.declaration.id);
@@ -44,7 +44,7 @@ fn samples_by_the_lobes_of_a_model_give_its_albedo() {
 
 #[test]
 fn the_quadrature_of_the_albedo_is_right() {
-    // Lambert reflects its base colour, whatever the direction; half of it fails.
+    // Lambert reflects its base colour in every direction; half of it fails.
     let registry = Registry::builtin();
     let mut values = Values::default();
     values.set("base_colour", Value::Colour([188; 3]));
@@ -64,7 +64,7 @@ fn the_quadrature_of_the_albedo_is_right() {
     assert!((albedo(&*phong, frame.n, &frame, 160) - expected).abs() < 1e-3);
 }
 
-/// The angles of a pair of directions, for formulas in another form than the models'.
+/// The angles of a pair of directions, for formulas in a different form than the models'.
 struct Angles {
     /// Polar angle of light and view, and the azimuth between them.
     l: f64,
@@ -186,7 +186,7 @@ fn modified_lambert_without_wrap_and_power_is_lambert() {
     assert!(squared_differs, "with the square as written it is not Lambert");
 }
 
-/// Coefficients whose f32 values the formulas use directly.
+/// Coefficients with f32 values that the formulas use directly.
 const K_A: f32 = 0.25;
 const K_D: f32 = 0.75;
 const K_S: f32 = 0.5;
@@ -212,7 +212,7 @@ fn phong_is_a_power_of_the_cosine_to_the_mirror_direction() {
             "phong",
             &coefficients(alpha),
             |a| three_terms(a, a.mirror(), alpha, a.l.cos() > 0.0),
-            // No test of the side of the light; and the other highlight.
+            // Without the test for the side of the light; and the other highlight.
             |a| three_terms(a, a.half(), alpha, true),
         );
     }

@@ -1,5 +1,5 @@
-//! Errors that students make in the WGSL of a model: each is reported at the author's line and column, in words, with
-//! what would be right.
+//! Errors that students make in the WGSL of a model: each is reported at the author's line and column, in
+//! words, with the remedy.
 
 use std::path::Path;
 
@@ -135,7 +135,8 @@ fn what_wgsl_allows_is_no_mistake() {
     }
 }
 
-/// A student's lines before `response`, those in it, the text at the place of the message, and the message.
+/// A student's lines before `response`, those in it, the text at the position of the message, and the
+/// message.
 const MISTAKES: &str = r##"
 ¦return Terms(0.0, m.base_colour * cos_l, vec3(0.0));¦0.0¦Terms(ambient, diffuse, specular) needs a vec3<f32> for ambient, but `0.0` is a number; write `vec3(0.0)`
 ¦return Terms(vec3(0.0), m.base_colour * cos_l, m.k_s);¦m.k_s¦Terms(ambient, diffuse, specular) needs a vec3<f32> for specular, but `m.k_s` is a number; write `vec3(m.k_s)`

@@ -1,11 +1,11 @@
-//! Shaders calculate functions of a scene's constants exactly: a driver's `cos` may be off by 2⁻¹¹.
+//! Shaders calculate functions of a scene's constants accurately: a driver's `cos` may be off by 2⁻¹¹.
 
 use std::{fs, path::Path};
 
 use crate::helpers::support::root;
 
-/// The lines that take a driver's trigonometric function of an angle in degrees. Angles in degrees are parameters, and so
-/// constant.
+/// The lines that take a driver's trigonometric function of an angle in degrees. Angles in degrees are
+/// parameters, and so constant.
 fn inexact(text: &str) -> Vec<&str> {
     let functions = ["sin(radians(", "cos(radians(", "tan(radians("];
     text.lines().filter(|line| functions.iter().any(|f| line.contains(f))).collect()

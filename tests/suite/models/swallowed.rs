@@ -1,4 +1,5 @@
-//! Errors that swallow the following text in the composed shader are reported in their own file, by every command.
+//! Errors that swallow the following text in the composed shader are reported in their own file, by every
+//! command.
 
 use std::{fs, path::Path};
 

@@ -1,5 +1,5 @@
-//! Shaders are tried in another process: its messages are reported here, and however it ends, the picture and the
-//! program survive.
+//! Shaders are tried in another process: its messages are reported here, and however it ends, the picture and
+//! the program survive.
 
 use std::{
     fs,
@@ -16,7 +16,7 @@ use lights_camera_models::render::trial::{
 
 use crate::renderers::reload::{BREAKAGES, Breakage, Lab, original, phong_scene};
 
-/// The laboratory, with shaders tried by a program.
+/// The lab, with shaders tried by a program.
 fn apart(program: &Path, budget: Budget) -> Lab {
     let mut lab = Lab::new(phong_scene("phong"));
     let process = TrialProcess::new(program.to_owned(), budget, || {});
@@ -28,7 +28,7 @@ fn lcm() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_lcm"))
 }
 
-/// Frames until everything is tried and reported.
+/// Runs frames until everything is tried and reported.
 fn settled(lab: &mut Lab) -> Vec<u8> {
     let start = Instant::now();
     while lab.live().is_trying() {

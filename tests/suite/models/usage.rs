@@ -1,4 +1,4 @@
-//! Parameters not used by the chosen options: their knobs, declarations and lists.
+//! Parameters not used by the present choices: their controls, declarations and lists.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);
     assert!(caption_text(&bench.session, &bench.registry).contains("γ 2"));
-    // A chain: without a Fresnel term there is no diffuse base, and without that no colour.
+    // A chain: without a Fresnel term there is no diffuse base, and without the base no colour.
     choose(&mut bench, "fresnel", "none");
     assert!(bench.field("base colour in hexadecimal").disabled);
     let base = bench.tree.iter().find(|s| s.role == Role::ComboBox && s.label.starts_with("diffuse base"));

@@ -1,4 +1,4 @@
-//! Pictures that are drawn in batches, because their shapes do not find room at once.
+//! Pictures drawn in batches, because their shapes do not fit into memory at once.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -13,7 +13,7 @@ use lights_camera_models::{
     scene::{Light, Object, Scene},
 };
 
-/// Different shapes that pass through one another, so that each batch has parts before and behind those of others.
+/// Different shapes that intersect, so that each batch has parts in front of and behind those of others.
 fn crossing(count: usize, tone: ToneMapping, shading: &str) -> Scene {
     let object = |i: usize| {
         let turn = i as f32 * 2.4;
@@ -78,7 +78,7 @@ fn a_picture_in_batches_is_the_same_bit_for_bit() {
         batched.step();
         assert!(batched.read().expect("a picture") == expected, "{case}: a frame later");
 
-        // Other pictures of the same renderer: in batches again, whole, and in batches once more.
+        // More pictures by the same renderer: in batches again, whole, and in batches once more.
         let again = crossing(7, tone, shading);
         let expected_again = picture(&mut whole, &again);
         assert!(picture(&mut batched, &again) == expected_again, "{case}: fewer");
@@ -105,7 +105,7 @@ fn a_channel_in_batches_is_the_same() {
     assert!(whole == batched);
 }
 
-/// One shape that is too large alone is named, and the next picture has room.
+/// A single shape that is too large is named, and the next picture can be drawn.
 #[test]
 fn a_shape_that_is_too_large_alone_is_refused() {
     let mut renderer = renderer(1, Output::Display, None);

@@ -1,5 +1,5 @@
-//! Debug channels: each pixel is what its formula says, on the GPU and on the CPU, and the window and the command line
-//! show them.
+//! Debug channels: each pixel matches its formula, on the GPU and on the CPU, and the window and the command
+//! line show them.
 
 use std::{fs, ops::Range, path::Path};
 
@@ -53,7 +53,7 @@ fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene, channel: Option<DebugChanne
     renderer.read_rgb8().expect("the picture can be read")
 }
 
-/// The share of pixels with a channel that differs by more than some codes.
+/// The fraction of pixels with a channel that differs by more than some codes.
 fn share(a: &[u8], b: &[u8], tolerance: u8) -> f32 {
     let (a, b) = (a.as_chunks::<3>().0, b.as_chunks::<3>().0);
     assert_eq!(a.len(), b.len());
@@ -79,7 +79,7 @@ fn both_renderers_draw_the_same_channels_with_every_shading_model() {
         for (i, channel) in DebugChannel::ALL.into_iter().enumerate() {
             let right = share(&gpu[i], &cpu[i], 3);
             assert!(right < 0.02, "{shape}, {shading}, {channel:?}: {right} of the pixels differ");
-            // Wrong twins: every other channel. Two may be the same where nothing is special.
+            // Wrong twins: every other channel. Two may be equal where nothing is special.
             for (j, other) in DebugChannel::ALL.into_iter().enumerate() {
                 if i == j || (channel.is_of_light() && other.is_of_light()) {
                     continue;
@@ -299,7 +299,7 @@ fn both_renderers_draw_the_same_lines_and_dots_over_a_dim_surface() {
     }
 }
 
-/// Lets the lines of a view be finished; with the number of times that they were calculated.
+/// Waits until the lines of a view are finished; returns them with the number of calculations.
 fn lines(bench: &mut Bench, view: usize) -> (std::sync::Arc<reference::Wires>, u64) {
     let mut before = None;
     for _ in 0..500 {
@@ -318,7 +318,8 @@ fn lines(bench: &mut Bench, view: usize) -> (std::sync::Arc<reference::Wires>, u
     panic!("the lines are never finished");
 }
 
-/// The largest mesh without a texture over the picture: its vertices, and the middle of those that are not transparent.
+/// The largest untextured mesh over the picture: its number of vertices, and the mean of those that are not
+/// transparent.
 fn drawn(bench: &mut Bench) -> (usize, bevy_egui::egui::Vec2) {
     let meshes = bench.shapes().into_iter().filter_map(|shape| match shape {
         bevy_egui::egui::Shape::Mesh(mesh) => Some(mesh),
@@ -446,7 +447,7 @@ fn each_view_in_a_picture_has_its_own_legend_clear_of_its_letter() {
     let alone = ["B", "A"].map(|view| drawn("two.json", &["--view", view]).pixels);
     assert!(alone[0] == drawn("phong.json", &["--view", "A"]).pixels, "the legend of another view");
     assert!(alone[0] != alone[1]);
-    // The legend is where it makes a difference.
+    // The legend appears where it makes a difference.
     let red = |picture: &Picture, x: Range<u32>| picture.count(x, 0..360, |p| p == [255, 128, 128]);
     for layout in ["side_by_side", "wipe"] {
         let with = drawn("two.json", &["--layout", layout]);
@@ -455,7 +456,7 @@ fn each_view_in_a_picture_has_its_own_legend_clear_of_its_letter() {
             let all = y.flat_map(|y| x.clone().map(move |x| (x, y)));
             all.filter(|(x, y)| with.at(*x, *y) != without.at(*x, *y)).count()
         };
-        // Letters stand in the first rows.
+        // Letters are in the first rows.
         assert_eq!(changed(0..640, 0..18), 0, "{layout}");
         for side in [0..318, 322..640] {
             assert!(changed(side.clone(), 18..200) > 500, "{layout}: {side:?} has no legend");
@@ -464,7 +465,7 @@ fn each_view_in_a_picture_has_its_own_legend_clear_of_its_letter() {
         let more = [0..318, 322..640].map(|side| red(&with, side.clone()).abs_diff(red(&without, side)));
         assert!(more[0] == 0 && more[1] > 20, "{layout}: {more:?}");
     }
-    // A map of differences is of both.
+    // A map of differences shows both.
     let with = drawn("two.json", &["--layout", "difference"]);
     assert!(red(&with, 0..640) > 20, "the legend of B");
 }

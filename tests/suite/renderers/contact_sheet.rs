@@ -24,13 +24,13 @@ use crate::{
 
 const FILE: &str = "docs/images/models_and_lights.png";
 
-/// The side of a picture of one model under one light.
+/// Width and height of a picture of one model under one light.
 const CELL: u32 = 112;
 const SETTINGS: Settings = Settings { width: CELL, height: CELL, samples: 4, terms: TermSelection::All };
-/// Of lights: enough for small pictures.
+/// Number of samples of lights, enough for small pictures.
 const SAMPLES: u32 = 64;
 
-/// The lights, with what is written above their columns.
+/// The lights, with the headings of their columns.
 const LIGHTS: [(&str, &str); 4] = [
     (
         "studio",
@@ -49,7 +49,8 @@ const LIGHTS: [(&str, &str); 4] = [
     ),
 ];
 
-/// Blocks beside each other, and their measures: the column of names, the row of lights, the gap between cells.
+/// Number of blocks side by side, and their dimensions: the column of names, the row of lights, the gap
+/// between cells.
 const BLOCKS: u32 = 2;
 const NAMES: u32 = 216;
 const HEAD: u32 = 34;
@@ -59,7 +60,7 @@ const TEXT: f32 = 17.0;
 const GROUND: [u8; 3] = [24; 3];
 const INK: [u8; 3] = [222; 3];
 
-/// A colour of that hue, as one of so many around the circle.
+/// The i-th of evenly spaced hues around the circle.
 fn colour(i: usize, count: usize) -> [u8; 3] {
     let channel = |shift: f32| {
         let turn = (i as f32 / count as f32 + shift).fract();
@@ -90,7 +91,7 @@ fn scenes(registry: &Registry) -> Vec<(&'static str, Vec<Scene>)> {
     (0..models.len()).map(row).collect()
 }
 
-/// The sheet with pictures, model by model and light by light: its size and its values.
+/// The sheet of pictures, model by model and light by light: its size and its values.
 fn sheet(rows: &[(&str, Vec<Vec<u8>>)]) -> ([u32; 2], Vec<u8>) {
     let each = (rows.len() as u32).div_ceil(BLOCKS);
     let block = NAMES + LIGHTS.len() as u32 * (CELL + GAP);
@@ -142,8 +143,8 @@ fn every_model_under_every_kind_of_light_looks_as_the_documents_show() {
     assert!(agrees(), "{FILE} is not what the models look like; accept with LCM_UPDATE=1");
 }
 
-/// `cargo test --release --test suite -- --ignored --nocapture contact_sheet` prints what the documents say of both renderers, and
-/// writes the sheet of the GPU to `error_output/`.
+/// `cargo test --release --test suite -- --ignored --nocapture contact_sheet` prints what the documents
+/// report about both renderers, and writes the sheet of the GPU to `error_output/`.
 #[test]
 #[ignore = "minutes, with software Vulkan"]
 fn the_renderers_draw_the_same_contact_sheet() {

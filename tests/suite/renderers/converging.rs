@@ -1,4 +1,4 @@
-//! Pictures of light with extent converge in views, to what the CPU renderer draws, and then rest.
+//! Pictures of light with extent converge in views to those of the CPU renderer, and then rest.
 
 use std::sync::atomic::AtomicBool;
 
@@ -52,7 +52,7 @@ fn picture(renderer: &mut GpuRenderer) -> Vec<u8> {
     renderer.read_view(&texture).expect("the picture can be read")
 }
 
-/// Draws frames until the view rests: their number.
+/// Draws frames until the view rests, and returns their number.
 fn converge(renderer: &mut GpuRenderer) -> u32 {
     for frames in 1..400 {
         renderer.step();
@@ -63,7 +63,7 @@ fn converge(renderer: &mut GpuRenderer) -> u32 {
     panic!("it never rests: {:?}", drawing(renderer));
 }
 
-/// The number of pixels of which a channel differs by more than 2 of 255.
+/// The number of pixels with a channel that differs by more than 2 of 255.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     let pairs = a.chunks_exact(4).zip(b.chunks_exact(3));
     pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2)).count()
@@ -84,7 +84,8 @@ fn a_converged_picture_is_that_of_the_cpu_renderer() {
         let what = format!("{light}, {shading}, {encoding:?}");
         let expected = reference::render_rgb8(&scene, &registry, &settings);
         let mut renderer = renderer(&scene);
-        // The first is without meshes, the second without what the renderer could not prepare: both begin anew.
+        // The first is without meshes, the second without anything that the renderer could not prepare: both
+        // start again.
         for _ in 0..3 {
             renderer.step();
         }
@@ -96,7 +97,7 @@ fn a_converged_picture_is_that_of_the_cpu_renderer() {
         let converged = picture(&mut renderer);
         let differ = differing(&converged, &expected);
         assert!(1000 * differ <= (SIZE * SIZE) as usize, "{what}: {differ} pixels differ");
-        // The first differs where noise is, else this would prove nothing. A globe has hardly any.
+        // The first differs where there is noise, or else this would prove nothing. A globe has hardly any.
         if (light, shading) == ("rectangle", "phong") {
             assert!(differing(&first, &expected) > 40, "{what}");
         }
@@ -162,7 +163,8 @@ fn the_noise_of_a_picture_is_measured_as_it_converges() {
     let (first, last) = (told[0], *told.last().expect("it is told"));
     assert!(first.0 < 64 && last.0 == 256, "{told:?}");
     assert!(last.1 < 0.5 * first.1, "{told:?}");
-    // The CPU renderer estimates it from blocks of 16 samples, which are spread more evenly than frames of 1 to 8.
+    // The CPU renderer estimates it from blocks of 16 samples, which are distributed more evenly than frames
+    // of 1 to 8.
     let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
     let (registry, odd) = (Registry::builtin(), AtomicBool::default());
     let until = Until::default();
@@ -170,7 +172,7 @@ fn the_noise_of_a_picture_is_measured_as_it_converges() {
         .expect("nobody cancels");
     let ratio = last.1 / reached.noise.expect("enough blocks");
     assert!((0.7..5.0).contains(&ratio), "{ratio} {reached:?}");
-    // A change begins anew, and says nothing of what was before.
+    // A change starts again, without traces of the previous state.
     let world = renderer.app().world_mut();
     world.query::<&mut Drawing>().iter_mut(world).for_each(|mut drawing| drawing.redraw());
     renderer.step();

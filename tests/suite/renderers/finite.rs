@@ -1,4 +1,5 @@
-//! Light that is not finite is reported with the light or model that gives it, by every command and by the window.
+//! Light that is not finite is reported, with the light or model that produces it, by every command and by
+//! the window.
 
 use std::{f32::consts::PI, fs, path::Path, sync::atomic::AtomicBool};
 
@@ -86,7 +87,7 @@ impl LightType for Broken {
     }
 }
 
-/// Panes that glow from everywhere, but not with numbers.
+/// Panes of uniform light with a value that is not a finite number.
 macro_rules! pane {
     ($name:ident, $id:literal, $sample:expr, $seen:expr) => {
         parameters! {
@@ -182,7 +183,7 @@ fn pixels_lit_by_such_a_light_lead_to_it_and_not_to_the_model() {
         let expected: &[&str] = if shows { &["lights[1]"] } else { &[] };
         assert_eq!(paths(&traced(&scene, &registry, &settings, &pixels)), expected, "{pane}");
     }
-    // A model that gives no number is named under lights with extent, too.
+    // A model that returns NaN is reported under lights with extent too.
     let mut registry = registry;
     registry.add_reflection_model::<Torn>();
     let scene = Scene { reflection_model: "torn".to_owned(), ..behind("sound") };
@@ -200,7 +201,7 @@ fn registry() -> Registry {
     registry
 }
 
-/// A white ball under a lamp, with a torn one beside it.
+/// A white ball under a lamp, next to a ball with the torn model.
 fn torn() -> Scene {
     let ball = |x: f32, name: &str, model: Option<&str>| Object {
         position: Vec3::new(x, 5.0, 5.0),
@@ -236,7 +237,7 @@ fn a_probe_names_the_light_and_the_model() {
         let expected =
             "objects[1] (\"Bad\") has the reflection model torn, which gives (NaN, NaN, NaN) for light at 0°";
         assert!(said.starts_with(expected), "{said}");
-        // What is known is not tried again, and is said again.
+        // Known results are not tried again, but reported again.
         assert_eq!(probe(&torn(), &registry, scope, &mut tried), found);
         let found = probe(&broken(), &registry, scope, &mut tried);
         assert_eq!(paths(&found), ["lights[1]"]);
@@ -276,7 +277,7 @@ fn the_cpu_renderer_notes_it_and_pixels_lead_to_it() {
     }
 }
 
-/// A custom model of which light at more than 37° to the normal alone is finite.
+/// A custom model that is finite only for light at more than 37° to the normal.
 const TORN: &str = r#"/* lcm
 { "name": "Torn file", "summary": "Torn.", "equation": [{ "term": "diffuse", "text": "I_d = √(0.5 − N·L)" }],
   "laws": [], "parameters": ["base_colour"] }
@@ -327,7 +328,7 @@ fn check_and_render_report_a_custom_model_that_gives_no_number() {
     }
 }
 
-/// A custom model that divides by zero, which drivers may take for anything.
+/// A custom model that divides by zero, which drivers may evaluate to anything.
 const DIVIDED: &str = r#"/* lcm
 { "name": "Divided", "laws": [], "parameters": ["base_colour"] }
 */
@@ -351,7 +352,7 @@ fn no_renderer_is_silent_about_what_a_driver_makes_finite() {
             assert!(drawn.err.contains("finite") && !drawn.err.contains("objects[0]"), "{}", drawn.err);
         }
     }
-    // Nothing is said of what is finite.
+    // Nothing is reported about finite light.
     fs::write(folder.path().join("models/torn_file.wgsl"), DIVIDED.replace(" * 0.0", " * 0.0 + 1.0"))
         .expect("written");
     let drawn =

@@ -1,5 +1,5 @@
-//! The shipped scenes are examples and golden tests alike: each is valid, has a description, and looks like its
-//! accepted picture in `tests/golden/`, on either renderer.
+//! The shipped scenes are both examples and golden tests: each is valid, has a description, and looks like
+//! its accepted picture in `tests/golden/`, with either renderer.
 
 use std::{error::Error, fs, io::BufReader, path::Path};
 
@@ -69,7 +69,8 @@ fn scenes() -> Vec<(String, Scene)> {
     shipped_scenes().iter().map(|path| (name(path), read(path))).collect()
 }
 
-/// The pictures of the shipped scenes: one for each view, with the letter of the view beside the name from B on.
+/// The pictures of the shipped scenes: one for each view, with the letter of the view appended to the name
+/// from B on.
 fn views() -> Vec<(String, Scene)> {
     let registry = Registry::builtin();
     let mut all = Vec::new();
@@ -87,7 +88,7 @@ fn views() -> Vec<(String, Scene)> {
 const SETTINGS: reference::Settings =
     reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
 
-/// Samples of lights with extent: both renderers take the same, and software Vulkan is slow.
+/// Samples of lights with extent: both renderers take the same number, and software Vulkan is slow.
 const LIGHT_SAMPLES: u32 = 8;
 
 fn on_cpu(scene: &Scene) -> Vec<u8> {
@@ -120,7 +121,7 @@ fn golden(name: &str) -> Vec<u8> {
     rgb8
 }
 
-/// Writes the picture and the amplified difference, for people to look at.
+/// Writes the picture and the amplified difference, for visual inspection.
 fn keep(name: &str, actual: &[u8], expected: &[u8]) {
     let folder = root().join("error_output");
     fs::create_dir_all(&folder).expect("the folder can be made");
@@ -192,12 +193,12 @@ fn shipped_scenes_look_as_accepted_on_the_gpu() {
 
 #[test]
 fn the_comparison_notices_one_light_changed() {
-    // Noise is the same in both.
+    // The noise is equal in both.
     let drawn = |scene: &Scene| sampled(scene, &Registry::builtin(), &SETTINGS, 16);
     for (name, mut scene) in scenes() {
         let right = drawn(&scene);
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);
-        // One of the middle: the outer ones of many may lie beside the picture.
+        // One of the middle: the outer ones of many may be outside the picture.
         let count = scene.lights.len();
         let (before, after) = scene.lights.split_at_mut((count / 2 + 2) % count);
         let mut lights = after.iter_mut().chain(before);

@@ -46,7 +46,7 @@ fn renderer() -> GpuRenderer {
     GpuRenderer::new(SIZE, SIZE, 1, Output::Linear).expect("software Vulkan is installed")
 }
 
-/// A renderer of pictures as seen by people.
+/// A renderer of pictures for display.
 fn displaying() -> GpuRenderer {
     GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed")
 }
@@ -62,15 +62,15 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
     let registry = Registry::builtin();
     let mut renderer = renderer();
     let mut report = Vec::new();
-    // Every model with every shading model meets every light and every shape, in changing company: all triples would be
-    // a thousand pictures. Every light meets every shape with every shading model.
+    // Every model with every shading model meets every light and every shape, in changing combinations: all
+    // triples would be a thousand pictures. Every light meets every shape with every shading model.
     let (lights, shapes) = (registry.lights(), registry.shapes());
     let mut cases = 0;
     for (i, model) in registry.models().iter().enumerate() {
         for (j, shading) in registry.shading_models().iter().enumerate() {
             for (k, light) in lights.iter().enumerate() {
-                // Light with extent is hundreds of samples for each pixel: each model meets one type with one shading model, and each
-                // type meets all shading models.
+                // Light with extent takes hundreds of samples for each pixel: each model meets one type with
+                // one shading model, and each type meets all shading models.
                 if light.declaration.extent && ((i + k) % 6 != 0 || (i / 6 + k) % 4 != j) {
                     continue;
                 }
@@ -90,7 +90,7 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
                 );
                 assert!(d.covered > 500, "hardly anything to compare: {case}");
                 cases += 1;
-                // A triangle seen edge-on shows in a pixel here and there; the snapping of its corners decides its
+                // A triangle seen edge-on appears in a few pixels; the snapping of its corners determines its
                 // slope to the view, and some models depend on that.
                 if d.wrong * 1000 > d.covered || d.edges * 50 > d.covered {
                     report.push(case);
@@ -154,7 +154,7 @@ fn the_comparison_notices_a_wrong_twin() {
     assert!(fails(&wrong), "an observer 1 cm beside goes unnoticed");
 }
 
-/// A ball with a light of a type before it, or behind it and beside.
+/// A ball with a light of a type in front of it, or behind it and to the side.
 fn beside_a_ball(light_type: &str, before: bool) -> Scene {
     let mut scene = close_up("sphere", light_type);
     let registry = Registry::builtin();
@@ -166,11 +166,11 @@ fn beside_a_ball(light_type: &str, before: bool) -> Scene {
         light.position = Some(if before { Vec3::new(4.4, 5.5, 6.9) } else { Vec3::new(6.9, 6.0, 2.0) });
     }
     if declaration.has_direction {
-        // The sun stands behind the ball, beside its edge; the others shine to the observer.
+        // The sun is behind the ball, next to its edge; the others shine towards the observer.
         light.direction = Some(match (light_type, before) {
             ("sun", true) => Vec3::new(-0.3, -0.2, 1.0),
             ("sun", false) => Vec3::new(0.32, 0.0, 1.0),
-            // Its ends are dark.
+            // The ends are dark.
             ("cylinder", _) => Vec3::new(1.0, 0.3, 0.0),
             _ => Vec3::new(0.3, -0.2, 1.0),
         });
@@ -203,7 +203,7 @@ fn lights_with_extent_are_seen_alike_before_objects_and_behind_them() {
                 (d.wrong * 500 <= d.covered && d.edges * 40 <= d.covered, d)
             };
             assert!(agrees(&scene).0, "{id}, before: {before}: {:?}", agrees(&scene).1);
-            // Wrong twins: the light is not to be seen, or elsewhere.
+            // Wrong twins: the light is invisible, or elsewhere.
             let mut elsewhere = scene.clone();
             let light = &mut elsewhere.lights[0];
             light.position = light.position.map(|p| p + Vec3::X * 0.4);
@@ -354,14 +354,14 @@ fn pictures_for_people_are_drawn_into_half_floats_where_anything_follows_and_str
         displayed(&mut renderer, &scene);
         assert_eq!(formats(&mut renderer), expected, "{tone_mapping:?}");
     }
-    // The mean of four samples is taken of light, not of what the display can show of it.
+    // The mean of four samples is taken over light, not over what the display can show of it.
     let mut renderer =
         GpuRenderer::new(SIZE, SIZE, 4, Output::Display).expect("software Vulkan is installed");
     displayed(&mut renderer, &Scene::default());
     assert_eq!(formats(&mut renderer), half_floats);
 }
 
-/// The opacity of pixels that are drawn straight into the texture tells what was cut off there.
+/// The opacity of pixels drawn directly into the texture marks clipping.
 #[test]
 fn straight_pictures_mark_what_is_cut_off() {
     for encoding in [Encoding::Srgb, Encoding::Off] {
@@ -418,7 +418,7 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
 #[test]
 fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
     let mut seed = testing::parity::SEED_OF_ENDS;
-    // As many numbers as six directions take.
+    // As many numbers as six directions need.
     for _ in 0..6 {
         testing::direction(&mut seed);
     }

@@ -162,18 +162,18 @@ fn a_scene_that_gets_its_first_light_of_a_type_is_right_in_the_next_frame() {
         let mut light = lamp.clone();
         light.direction = Some(Vec3::new(-0.5, -0.55, -1.0));
         light.set_type(entry, &registry, scene.scene_size);
-        // Of a photometric lamp, a hundredth of what it is by itself.
+        // For a photometric lamp, a hundredth of its own output.
         light.intensity = if entry.declaration.unit == "×" { 0.01 } else { 3.0 };
         scene.lights.push(light);
         all.push(scene.clone());
     }
-    // Back again, and to none of the first.
+    // Back again, without any of the first.
     let mut without = scene.clone();
     without.lights.remove(0);
     all.extend([all[0].clone(), without]);
     let mut drawn = Vec::new();
     for scene in &all {
-        // Each by a renderer that never drew another.
+        // Each by a renderer that has not drawn any other.
         let mut renderer = renderer();
         renderer.set_scene(scene.clone());
         renderer.settle().expect("the GPU draws");
@@ -216,7 +216,7 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
 
-    // So does a parameter of its shape, which gets meshes of its own.
+    // So does a parameter of its shape, which gets separate meshes.
     let world = renderer.app().world_mut();
     world.entity_mut(object).remove::<Cube>().insert(Torus { tube_radius: 0.05 });
     let thin = frame(&mut renderer);

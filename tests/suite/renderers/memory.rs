@@ -36,11 +36,11 @@ use crate::{
     renderers::reload::{Lab, phong_scene},
 };
 
-/// The resources of a renderer, which Bevy or this program might forget to free.
+/// The resources of a renderer that Bevy or this program might forget to free.
 #[derive(Debug, PartialEq)]
 struct Held {
     shaders: usize,
-    /// Those that hold more than next to nothing.
+    /// Number of those that are not negligibly small.
     large: usize,
     tables: usize,
     materials: usize,
@@ -70,8 +70,8 @@ fn held(renderer: &mut GpuRenderer) -> Held {
     Held { pipelines: render.resource::<PipelineCache>().pipelines().count(), ..held }
 }
 
-/// A model as bright as its last parameter. The number of parameters, and so the layout of the row, changes from edit
-/// to edit.
+/// A model as bright as its last parameter. The number of parameters, and so the layout of the row, changes
+/// from edit to edit.
 fn declared(edit: usize) -> String {
     let more: String = (0..edit % 4)
         .map(|i| format!("{{ \"name\": \"more_{i}\", \"min\": 0, \"max\": 1, \"default\": 1 }}, "))
@@ -113,7 +113,7 @@ fn an_edited_declaration_takes_the_place_of_the_one_before() {
     let before = held(&mut lab.renderer);
     for edit in 2..40 {
         lab.save("own/edited.wgsl", declared(edit));
-        // The shader and the table change in one frame, or the picture would be of other parameters.
+        // The shader and the table change in one frame, or the picture would mix parameters.
         let shown = middle(&lab.frame());
         let expected = if edit.is_multiple_of(2) { 137 } else { 225 };
         assert!(shown.abs_diff(expected) <= 1, "edit {edit}: {shown}");
@@ -174,7 +174,7 @@ fn shaders_that_nothing_is_drawn_with_rest_and_wake() {
     }
     let before = held(&mut renderer);
     assert!(before.large <= SPARE + 1, "{before:?}");
-    // The first ones are asleep by now. The frame in which they return is right.
+    // The first ones are at rest by now. The frame in which they return is right.
     for (pair, picture) in pairs.iter().zip(&pictures).take(6) {
         assert!(*picture == show(&mut renderer, *pair), "{pair:?}");
     }
@@ -197,7 +197,8 @@ impl Numbers {
 fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     let registry = Registry::builtin();
     let shapes: Vec<_> = registry.shapes().iter().map(|s| s.declaration.id.to_owned()).collect();
-    // Few models, and no light with extent, so that compiling them does not take long; the test above looks at many.
+    // Few models, and no light with extent, so that compiling them does not take long; the test above covers
+    // many.
     let without = registry.lights().iter().filter(|light| !light.declaration.extent);
     let lights: Vec<_> = without.map(|light| light.declaration.id.to_owned()).collect();
     let models = ["lambert", "phong"].map(str::to_owned);
@@ -239,7 +240,7 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     };
     let before = random(&mut window, &mut renderer, 150);
     let after = random(&mut window, &mut renderer, 300);
-    // Two meshes for each type and tessellation of the scene, and for some that were there before.
+    // Two meshes for each type and tessellation of the scene, and for some that existed before.
     let most = |objects: usize| 2 * (objects + 17) + 8;
     assert!(after.meshes <= most(window.document.objects.len()), "{before:?} {after:?}");
     assert!(after.tables <= models.len() + 2, "{after:?}");
@@ -329,7 +330,7 @@ fn sizes_that_no_picture_can_show_are_refused() {
     }
 }
 
-/// Shapes that no two objects share do not find room at once, and are drawn one batch after the other.
+/// Shapes that no two objects share do not fit into memory at once, and are drawn one batch after the other.
 #[test]
 fn a_scene_beyond_the_memory_for_meshes_is_drawn_and_so_is_a_later_one() {
     let scene = |count: u32, tessellation: u32| {

@@ -58,7 +58,7 @@ fn covered(picture: &Picture) -> impl Iterator<Item = &Vec4> {
 #[test]
 fn flat_shading_gives_one_colour_per_polygon() {
     let mut scene = scene("lambert", "flat");
-    // An octahedron from its side: four of its triangles are seen, two of them lit.
+    // An octahedron from its side: four of its triangles are visible, two of them lit.
     scene.objects[0].tessellation = Some(2);
     scene.objects[0].rotation = Vec3::new(0.0, 30.0, 0.0);
     let colours = |shading: &str| {
@@ -94,7 +94,7 @@ fn gouraud_shading_misses_a_highlight_between_vertices_and_phong_shading_finds_i
 
 #[test]
 fn interpolation_is_perspective_correct() {
-    // One face of a cube, two triangles, seen at a slant: positions are interpolated over its length.
+    // One face of a cube, two triangles, seen at a slant: positions are interpolated along it.
     let mut scene = scene("lambert", "derivative");
     let turn = 60f32.to_radians();
     scene.objects[0] = Object {
@@ -111,7 +111,7 @@ fn interpolation_is_perspective_correct() {
     let settings = Settings { width: 400, height: 401, ..SMALL };
     let picture = render(&scene, &settings);
 
-    // The former −x face: its normal, the direction along it, its middle.
+    // The former −x face: its normal, the direction along it, its centre.
     let normal = Vec3::new(-turn.cos(), 0.0, turn.sin());
     let along = Vec3::new(turn.sin(), 0.0, turn.cos());
     let middle = scene.objects[0].position + 2.0 * normal;
@@ -180,10 +180,10 @@ fn four_samples_are_the_mean_and_one_sample_is_the_centre() {
         }
     }
     assert!(partly > 50, "{partly}");
-    // Where one triangle covers the pixel, both are its colour; elsewhere they are close.
+    // If one triangle covers the pixel, both have its colour; elsewhere they are close.
     let same = one.pixels.iter().zip(&four.pixels).filter(|(a, b)| (**a - **b).abs().max_element() < 0.05);
     assert!(same.count() + 2 * partly > one.pixels.len());
-    // Twice as fine and averaged: the area that is covered agrees.
+    // Twice as fine and averaged: the covered area agrees.
     let fine = render(&scene, &Settings { width: 640, height: 480, ..SMALL });
     let area = |p: &Picture| p.pixels.iter().map(|p| p.w).sum::<f32>() / p.pixels.len() as f32;
     assert!((area(&four) - area(&fine)).abs() < 2e-4, "{} {}", area(&four), area(&fine));
@@ -191,7 +191,7 @@ fn four_samples_are_the_mean_and_one_sample_is_the_centre() {
 
 #[test]
 fn what_is_behind_the_eye_is_cut_away() {
-    // The eye above the middle of a large ring that lies flat: before, beside and behind it.
+    // The eye above the middle of a large ring that lies flat: in front of, beside and behind it.
     let mut scene = scene("lambert", "phong");
     scene.objects[0] =
         Object { object_type: "torus".to_owned(), size: 9.0, rotation: Vec3::X * 90.0, ..Object::default() };
@@ -199,11 +199,11 @@ fn what_is_behind_the_eye_is_cut_away() {
     let inside = render(&scene, &SMALL);
     let seen = covered(&inside).count();
     assert!(seen > 1000 && seen < inside.pixels.len(), "{seen}");
-    // A triangle wholly behind the eye gives no pixel at all.
+    // A triangle entirely behind the eye gives no pixel at all.
     scene.objects[0].size = 2.0;
     scene.objects[0].position = Vec3::new(5.0, 5.0, 9.0);
     assert_eq!(covered(&render(&scene, &SMALL)).count(), 0);
-    // A wall that reaches from before the eye to behind it fills the lower half up to the horizon.
+    // A wall that reaches from in front of the eye to behind it fills the lower half up to the horizon.
     let mut floor = wall("lambert", "phong", 5.0);
     floor.objects[0] = Object {
         object_type: "cube".to_owned(),
@@ -326,7 +326,7 @@ fn lumen_and_candela_are_the_same_light() {
         };
         let mut lumen = candela.clone();
         lumen.lights[0].luminous_flux = Some(20.0 * solid_angle);
-        // Missing values count for nothing.
+        // NaN counts as nothing.
         lumen.lights[0].intensity = 7.0;
         let differs = |a: &Picture, b: &Picture| {
             let pairs = a.pixels.iter().zip(&b.pixels).filter(|(a, _)| a.x > 0.0);
@@ -362,7 +362,7 @@ fn lights_have_the_colour_of_their_temperature() {
     assert!(r == 255 && g < 160 && b < 60, "a candle is orange: {r} {g} {b}");
 }
 
-/// Lumens are photometric: they say how bright a light is, whatever its colour.
+/// Lumens are photometric: they state the brightness of a light, whatever its colour.
 #[test]
 fn equal_lumens_give_equal_luminance_at_every_temperature() {
     for encoding in Encoding::ALL {
@@ -469,8 +469,8 @@ fn things_of_unknown_kinds_are_left_out() {
     assert_eq!(covered(&render(&scene, &SMALL)).count(), 0);
 }
 
-/// At the rim an interpolated normal faces away from the viewer. A model that is zero for a viewer below the surface
-/// must not answer with black where a matte surface is lit.
+/// At the rim an interpolated normal faces away from the viewer. A model that is zero for a viewer below the
+/// surface must not be black where a matte surface is lit.
 #[test]
 fn rims_are_as_little_black_as_lambert_leaves_them() {
     let registry = Registry::builtin();
@@ -487,7 +487,8 @@ fn rims_are_as_little_black_as_lambert_leaves_them() {
             for model in registry.models() {
                 let id = model.declaration.id;
                 let count = black(id);
-                // The few where the halves of a lobe end differently; without the mirroring there are hundreds.
+                // The few where the halves of a lobe end differently; without the mirroring there are
+                // hundreds.
                 assert!(
                     count <= lambert + lambert / 20,
                     "{shape} × {shading} × {id}: {count} black pixels, Lambert {lambert}"

@@ -1,4 +1,4 @@
-//! Shaders are swapped while they are on the picture, and whatever happens to their files, the picture stays.
+//! Shaders are swapped while they are in use, and whatever happens to their files, the picture stays.
 
 use std::{
     fs,
@@ -37,7 +37,7 @@ pub struct Lab {
     folder: TempDir,
 }
 
-/// A scene under the Phong model in some shading model.
+/// A scene with the Phong model and a shading model.
 pub fn phong_scene(shading: &str) -> Scene {
     let mut scene = close_up("sphere", "point");
     scene.reflection_model = "phong".to_owned();
@@ -57,7 +57,7 @@ impl Lab {
         Self::with_files(scene, &[])
     }
 
-    /// Starts when these files have these texts already.
+    /// Starts with these files already having these texts.
     pub fn with_files(scene: Scene, files: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         for source in built_in_sources(&Registry::builtin()) {
@@ -90,7 +90,7 @@ impl Lab {
         self.renderer.app().world_mut().resource_mut::<LiveShaders>()
     }
 
-    /// A file changed on disk.
+    /// Reports a file as changed on disk.
     pub fn look_at(&mut self, path: &str) {
         let file = self.file(path);
         self.look_at_file(&file);
@@ -141,13 +141,13 @@ fn covered(picture: &[u8]) -> usize {
     picture.chunks_exact(3).filter(|p| *p != BACKGROUND).count()
 }
 
-/// One way to break a file: its name, the file, the change, and the message.
+/// A way to break a file: its name, the file, the change, and the message.
 pub struct Breakage {
     pub name: &'static str,
     pub file: &'static str,
     pub change: fn(&str) -> Vec<u8>,
     pub said: &'static str,
-    /// The line in the message, by a part of it; empty for the first.
+    /// Part of the line in the message; empty for the first line.
     pub line: &'static str,
 }
 
@@ -386,7 +386,7 @@ fn whatever_breaks_a_file_the_last_good_picture_stays_and_the_place_is_told() {
             assert_eq!(problem.source.trim_end(), at.trim_end(), "{name}");
             assert_eq!(trouble.path, Some(lab.file(file)), "{name}");
         }
-        // The next good save brings it up to date, and nothing is left of the trouble.
+        // The next valid save brings it up to date, and no problem remains.
         lab.save(file, text);
         assert!(lab.settled() == before, "{name}: the old text gives another picture");
         assert_eq!(lab.troubles(), [], "{name}");
@@ -399,7 +399,7 @@ fn whatever_breaks_a_file_the_last_good_picture_stays_and_the_place_is_told() {
     }
 }
 
-/// The twin of the test above: a valid change does show.
+/// The twin of the test above: a valid change has an effect.
 #[test]
 fn a_good_save_is_on_the_next_picture() {
     for (file, from, to) in [
@@ -501,7 +501,7 @@ fn a_model_that_is_not_on_the_picture_is_tried_all_the_same() {
     assert_eq!(troubles.len(), 1, "{troubles:?}");
     assert_eq!(troubles[0].problem.file, "reflection/hapke.wgsl");
     assert_eq!(troubles[0].stale, Vec::<String>::new(), "nothing on the picture is old");
-    // Shown now, it is the built-in text, with a message.
+    // If shown now, it is the built-in text, with a message.
     let mut scene = phong_scene("phong");
     scene.reflection_model = "hapke".to_owned();
     lab.renderer.set_scene(scene.clone());
@@ -533,7 +533,7 @@ fn a_file_that_is_broken_at_the_start_is_replaced_by_the_built_in_copy() {
         assert!(lab.settled() == expected, "{file}");
         assert_eq!(lab.troubles(), [], "{file}");
     }
-    // The twin: a good file of another text is on the picture from the start.
+    // The twin: a valid file with another text is used from the start.
     let text = original("reflection/phong.wgsl").replace("m.k_d", "0.3 * m.k_d");
     let mut lab = Lab::with_files(scene, &[("reflection/phong.wgsl", &text)]);
     assert!(lab.settled() != expected);
@@ -546,7 +546,7 @@ fn a_picture_without_the_broken_model_is_not_called_stale() {
     lab.save("reflection/phong.wgsl", original("reflection/phong.wgsl").replacen("return ", "return (", 1));
     lab.settled();
     assert_eq!(lab.status().stale(), ["Phong"]);
-    // Another scene, as File › New has it; the error of the file is still reported.
+    // Another scene, as with File › New; the error of the file is still reported.
     for (model, stale) in [("lambert", false), ("phong", true), ("lambert", false)] {
         lab.renderer.set_scene(Scene { reflection_model: model.to_owned(), ..phong_scene("phong") });
         lab.settled();
@@ -563,7 +563,7 @@ fn switching_modes_and_models_while_a_file_is_broken_shows_their_last_good_versi
     let phong = lab.settled();
     lab.save("reflection/phong.wgsl", "fn broken(");
     assert!(lab.settled() == phong);
-    // Not composed before: the last good text is used.
+    // Not composed before: the last valid text is used.
     lab.renderer.set_scene(phong_scene("flat"));
     let flat = lab.settled();
     let expected = Lab::with_files(phong_scene("flat"), &[("reflection/phong.wgsl", &bluish)]).settled();
@@ -587,7 +587,7 @@ fn unchanged_text_recompiles_nothing_and_a_change_recompiles_only_what_depends_o
     assert!(lab.live().is_busy(), "the twin: another text is due");
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
-    // A shading model that is not shown is not part of the visible shader.
+    // A shading model that is not in use is not part of the visible shader.
     lab.save("shading/flat.wgsl", format!("{}\n", original("shading/flat.wgsl")));
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
@@ -693,7 +693,7 @@ fn mutated(text: &str, random: &mut random::Random) -> String {
                 tokens.insert(at, token);
             }
             _ => {
-                // A character that our keyboards lack, or a digit for another.
+                // A character missing from our keyboards, or another digit.
                 let digit = char::from(b'0' + random.below(10) as u8);
                 let put = if random.below(2) == 0 {
                     digit
@@ -778,7 +778,7 @@ fn random_edits_never_lose_the_picture_or_the_program() {
     assert!(refused > rounds / 3 && accepted > 0, "{refused} refused, {accepted} accepted");
 }
 
-/// A custom model; `tint` is its colour, and `knobs` its declarations beside the base colour.
+/// A custom model; `tint` is its colour, and `knobs` its declarations besides the base colour.
 fn custom_model(tint: &str, knobs: &str) -> String {
     format!(
         "/* lcm
@@ -799,7 +799,7 @@ const HELP: &str = "fn helped(c: vec3<f32>) -> vec3<f32> {\n    return c;\n}\n";
 const GREEN: &str = "vec3(0.0, 1.0, 0.0)";
 const RED: &str = "vec3(1.0, 0.0, 0.0)";
 
-/// A laboratory whose scene uses a custom model.
+/// A lab whose scene uses a custom model.
 fn own_lab() -> Lab {
     let mut lab = Lab::new(phong_scene("phong"));
     lab.save("own/help.wgsl", HELP);
@@ -812,7 +812,7 @@ fn own_lab() -> Lab {
     lab
 }
 
-/// True if the brightest pixel is pure in one channel.
+/// True if the brightest pixel has only one channel.
 fn is_all(picture: &[u8], channel: usize) -> bool {
     let lit = picture.chunks_exact(3).filter(|p| *p != BACKGROUND);
     lit.max_by_key(|p| p[channel])
@@ -824,11 +824,11 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
     let mut lab = own_lab();
     let green = lab.settled();
     assert!(is_all(&green, 1));
-    // The text alone is on the next picture.
+    // The text alone takes effect in the next picture.
     lab.save("own/tinted.wgsl", custom_model(RED, ""));
     let red = lab.frame();
     assert!(is_all(&red, 0));
-    // So is another layout of the parameters, before and after the existing ones.
+    // So does another layout of the parameters, before and after the existing ones.
     let knob = r#", { "name": "tint2", "type": "colour", "default": [0, 255, 0] }"#;
     lab.save("own/tinted.wgsl", custom_model("m.tint2", knob));
     assert!(lab.frame() == green);
@@ -836,7 +836,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
         "[\"base_colour\"",
         r#"["k_d", { "name": "tint3", "type": "colour", "default": [255, 0, 0] }, "base_colour""#,
     );
-    // A shader refused by the driver leaves text, parameters and picture.
+    // A shader refused by the driver leaves text, parameters and picture unchanged.
     let binding = "@group(2) @binding(7) var<uniform> more: vec4<f32>;\n";
     let refused = before
         .replace("fn response", &format!("{binding}fn response"))
@@ -853,7 +853,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
         (troubles[0].problem.file.as_str(), &troubles[0].stale[..]),
         ("models/tinted.wgsl", &["Tinted".to_owned()][..])
     );
-    // The good version, under another name too.
+    // The valid version, under another name too.
     lab.save("own/tinted.wgsl", before.replace("Tinted", "Tainted"));
     assert!(lab.frame() == red);
     lab.settled();
@@ -864,7 +864,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
 fn a_custom_model_follows_the_files_that_it_shares() {
     let mut lab = own_lab();
     let green = lab.settled();
-    // A broken helper leaves the picture; the model that changes meanwhile shows as soon as it is fixed.
+    // A broken helper leaves the picture; the model that changes meanwhile appears as soon as it is fixed.
     lab.save("own/help.wgsl", "fn helped(");
     assert!(lab.settled() == green);
     assert!(!lab.troubles().is_empty());
@@ -874,7 +874,7 @@ fn a_custom_model_follows_the_files_that_it_shares() {
     let red = lab.settled();
     assert!(is_all(&red, 0), "the newest text of the model is shown");
     assert_eq!(lab.troubles(), []);
-    // The same where the broken file is one that all models share.
+    // The same if the broken file is one that all models share.
     lab.save("terms.wgsl", format!("{}fn bad(", original("terms.wgsl")));
     assert!(lab.settled() == red);
     lab.save("own/tinted.wgsl", custom_model(GREEN, ""));
@@ -883,7 +883,7 @@ fn a_custom_model_follows_the_files_that_it_shares() {
     lab.save("terms.wgsl", original("terms.wgsl"));
     assert!(lab.settled() == green);
     assert_eq!(lab.troubles(), []);
-    // A helper that arrives later than the model that asks for it.
+    // A helper that arrives later than the model that imports it.
     lab.save("own/tinted.wgsl", custom_model(RED, "").replace("help.wgsl", "late.wgsl"));
     assert!(lab.settled() == green);
     assert!(lab.troubles()[0].problem.message.contains("there is no file `models/late.wgsl`"));
@@ -907,7 +907,7 @@ fn files_that_are_gone_and_were_nothing_are_not_missed() {
     }
     let registry = lab.renderer.app().world().resource::<Registry>().clone();
     assert!(registry.model("unused").is_none(), "a model whose file is gone cannot be chosen");
-    // The twin: one that is on the picture is missed, and stays.
+    // The twin: one in use is missed, and stays.
     fs::remove_file(lab.file("own/tinted.wgsl")).expect("removed");
     lab.look_at("own/tinted.wgsl");
     assert!(lab.settled() == green);

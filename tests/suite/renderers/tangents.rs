@@ -1,4 +1,4 @@
-//! Both renderers pass tangents to an anisotropic model alike, with every shading model on every shape.
+//! Both renderers pass equal tangents to an anisotropic model, with every shading model on every shape.
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
@@ -110,7 +110,7 @@ fn both_renderers_give_every_mode_and_shape_the_same_tangents() {
                 let gpu = on_gpu(&mut renderer, &scene);
                 let case = format!("{} × {} × {light}", shape.declaration.id, shading.declaration.id);
                 let d = compare(&gpu, &cpu(&scene, "brushed"), background, 1e-3);
-                // The tangent turns round within the pixel over a pole: the last bit decides the direction.
+                // The tangent turns around within the pixel over a pole: the last bit decides the direction.
                 assert!(d.covered > 500 && d.wrong <= 1 && d.edges * 50 <= d.covered, "{case}: {d:?}");
                 let wrong = compare(&gpu, &cpu(&scene, "crosswise"), background, 1e-3);
                 assert!(wrong.wrong * 2 > d.covered, "{case}, bitangent for tangent: {wrong:?}");
@@ -119,7 +119,7 @@ fn both_renderers_give_every_mode_and_shape_the_same_tangents() {
     }
 }
 
-/// The mean difference of two pictures where the first shows an object, largest channel.
+/// The mean difference of two pictures where the first shows an object, in the largest channel.
 fn change(a: &Picture, b: &Picture) -> f32 {
     let covered = a.pixels.iter().zip(&b.pixels).filter(|(a, _)| a.w > 0.0);
     let (sum, count) = covered.fold((Vec4::ZERO, 0.0), |(sum, n), (a, b)| (sum + (*a - *b).abs(), n + 1.0));

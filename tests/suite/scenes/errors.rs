@@ -1,4 +1,4 @@
-//! Every kind of error in a scene has its own message: the error, its place, and the remedy.
+//! Every kind of error in a scene has its own message: the error, its position, and the remedy.
 
 use std::{fs, time::Instant};
 
@@ -362,7 +362,7 @@ fn every_constraint_has_its_message() {
     }
 }
 
-/// Puts a value where a JSON pointer says, adding the key if it is new.
+/// Sets the value at a JSON pointer, adding the key if it is new.
 fn put(scene: &mut Value, pointer: &str, value: Value) {
     if let Some(there) = scene.pointer_mut(pointer) {
         *there = value;
@@ -695,7 +695,7 @@ fn a_file_without_permission_says_so() {
     let file = folder.path().join("secret.json");
     fs::write(&file, "{}").expect("written");
     fs::set_permissions(&file, fs::Permissions::from_mode(0o000)).expect("set");
-    // The superuser may read everything; there is nothing to test then.
+    // The superuser may read everything; then there is nothing to test.
     if fs::read(&file).is_ok() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Scene formats from outside the crate: known everywhere, checked like ours, and never the reason for a loss. And
+//! Scene formats from other crates: known everywhere, checked like ours, and never a cause of data loss. And
 //! scenes for serde.
 
 use std::{fs, path::Path};
@@ -32,7 +32,7 @@ use crate::{
 #[allow(dead_code)]
 pub mod example;
 
-/// JSON under another extension; its writer may forget something.
+/// JSON with another extension; its writer may forget something.
 struct Other {
     name: &'static str,
     extensions: &'static [&'static str],
@@ -101,13 +101,13 @@ fn a_format_from_outside_is_read_and_checked_like_ours() {
         let said = said(text, "A.spheres".to_lowercase().as_str(), &registry);
         assert!(said.contains(expected), "{said}");
     }
-    // Both of the last are listed, in the order of the file.
+    // Both errors of the last are listed, in the order of the file.
     let both = said("2 3 4 1\n5 5 15 1\n5 5 0 1\n", "a.spheres", &registry);
     assert!(
         both.lines().count() == 2 && both.lines().nth(1).is_some_and(|l| l.starts_with("a.spheres:3:1")),
         "{both}"
     );
-    // In capitals, too.
+    // Also in capitals.
     assert_eq!(said("2 3 4 1\n", "A.SPHERES", &registry), "");
 }
 
@@ -135,7 +135,7 @@ fn an_unknown_extension_is_told_with_those_that_are_known() {
         "{}",
         run.err
     );
-    // Without any extension, a file is JSON, as ever.
+    // Without an extension, a file is JSON, as always.
     let run = lcm_in(folder.path(), &["new", "room"], b"");
     assert_eq!(run.status, Some(0), "{}", run.err);
     assert_eq!(lcm_in(folder.path(), &["check", "room"], b"").status, Some(0));
@@ -211,7 +211,7 @@ fn what_a_writer_forgets_is_named_and_the_file_stays() {
     assert_eq!(load::file(&path, &registry, Defaults::Refuse).expect("valid").scene, scene);
 }
 
-/// A document that was opened from a file, and its window's files.
+/// A document opened from a file, and the files of its window.
 pub struct Desk {
     pub session: Session,
     files: DiskFiles,
@@ -268,7 +268,7 @@ fn a_scene_whose_format_can_only_be_read_is_saved_as_json_and_quitting_waits_for
     );
     assert!(desk.session.is_dirty() && !desk.left.contains(&Effect::Quit));
     assert_eq!(fs::read_to_string(&path).expect("there"), text);
-    // The dialog is answered; what waited goes on.
+    // The dialog is answered; the pending action continues.
     desk.act(Action::SaveAs(folder.path().join("balls.json")));
     assert!(!desk.session.is_dirty() && desk.left.contains(&Effect::Quit));
     let saved =
@@ -297,7 +297,7 @@ fn a_name_that_is_typed_decides_on_the_format() {
         ("a", "a.json"),
         ("b.csv", "b.csv"),
         ("c.CSV", "c.CSV"),
-        // The dialog adds the extension that is chosen in it.
+        // The dialog adds the extension chosen in it.
         ("d.csv.json", "d.csv"),
         ("e.json.csv", "e.json"),
         // This one cannot be written.
@@ -325,7 +325,7 @@ fn an_edited_table_is_saved_as_a_table_and_followed() {
     fs::write(&path, text.replace("Mine", "Theirs")).expect("written");
     desk.carry_out(vec![Effect::LookAtFile { discard: false }]);
     assert_eq!(desk.session.title(), "Theirs");
-    // And breaks it: the last good version stays, and the mistake has its place.
+    // And breaks it: the last valid version stays, and the error has a position.
     fs::write(&path, text.replace(",sphere,Red,", ",sphre,Red,")).expect("written");
     (0..2).for_each(|_| desk.carry_out(vec![Effect::LookAtFile { discard: false }]));
     assert_eq!(desk.session.title(), "Theirs");
@@ -341,7 +341,7 @@ proptest! {
         let value = serde_json::to_value(&scene).unwrap();
         prop_assert_eq!(&serde_json::from_str::<Scene>(&text).unwrap(), &scene);
         prop_assert_eq!(&serde_json::from_value::<Scene>(value).unwrap(), &scene);
-        // The shape is that of scene files.
+        // The structure is that of scene files.
         prop_assert_eq!(&load::from_text(&text, "a.json", &Registry::builtin(), Defaults::Refuse).unwrap().scene, &scene);
         for light in &scene.lights {
             prop_assert_eq!(&serde_json::from_value::<Light>(serde_json::to_value(light).unwrap()).unwrap(), light);
@@ -380,7 +380,7 @@ fn serde_refuses_what_a_file_may_not_hold() {
         .unwrap_err()
         .to_string();
     assert!(part.contains("intensity is \"bright\", but it must be a number"), "{part}");
-    // One parameter: its declaration says what a number or a list means.
+    // One parameter: its declaration determines the meaning of a number or a list.
     let value = |p: &'static lights_camera_models::parameter::Parameter, json: &str| {
         p.deserialize(&mut serde_json::Deserializer::from_str(json)).map_err(|e| e.to_string())
     };

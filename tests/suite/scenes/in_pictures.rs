@@ -1,4 +1,4 @@
-//! Pictures that hold their scene, and that say what they show.
+//! Pictures that contain their scene and metadata.
 
 use std::{fs, io::Write as _, path::Path};
 
@@ -50,7 +50,7 @@ fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     [&(content.len() as u32).to_be_bytes()[..], &checked, &crc.sum().to_be_bytes()].concat()
 }
 
-/// A picture with a text, which is no scene if the keyword is not ours.
+/// A picture with a text, which is not a scene if the keyword is not ours.
 fn with_text(keyword: &str, text: &[u8]) -> Vec<u8> {
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
     packed.write_all(text).expect("in memory");
@@ -67,7 +67,7 @@ fn a_picture_opens_as_the_scene_that_it_shows() {
     fs::write(at("full.json"), full_scene().to_string()).expect("written");
     let changes = ["--reflection", "blinn_phong", "--exposure", "1", "--tone-mapping", "agx"];
     render(folder.path(), &[&["full.json", "-o", "a.png"], &changes[..]].concat());
-    // The scene is the one that is shown, with the changes of the command line.
+    // The scene is the displayed one, with the changes from the command line.
     let shown = load::file(&at("a.png"), &Registry::builtin(), Defaults::Refuse).expect("has a scene").scene;
     assert_eq!((shown.reflection_model.as_str(), shown.display.exposure), ("blinn_phong", 1.0));
     let mut expected =
@@ -75,7 +75,7 @@ fn a_picture_opens_as_the_scene_that_it_shows() {
     expected.reflection_model.clone_from(&shown.reflection_model);
     expected.display = shown.display;
     expected.objects[0].reflection_model = None;
-    // What the command line says holds for every view.
+    // Command-line options apply to every view.
     for variant in &mut expected.variants {
         (variant.reflection_model, variant.exposure, variant.tone_mapping) = (None, None, None);
     }
@@ -91,7 +91,7 @@ fn a_picture_opens_as_the_scene_that_it_shows() {
     assert!(run.out.contains("standard input: valid"), "{}", run.out);
     fs::copy(at("a.png"), at("picture")).expect("copied");
     assert_eq!(lcm_in(folder.path(), &["check", "picture"], b"").status, Some(0));
-    // A picture is never drawn over the one that is read.
+    // A picture is never drawn over the one being read.
     let run = lcm_in(folder.path(), &["render", "a.png", "-o", "a.png", "--size", "8x8"], b"");
     assert!(run.status == Some(4) && run.err.contains("a.png is read by this command"), "{}", run.err);
     // The wrong twin.
@@ -131,7 +131,7 @@ fn each_mistake_of_a_picture_is_told_and_ends_with_status_1() {
             with_text(SCENE_KEYWORD, b"\xff\xfe"),
             "x.png: the scene in the picture is damaged: it is not UTF-8 text",
         ),
-        // Without a place: nobody sees the text.
+        // Without a position: nobody sees the text.
         (with_text(SCENE_KEYWORD, broken.as_bytes()), "x.png: scene_size.height is 1000, but "),
         (
             with_text(SCENE_KEYWORD, &vec![b' '; (64 << 20) + 1]),
@@ -153,7 +153,7 @@ fn each_mistake_of_a_picture_is_told_and_ends_with_status_1() {
     fs::write(folder.path().join("x.png"), &good).expect("written");
     assert_eq!(lcm_in(folder.path(), &["check", "x.png"], b"").status, Some(0));
     assert!(!folder.path().join("renders").exists(), "nothing was drawn");
-    // Under another name, the message says what to do.
+    // Under another name, the message explains what to do.
     fs::write(folder.path().join("x.json"), &good).expect("written");
     let run = lcm_in(folder.path(), &["check", "x.json"], b"");
     assert!(run.err.contains("a scene in it is read if the name of the file ends in .png"), "{}", run.err);
@@ -204,7 +204,7 @@ fn a_scene_from_a_picture_is_saved_as_json() {
         "{said}"
     );
     assert!(said.contains("gold.json"), "{said}");
-    // A name of a picture that is typed is none of a scene.
+    // A typed picture name is not a scene name.
     desk.act(Action::SaveAs(folder.path().join("silver.png")));
     assert!(folder.path().join("silver.png.json").is_file() && !desk.session.is_dirty());
     assert_eq!(fs::read(&path).expect("there"), picture);
@@ -277,7 +277,7 @@ fn every_view_of_every_shipped_scene_has_a_caption_without_defaults_and_repetiti
                 assert_eq!(of_view.iter().filter(says).count(), 1, "{path}, {view}: {name}: {line}");
             }
         }
-        // A value that is the default is not said.
+        // A value equal to the default is omitted.
         let mut usual = Scene { variants: Vec::new(), ..scene };
         for object in &mut usual.objects {
             object.material.set("k_d", Value::Number(0.8));
@@ -305,7 +305,7 @@ fn a_file_that_is_dropped_on_the_window_opens() {
     };
     let title = |app: &App| app.world().resource::<Session>().title().to_owned();
     let before = title(&app);
-    // What is no scene is told, and changes nothing.
+    // A picture without a scene is reported, and changes nothing.
     drop(&mut app, &["notes.txt"]);
     assert_eq!(title(&app), before);
     let said = |app: &App, what: &str| {
@@ -314,7 +314,7 @@ fn a_file_that_is_dropped_on_the_window_opens() {
     assert!(said(&app, ".txt is not the extension of a scene"));
     drop(&mut app, &["notes.txt", "gold.png"]);
     assert_eq!(title(&app), "Gold");
-    // Unsaved work is asked about first.
+    // A question about unsaved work comes first.
     app.world_mut().resource_mut::<Session>().document.amend(|scene| scene.name = Some("Mine".to_owned()));
     drop(&mut app, &["gold.png"]);
     assert_eq!(title(&app), "Mine");

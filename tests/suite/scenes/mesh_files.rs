@@ -1,4 +1,4 @@
-//! Objects from files: models that scenes name, from disk to both renderers.
+//! Objects from files: models named in scenes, from disk to both renderers.
 
 use std::{
     fs,
@@ -34,7 +34,7 @@ use crate::{
     window::panels::Bench,
 };
 
-/// A roof: two slopes over a square of 2 m, and a ridge of a height.
+/// A roof: two slopes over a square of 2 m, and a ridge of this height.
 fn roof(height: f32) -> String {
     format!(
         "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 {height} 0\nv 1 {height} 0\n\
@@ -42,7 +42,7 @@ fn roof(height: f32) -> String {
     )
 }
 
-/// The same as a PLY file.
+/// The roof as a PLY file.
 fn roof_ply(height: f32) -> String {
     format!(
         "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
@@ -52,7 +52,7 @@ fn roof_ply(height: f32) -> String {
     )
 }
 
-/// The same as a glTF binary file, of which all polygons are triangles, each with three vertices of its own.
+/// The roof as a glTF binary file, in which all polygons are triangles with three separate vertices.
 fn roof_glb(height: f32) -> Vec<u8> {
     let v = [
         [-1.0, 0.0, -1.0],
@@ -94,7 +94,7 @@ fn roof_glb(height: f32) -> Vec<u8> {
     .concat()
 }
 
-/// A scene with an object from a file, in the text of a scene file.
+/// A scene with an object from a file, as the text of a scene file.
 fn scene(file: &str, more: &str) -> String {
     let mut scene = close_up("mesh", "point");
     scene.shading_model = "phong".to_owned();
@@ -103,7 +103,7 @@ fn scene(file: &str, more: &str) -> String {
     text.replace("\"type\": \"mesh\",", &format!("\"type\": \"mesh\", \"path\": {path},{more}"))
 }
 
-/// Writes a scene beside a model, and reads it.
+/// Writes a scene next to a model, and reads it.
 fn read(folder: &Path, file: &str) -> Result<Scene, String> {
     let path = folder.join("room.json");
     fs::write(&path, scene(file, "")).expect("written");
@@ -138,7 +138,7 @@ fn every_format_gives_the_mesh_of_the_same_coordinates() {
     fs::write(at("roof.obj"), roof(1.0)).expect("written");
     fs::write(at("roof.ply"), roof_ply(1.0)).expect("written");
     fs::write(at("roof.glb"), roof_glb(1.0)).expect("written");
-    // Letters and other extensions do not matter: the content tells.
+    // Case and other extensions do not matter: the content decides.
     fs::write(at("roof.stl"), roof_glb(1.0)).expect("written");
     let s = 0.5f32;
     let expected =
@@ -151,14 +151,14 @@ fn every_format_gives_the_mesh_of_the_same_coordinates() {
             |p: &[f32; 3]| mesh.positions.iter().position(|q| (*q - Vec3::from_array(*p)).length() < 1e-6);
         let places: Vec<_> =
             expected.iter().map(|p| vertex(p).unwrap_or_else(|| panic!("{name}: {p:?}"))).collect();
-        // The end of the ridge has the mean of both slopes and of a gable, each polygon counted once (CA DD9): two of the
-        // triangles of the slope behind meet there.
+        // The end of the ridge has the mean of both slopes and of a gable, each polygon counted once (CA
+        // DD9): two triangles of the rear slope meet there.
         let back = Vec3::new(0.0, 1.0, -1.0).normalize();
         let behind = if polygons == 5 { 1.0 } else { 2.0 };
         let mean = (slope + behind * back + Vec3::NEG_X).normalize();
         let got = mesh.vertex_normals()[places[4]];
         assert!((got - mean).length() < 1e-5, "{name}: {got} {mean}");
-        // The wrong twin: vertices of their own have the normals of their polygons.
+        // The wrong twin: separate vertices have the normals of their polygons.
         assert!((got - slope).length() > 0.1);
         assert!(lights_camera_models::registry::check::mesh::check(&mesh).is_ok(), "{name}");
     }
@@ -185,7 +185,7 @@ fn both_renderers_show_the_file_with_every_shading_model_and_follow_it() {
         scene.shading_model = shading.to_owned();
         for normals in ["computed", "file"] {
             scene.objects[0].shape.set("normals", Value::Choice(normals.into()));
-            // The shipped model has normals of its own; that of the roof has none.
+            // The shipped model has explicit normals; that of the roof has none.
             for model in ["roof.obj", "knot.glb"] {
                 let file = NamedFile::named(model, folder.path(), parameter().1);
                 scene.objects[0].shape.set("path", Value::File(file));
@@ -202,14 +202,14 @@ fn both_renderers_show_the_file_with_every_shading_model_and_follow_it() {
         assert_eq!(computed != own, matters, "{shading}: normals of vertices");
         assert_eq!(of((shading, "computed", "roof.obj")), of((shading, "file", "roof.obj")), "{shading}");
     }
-    // The file changes: who reads it again sees that, and so do all that name it.
+    // The file changes: reading it again detects the change, and so do all that name it.
     scene = read(folder.path(), "roof.obj").expect("legal");
     let before = gpu(&scene);
     fs::write(&path, roof(0.5)).expect("written");
     assert!(file_of(&scene).read_again());
     assert!(!alike(&before, &scene), "the new file goes unnoticed");
     assert!(alike(&gpu(&scene), &scene));
-    // Broken, it is shown as it was.
+    // When broken, it is shown as before.
     fs::write(&path, "v 0 0\n").expect("written");
     assert!(file_of(&scene).read_again() && file_of(&scene).problem().is_some());
     assert!(alike(&gpu(&scene), &scene));
@@ -345,7 +345,7 @@ fn a_scene_reads_nothing_outside_its_folder_unless_that_is_allowed() {
         assert_eq!(run.status, Some(status), "{name}: {}", run.err);
         assert!(status == 0 || run.err.contains("room.csv:5:") && run.err.contains(said), "{}", run.err);
     }
-    // A link that is bent while it is followed leads nowhere.
+    // A link that changes while it is followed leads nowhere.
     let scene = read(&folder, "here.obj").expect("legal");
     fs::remove_file(folder.join("here.obj")).expect("there");
     symlink("../secret.obj", folder.join("here.obj")).expect("made");
@@ -431,7 +431,7 @@ fn many_objects_read_their_file_once() {
         text += &format!("f {a} {} {} {}\n", a + 1, a + n + 1, a + n);
     }
     fs::write(folder.path().join("hills.obj"), text).expect("written");
-    // A file that just changed might change again without another time of change.
+    // A file that has just changed might change again without another modification time.
     thread::sleep(Duration::from_millis(200));
     let mut scene = read(folder.path(), "hills.obj").expect("legal");
     let once = Instant::now();
@@ -540,7 +540,7 @@ fn an_open_window_follows_the_file_and_keeps_the_last_good_one() {
     let screen = Screen::new(1280, 720);
     let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
     let red = |picture: &Picture| picture.count(220..920, 80..560, |p| p[0] > 40 && p[1] < 30 && p[2] < 30);
-    // The first picture with red in it may be half drawn; `high` is that of a window at rest.
+    // The first picture with red in it may be half drawn; `high` is that of a settled window.
     window.until("a high roof", |p| red(p) > 5000);
     let high = red(&window.rest());
     fs::write(&model, roof(0.2)).expect("written");
@@ -571,18 +571,18 @@ fn what_is_dropped_is_added_to_the_scene_or_opened() {
     let drop = |session: &mut Session, names: &[&str]| {
         session.apply(Action::Drop(names.iter().map(|name| at(name)).collect()), &registry)
     };
-    // Objects are added, each as one step, and called like their files.
+    // Objects are added, each as one step, and named after their files.
     assert_eq!(drop(&mut session, &["roof.obj", "roof.obj"]), []);
     let names: Vec<_> = session.document.objects.iter().map(|object| object.name.as_deref()).collect();
     assert_eq!(names, [None, Some("roof"), Some("roof 2")]);
     assert_eq!(session.document.objects[1].object_type, "mesh");
     assert!(session.document.objects[1].shape.0.values().any(|v| v.to_string().contains("roof.obj")));
     assert_eq!((session.document.done(), session.selection), (2, Selection::Object(2)));
-    // One that is broken is none.
+    // A broken one is not added.
     drop(&mut session, &["broken.obj"]);
     assert_eq!(session.document.done(), 2);
     assert!(session.messages.last().is_some_and(|m| m.text.contains("broken.obj")));
-    // A lamp is added; one that is selected gets the file.
+    // A lamp is added; a selected one gets the file.
     drop(&mut session, &["lamp.IES"]);
     assert_eq!(session.document.lights.len(), 2);
     assert_eq!((session.document.lights[1].light_type.as_str(), session.document.done()), ("photometric", 3));
@@ -593,12 +593,12 @@ fn what_is_dropped_is_added_to_the_scene_or_opened() {
     assert_eq!(drop(&mut session, &["light.md"]), [Effect::OpenLesson(at("light.md"))]);
     let mut fresh = Session::default();
     assert_eq!(drop(&mut fresh, &["roof.obj", "room.json"]), [Effect::OpenFile(at("room.json"))]);
-    // A model from elsewhere is copied only if the user says so.
+    // A model from elsewhere is copied only with the user's consent.
     assert_eq!(drop(&mut fresh, &["velvet.wgsl"]), []);
     let (label, action) = fresh.messages.last().and_then(|m| m.offer.clone()).expect("an offer");
     assert_eq!(label, "Copy it there");
     assert_eq!(fresh.apply(*action, &registry), [Effect::AdoptModel(at("velvet.wgsl"))]);
-    // Then it is written beside the others, and one that is there is left alone.
+    // Then it is written next to the others, and an existing one is left alone.
     let models = tempfile::tempdir().expect("a folder");
     let mut registry = Registry::builtin();
     lights_camera_models::custom::folder::declare_folder(models.path(), &mut registry);

@@ -34,7 +34,7 @@ fn parts_beyond_the_default_room_ask_for_the_size() {
     for defaults in [Defaults::Ask, Defaults::Use, Defaults::Refuse] {
         assert_eq!(said(&text, defaults), expected, "{defaults:?}");
     }
-    // The proposal in the message is right.
+    // The suggestion in the message is right.
     let mended = text.replacen('{', "{ \"scene_size\": { \"height\": 10, \"width\": 14, \"depth\": 23 },", 1);
     assert_eq!(said(&mended, Defaults::Refuse), "");
 }

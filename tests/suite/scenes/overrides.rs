@@ -1,4 +1,4 @@
-//! Views of one scene that show it differently, and what a change of the scene costs.
+//! Views of one scene with overrides, and the cost of a change of the scene.
 
 use bevy::{
     app::{App, Last},
@@ -70,7 +70,7 @@ fn alone(scene: &Scene, terms: TermSelection) -> Vec<u8> {
     renderer.read().expect("the picture can be read")
 }
 
-/// A second view beside that of the renderer.
+/// A second view next to that of the renderer.
 fn second_view(renderer: &mut GpuRenderer, overrides: Overrides) -> Entity {
     renderer.draw_on_demand();
     let target = RenderTarget::None { size: UVec2::ONE };
@@ -127,7 +127,7 @@ fn around_an_inset_the_picture_goes_on() {
             None => beside += u32::from(x < at.x && pixel(x, y) != pixel(0, 0)),
         }
     }
-    // Edges may fall on the other side of a pixel's centre.
+    // Edges may cross the centre of a pixel.
     assert!(differ < 40, "{differ} of {} pixels differ", SIZE * SIZE);
     assert!(beside > 200, "an object beside the inset is seen: {beside}");
 }
@@ -208,7 +208,7 @@ fn a_change_of_the_overrides_draws_that_view_and_a_change_of_the_scene_draws_all
     });
     assert!(plain == 0 && overridden > 0, "parameters: {plain}, {overridden}");
 
-    // The stand-ins follow what they stand for.
+    // The copies follow the originals.
     let mut moved = scene.clone();
     moved.objects[0].position.x += 0.4;
     moved.objects.remove(1);
@@ -238,7 +238,7 @@ fn a_view_that_goes_leaves_nothing_behind() {
         (0..3).for_each(|_| renderer.step());
         let world = renderer.app().world_mut();
         let drawables = world.query::<&Mesh3d>().iter(world).count();
-        // Materials hold theirs, so a material that stays shows here too.
+        // Materials hold their buffers, so a leaked material is detected here too.
         (drawables, world.resource::<Assets<ShaderBuffer>>().len())
     };
     let before = held(&mut renderer);
@@ -253,7 +253,7 @@ fn a_view_that_goes_leaves_nothing_behind() {
     }
 }
 
-/// The changes made by one frame.
+/// The changes made in one frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Resource)]
 struct Cost {
     objects: usize,
@@ -264,7 +264,7 @@ struct Cost {
     tags: usize,
     meshes: usize,
     gone: usize,
-    /// Bytes in buffers that the renderer was handed.
+    /// Number of bytes in buffers passed to the renderer.
     uploaded: usize,
 }
 
@@ -333,7 +333,7 @@ fn an_object_that_goes_or_comes_touches_no_other_of_ten_thousand() {
     let first = scene.objects.remove(0);
     assert_eq!(cost(&scene), Cost { gone: 1, ..Cost::default() });
 
-    // The row of the one that went is free for the next. The table has one row for each object.
+    // The row of the removed one is free for the next. The table has one row for each object.
     scene.objects.insert(OBJECTS / 2, first);
     let came = cost(&scene);
     let one = Cost {
@@ -350,7 +350,7 @@ fn an_object_that_goes_or_comes_touches_no_other_of_ten_thousand() {
     assert_eq!(Cost { uploaded: 0, ..came.clone() }, one);
     assert!(came.uploaded <= 64 * OBJECTS, "{}", came.uploaded);
 
-    // The picture is that of the scene, whatever was taken out and put in.
+    // The picture is that of the scene, whatever was removed and added.
     scene.objects.swap_remove(17);
     scene.objects.truncate(OBJECTS / 3);
     scene.objects.insert(0, object(OBJECTS - 1));

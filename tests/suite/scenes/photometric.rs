@@ -1,4 +1,4 @@
-//! Photometric lamps: files that scenes name, from disk to both renderers.
+//! Photometric lamps: files named in scenes, from disk to both renderers.
 
 use std::{fs, path::Path};
 
@@ -26,12 +26,12 @@ use crate::{
     helpers::support::lcm_in,
 };
 
-/// A file that shines with these candelas down, sidewards and up.
+/// A file with these candelas downwards, sideways and upwards.
 fn ies(candelas: &str) -> String {
     format!("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 90 180\n0\n{candelas}\n")
 }
 
-/// A scene with a photometric lamp, in the text of a scene file.
+/// A scene with a photometric lamp, as the text of a scene file.
 fn scene(file: &str) -> String {
     let mut scene = close_up("sphere", "photometric");
     scene.shading_model = "phong".to_owned();
@@ -72,7 +72,8 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
     };
     let before = on_gpu(&mut renderer, &scene);
     assert!(alike(&before, &scene));
-    // Several lamps share the numbers of one file, and others have another, which does not fit into the first buffer.
+    // Several lamps share the numbers of one file, and others use another, which does not fit into the first
+    // buffer.
     let mut many = scene.clone();
     let fine: Vec<_> =
         (0..=180).map(|i| (300.0 + 200.0 * f64::from(i).to_radians().cos()).to_string()).collect();
@@ -97,7 +98,7 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
     }
     assert_eq!(check::scene(&many, &Registry::builtin()), []);
     assert!(alike(&on_gpu(&mut renderer, &many), &many));
-    // The file changes: who reads it again sees that, and so do all that name it.
+    // The file changes: reading it again detects the change, and so do all that name it.
     fs::write(folder.path().join("lamp.ies"), ies("100 900 300")).expect("written");
     assert!(file_of(&scene).read_again() && !file_of(&many).read_again());
     // The wrong twin is the picture of the old file.
@@ -105,7 +106,7 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
     assert!(alike(&on_gpu(&mut renderer, &scene), &scene));
 }
 
-/// The format of the parameter of the lamp.
+/// The format of the lamp's file parameter.
 fn registry_file() -> Option<&'static FileFormat> {
     let parameter = Registry::builtin().light("photometric")?.parameter("file")?;
     match parameter.kind {
@@ -147,7 +148,7 @@ fn the_name_of_a_file_is_kept_as_written_and_a_shipped_one_is_found_everywhere()
     let text = save::to_json(&scene, None, &registry);
     assert!(text.contains("\"file\": \"./lamps/../lamps/a.ies\""), "{text}");
     assert_eq!(file_of(&scene).numbers().as_deref().and_then(|n| n.last().copied()), Some(5.0));
-    // Without a file of that name, it is the one that the program has; a file of that name counts more.
+    // Without a file of that name, it is the shipped one; a file of that name takes precedence.
     let shipped = read(folder.path(), "wall_washer.ies", &ies("1 1 1")).expect("legal");
     assert_eq!(file_of(&shipped).path(), None);
     fs::write(folder.path().join("wall_washer.ies"), ies("7 7 7")).expect("written");

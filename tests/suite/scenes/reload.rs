@@ -1,4 +1,4 @@
-//! The document as its file changes on disk, with real files and without a window.
+//! The document when its file changes on disk, with real files and without a window.
 
 use std::{fs, path::PathBuf};
 
@@ -21,12 +21,12 @@ use lights_camera_models::{
     window::files::DiskFiles,
 };
 
-/// A document that was read from a file, and what the window does with it.
+/// A document that was read from a file, and the window's part.
 struct Desk {
     session: Session,
     files: DiskFiles,
     registry: Registry,
-    /// The effects left to the window: all but those on files.
+    /// Effects left to the window: all except those on files.
     left: Vec<Effect>,
     folder: tempfile::TempDir,
 }
@@ -80,7 +80,7 @@ impl Desk {
         self.carry_out(effects);
     }
 
-    /// The watcher reports the file. Returns whether it is to be looked at again after a moment.
+    /// Reports the file as the watcher does. Returns whether it must be looked at again after a moment.
     fn report(&mut self) -> bool {
         self.carry_out(vec![Effect::LookAtFile { discard: false }]);
         let before = self.left.len();
@@ -89,7 +89,7 @@ impl Desk {
         self.left.len() < before
     }
 
-    /// The file is written, and a long time passes.
+    /// Writes the file, and lets a long time pass.
     fn edited(&mut self, text: &str) {
         self.write(text);
         if self.report() {
@@ -161,7 +161,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     // Many editors touch the file once more; that changes nothing.
     assert!(!desk.report());
     assert_eq!(desk.said("room.json was reloaded"), 1);
-    // Another version: the message is not piled up.
+    // Another version: the message is not repeated.
     desk.edited(&text(&grown(0, 3.0)));
     assert_eq!(desk.session.document, grown(0, 3.0));
     assert_eq!(desk.session.messages.len(), 1);
@@ -178,7 +178,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
 
 #[test]
 fn opening_a_file_by_hand_does_go_back_to_the_observer() {
-    // The case that the test above must not find.
+    // The case that the test above must not detect.
     let mut desk = Desk::new();
     desk.act(Action::Reload);
     assert!(desk.left.contains(&Effect::DocumentChanged));
@@ -203,13 +203,13 @@ fn our_own_save_is_no_change_on_disk() {
     assert!(!desk.report());
     assert_eq!(format!("{:?}", desk.session), before);
     assert!(desk.left.is_empty());
-    // Nor is saving to another file and going on there.
+    // Nor is saving to another file and continuing there.
     let other = desk.folder.path().join("other.json");
     desk.act(Action::SaveAs(other.clone()));
     desk.left.clear();
     let looked = desk.files.look(&other, &desk.registry);
     assert_eq!(looked, Looked::Same);
-    // The same bytes from someone else's hand are the same; others are not.
+    // The same bytes written by somebody else are the same; others are not.
     fs::write(&other, text(&three())).unwrap();
     assert!(matches!(desk.files.look(&other, &desk.registry), Looked::Changed { .. }));
 }
@@ -248,14 +248,14 @@ fn the_selection_follows_what_it_points_at() {
         assert_eq!(desk.session.document, *scene);
         desk.session.selection
     };
-    // The first was removed: what was third is second now.
+    // The first was removed: the third is second now.
     let mut fewer = three();
     fewer.objects.remove(0);
     assert_eq!(select(2, &fewer), Selection::Object(1));
-    // Also when it changed, by its name.
+    // Also if it changed, by its name.
     fewer.objects[1].size = 0.3;
     assert_eq!(select(2, &fewer), Selection::Object(1));
-    // One that is edited in its place is still the same one.
+    // One edited in place is still the same.
     assert_eq!(select(1, &grown(1, 0.3)), Selection::Object(1));
     // Deleted objects give way to those that exist.
     let mut one = three();
@@ -279,7 +279,7 @@ fn an_empty_or_half_written_file_is_given_a_moment() {
         assert_eq!(desk.badge(), "");
         assert!(desk.complaints().is_empty());
     }
-    // As long as it goes on being written, there is nothing to say.
+    // While it is still being written, nothing is reported.
     let mut desk = Desk::new();
     for end in 1..20 {
         desk.write(&whole[..end]);
@@ -329,18 +329,18 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
     assert!(desk.session.disk.badge.as_ref().unwrap().help.contains("k_d is 7"), "the tooltip tells it all");
     assert_eq!(desk.complaints().len(), 1, "once on standard error");
     assert_eq!(desk.complaints()[0].lines().count(), 3);
-    // The same version again says nothing more.
+    // The same version again reports nothing more.
     desk.session.messages.clear();
     assert!(!desk.report());
     assert!(desk.session.messages.is_empty());
     assert_eq!(desk.complaints().len(), 1);
-    // Another one replaces what was said.
+    // Another one replaces the message.
     desk.edited(&broken("8"));
     desk.edited(&broken("9"));
     assert_eq!((desk.said("k_d is 8"), desk.said("k_d is 9")), (0, 3));
     assert_eq!((desk.session.messages.len(), desk.said("no longer holds the scene")), (4, 1));
     assert_eq!(desk.complaints().len(), 3);
-    // A good one takes it all away, also when it is the one that is shown.
+    // A valid one clears everything, even if it equals the one shown.
     desk.edited(&text(&three()));
     assert_eq!(desk.badge(), "");
     assert!(desk.session.messages.is_empty());
@@ -386,16 +386,16 @@ fn missing_parts_are_not_taken_unasked() {
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
     assert_eq!(desk.session.document, grown(0, 2.0));
     assert!(desk.session.is_dirty());
-    // But to that one only.
+    // But only to that one.
     let two = lacking(&grown(0, 3.0), "shading_model");
     let two: Vec<_> = two.lines().filter(|l| !l.contains("reflection_model")).collect();
     desk.edited(&two.join("\n"));
     assert_eq!(desk.session.document, grown(0, 2.0));
-    // Once the part is there, nothing is missing.
+    // Once the part exists, nothing is missing.
     desk.edited(&text(&grown(0, 4.0)));
     assert_eq!(desk.session.document, grown(0, 4.0));
     assert!(!desk.session.is_dirty());
-    // `--use-defaults` agrees to all.
+    // `--use-defaults` accepts all.
     let mut desk = Desk::new();
     desk.session.disk.use_defaults = true;
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
@@ -405,7 +405,7 @@ fn missing_parts_are_not_taken_unasked() {
 #[test]
 #[cfg(unix)]
 fn a_file_that_no_longer_holds_the_scene_leaves_it_unsaved_and_nothing_waits_for_it() {
-    /// Something takes the place of the file.
+    /// Replaces the file by something else.
     type Happens = fn(&std::path::Path);
     let fill: [(Happens, &str); 5] = [
         (|path| fs::write(path, "").unwrap(), "is empty"),
@@ -441,7 +441,7 @@ fn a_file_that_no_longer_holds_the_scene_leaves_it_unsaved_and_nothing_waits_for
         desk.act(Action::Quit);
         assert!(matches!(desk.session.questions.open, Some(Question::Unsaved { .. })), "{expected}");
         desk.act(Action::Answer(Answer::Cancel));
-        // It comes back as it was, and nothing is left of the news.
+        // It comes back unchanged, and the message disappears.
         let _ = fs::remove_dir(desk.path());
         let _ = fs::remove_file(desk.path());
         desk.edited(&text(&three()));
@@ -476,7 +476,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     desk.edited(&text(&grown(0, 2.0)));
     assert_eq!((desk.badge(), desk.session.is_dirty()), ("", false));
     assert_eq!(desk.session.document, grown(0, 2.0));
-    // Saving writes it anew, without a question.
+    // Saving writes it again, without a question.
     fs::remove_file(desk.path()).unwrap();
     assert!(desk.report() && !desk.report());
     desk.act(Action::Save);
@@ -493,13 +493,13 @@ fn saving_a_deleted_file_does_not_overwrite_what_came_in_its_place() {
     assert!(desk.report() && !desk.report());
     let other = text(&grown(0, 2.0));
     desk.write(&other);
-    // Before the watcher says so.
+    // Before the watcher reports it.
     desk.act(Action::Save);
     assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), other);
 }
 
-/// With unsaved changes, the file changes too.
+/// A document with unsaved changes whose file has changed too.
 fn conflict() -> Desk {
     let mut desk = Desk::new();
     desk.change();
@@ -582,7 +582,7 @@ fn who_decides_later_is_asked_when_saving() {
     desk.act(Action::Answer(Answer::Overwrite));
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
     assert_eq!(desk.badge(), "");
-    // The version that was there before comes back: there is nothing left to decide.
+    // The previous version comes back: nothing is left to decide.
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Cancel));
     desk.edited(&text(&three()));
@@ -650,15 +650,15 @@ fn what_can_be_read_only_once_is_not_read_again() {
     let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
     assert!(made.success());
     let mut files = DiskFiles::new(Some(pipe.clone()), None);
-    // Reading would wait for ever.
+    // Reading would wait forever.
     assert_eq!(files.look(&pipe, &Registry::builtin()), Looked::Same);
 }
 
-/// A window that goes on with what an earlier one left of the file, as that knew it.
+/// A window that continues with a copy of the file from an earlier one, with the file's state as known then.
 fn recovered(copy: &Scene, known: &str) -> Desk {
     let mut desk = Desk::new();
     let path = desk.path();
-    // As a window without a scene.
+    // Like a window without a scene.
     desk.session = Session::default();
     desk.files = DiskFiles::new(None, None);
     let offer = Offer {
@@ -703,7 +703,7 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
         desk.act(Action::Save);
         assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
     }
-    // Before the watcher says so.
+    // Before the watcher reports it.
     let mut desk = recovered(&grown(1, 0.5), "as it was");
     desk.act(Action::Save);
     assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
@@ -731,7 +731,7 @@ fn the_strip_that_an_error_unfolded_folds_once_it_is_mended() {
     assert!(desk.session.view.bottom_open, "it is still broken");
     desk.edited(&good);
     assert_eq!(strip(&desk), before);
-    // One that the user had open, or touched since, stays.
+    // One that the user had open, or has touched since, stays.
     desk.act(Action::View(ViewChange::BottomTab("messages".to_owned())));
     desk.edited("{ broken");
     desk.edited(&good);
@@ -753,7 +753,7 @@ fn the_strip_that_an_error_unfolded_folds_once_it_is_mended() {
     desk.session.say(Severity::Error, "Something else.");
     desk.edited(&good);
     assert!(desk.session.view.bottom_open);
-    // A file that was not opened, and is once it is mended.
+    // A file that was not opened, and is once it is fixed.
     let mut desk = Desk::new();
     let other = desk.folder.path().join("other.json");
     fs::write(&other, "{ broken").unwrap();

@@ -37,7 +37,7 @@ fn lights_are_written_in_the_units_in_which_they_were_given() {
     assert_eq!((&bulb["luminous_flux"], &bulb["colour_temperature"]), (&400.into(), &2700.into()));
     assert!(bulb.get("colour").or(bulb.get("intensity")).is_none(), "{text}");
     assert!(lamp.get("colour_temperature").or(lamp.get("luminous_flux")).is_none(), "{text}");
-    // American spelling is understood.
+    // American spelling is accepted.
     let text = full_scene().to_string().replace("colour_temperature", "color_temperature");
     assert_eq!(read(&text).lights[1].colour_temperature, Some(2700.0));
 }
@@ -57,7 +57,7 @@ fn shipped_scenes_are_valid_complete_and_survive_writing() {
         let registry = Registry::builtin();
         let loaded = load::file(&path, &registry, Defaults::Refuse);
         let scene = loaded.unwrap_or_else(|e| panic!("{e}")).scene;
-        // In the same folder, where the files are that it names.
+        // In the same folder, which contains the files that it names.
         let again =
             load::from_text(&written(&scene), &path.display().to_string(), &registry, Defaults::Refuse);
         assert_eq!(again.unwrap_or_else(|e| panic!("{e}")).scene, scene, "{}", path.display());
@@ -276,7 +276,7 @@ fn variant() -> impl Strategy<Value = Variant> {
 }
 
 prop_compose! {
-    /// A valid scene with views that are compared.
+    /// A valid scene with compared views.
     fn compared()(
         scene in scene(),
         mut variants in prop::collection::vec(variant(), 0..=MAX_VARIANTS),

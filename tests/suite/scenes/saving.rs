@@ -127,7 +127,7 @@ fn the_reference_to_the_schema_is_kept_or_made_where_the_schema_is() {
 /// The file written by the child process of the next test; only set there.
 const LOOP_FILE: &str = "LCM_TEST_SAVE_LOOP";
 
-/// Two scenes of very different length, so that half of one is not the other.
+/// Two scenes of very different lengths, so that half of one is not the other.
 fn large(n: usize) -> Scene {
     Scene {
         objects: vec![Object { name: Some("x".repeat(200)), ..Object::default() }; n],

@@ -1,4 +1,4 @@
-//! The JSON Schema: in step with the program, and in agreement with the reader.
+//! The JSON Schema: up to date with the program, and consistent with the reader.
 
 use std::fs;
 
@@ -157,7 +157,7 @@ fn the_schema_and_the_reader_know_the_same_keys() {
         ("/properties/display/properties", "/display"),
     ] {
         let mut scene = full_scene();
-        // The reader's message about an unknown key: the keys that it knows.
+        // The reader's message about an unknown key: the known keys.
         scene.pointer_mut(parent).expect("there")["qqqqqqqqqqqqqqqq"] = json!(1);
         let said = said(&scene.to_string());
         let list = said.split_once(" has the keys ").expect(&said).1.lines().next().unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Scenes as tables: every scene comes back, every mistake has its line and column, and a table that is written again
-//! keeps what its author gave it.
+//! Scenes as tables: every scene survives a round trip, every error has its line and column, and a table that
+//! is written again keeps its author's additions.
 
 use std::{
     fs,
@@ -25,7 +25,7 @@ use crate::{
     scenes::roundtrip::scene,
 };
 
-/// The table of a scene, in the manner of an old one.
+/// The table of a scene, in the style of an old one.
 fn table(scene: &Scene, old: Option<&str>) -> String {
     let target = Target::new(Path::new(""), old.map(str::as_bytes));
     let bytes = Csv.writer().expect("it writes").write(scene, &target, &Registry::builtin());
@@ -75,13 +75,13 @@ fn a_table_says_what_json_says() {
   ]
 }"#;
     assert_eq!(from_table(ROOM), read(json));
-    // The wrong twin: one cell is another.
+    // The wrong twin: one cell differs.
     assert_ne!(from_table(&ROOM.replace("255 0 0", "255 1 0")), read(json));
 }
 
 #[test]
 fn the_full_scene_comes_back_from_a_table() {
-    // A table has no place for variants.
+    // A table cannot store variants.
     let whole = read(&full_scene().to_string());
     let scene = whole.clone().alone();
     assert_eq!(from_table(&table(&scene, None)), scene);
@@ -98,7 +98,7 @@ proptest! {
 
     #[test]
     fn every_valid_scene_comes_back_from_a_table_in_every_manner(mut scene in scene(), manner in 0..4usize) {
-        // An empty cell is no text, and no table holds the character zero.
+        // An empty cell is not text, and no table contains the null character.
         let clean = |text: &mut Option<String>| {
             *text = text.take().map(|t| t.replace('\0', "")).filter(|t| !t.is_empty());
         };
@@ -189,7 +189,7 @@ fn every_mistake_has_its_line_and_column() {
         ),
         (with(row, ""), "room.csv:2:1: objects is missing; a scene must have a list of objects"),
         (with(",0 0 -1,,,", ",0 0 -1,,,,5"), "room.csv:7:36: row has 17 cells, but the heading has 16"),
-        // The heading.
+        // The header.
         (with(",size,", ",siez,"), "room.csv:2:66: siez is not a column; did you mean \"size\"?"),
         (
             with("material.k_d", "material.k_dd"),
@@ -245,7 +245,7 @@ fn tables_are_read_as_spreadsheets_write_them() {
     let excel = format!("\u{FEFF}{german};;;;\r\n");
     assert_eq!(from_table(&excel), plain);
     assert!(from_table(&excel.replace("9,5", "9,25")).observer.position.z == 9.25);
-    // Where commas separate columns, they are no decimal commas.
+    // Where commas separate columns, they are not decimal commas.
     assert!(said(&ROOM.replace(",0.8,", ",\"0,8\",")).contains("material.k_d is [0, 8]"));
     assert_eq!(
         from_table(
@@ -256,7 +256,7 @@ fn tables_are_read_as_spreadsheets_write_them() {
         ),
         plain
     );
-    // Numbers and flags as they are typed.
+    // Numbers and flags as typed.
     let shown = ROOM.replacen("part,type", "part,enabled,type", 1).replace("\nlight,", "\nlight,TRUE,");
     let shown = shown
         .replace("\nscene,", "\nscene,,")
@@ -279,7 +279,7 @@ fn a_table_that_is_written_again_keeps_its_columns_its_separators_and_its_remark
     assert_eq!(lines[3], "# lamps, from left to right");
     assert!(lines[4].starts_with("light,point,,2,8,9,20,255 0 0,"));
     assert_eq!(lines.last(), Some(&"# the end"));
-    // What a scene needs and the table did not have comes after it.
+    // Required parts that the table did not have are appended.
     let mut more = scene.clone();
     more.objects[0].rotation.y = 30.5;
     let wide = table(&more, Some(ROOM));
@@ -288,9 +288,9 @@ fn a_table_that_is_written_again_keeps_its_columns_its_separators_and_its_remark
         "{wide}"
     );
     assert_eq!(from_table(&wide), more);
-    // Written once more, nothing changes.
+    // Writing it again changes nothing.
     assert_eq!(table(&more, Some(&wide)), wide);
-    // A remark stays, even if its row is gone.
+    // A comment stays, even if its row is gone.
     let mut fewer = scene.clone();
     fewer.lights.truncate(1);
     let old = ROOM.replace("light,point,Blue", "# a second one\nlight,point,Blue");
@@ -343,12 +343,12 @@ fn the_command_line_reads_and_writes_tables() {
     }
     let pixels = |name: &str| crate::renderers::golden::read_png(&at.join(name)).expect("a picture");
     assert_eq!(pixels("a.png"), pixels("b.png"));
-    // From a pipe, by its first line; JSON by everything else.
+    // From a pipe, by its first line; anything else is JSON.
     let piped = run(&["check", "-"], ROOM);
     assert!(piped.out.contains("standard input: valid: 2 lights, 1 object"), "{}{}", piped.out, piped.err);
     let piped = run(&["check", "-"], "a, b\n");
     assert!(piped.err.contains("standard input:1:1: not JSON"), "{}", piped.err);
-    // Mistakes, for people and for programs.
+    // Errors, for people and for programs.
     fs::write(at.join("bad.csv"), ROOM.replace(",0.8,", ",0.2,")).expect("written");
     let bad = run(&["check", "bad.csv"], "");
     assert!(
@@ -438,7 +438,7 @@ fn parameters_of_shading_models_have_columns_and_come_back() {
 
 #[test]
 fn the_rows_of_a_table_are_counted_while_it_is_read() {
-    // 50 MB: the heading, a comment, and rows of the smallest size.
+    // 50 MB: the header, a comment, and rows of minimum size.
     for (row, expected) in [
         (
             "object\n",
@@ -469,7 +469,7 @@ fn a_table_of_an_old_macintosh_is_read_and_its_mistakes_have_their_rows() {
     assert_eq!(from_table(&commas).observer, from_table(ROOM).observer);
     let stream = load::from_bytes(old.as_bytes(), load::STDIN, &Registry::builtin(), Defaults::Refuse);
     assert_eq!(stream.expect("a table").scene, from_table(ROOM));
-    // Written again, it has today's line ends and keeps its remarks.
+    // Written again, it has modern line ends and keeps its comments.
     let again = table(&from_table(&old), Some(&old));
     assert!(again.starts_with("# My first table\npart,") && again.contains("\n# the end"), "{again}");
 }

@@ -1,4 +1,4 @@
-//! The picture says where it clips: counted in what the renderer draws.
+//! The picture reports where it clips, counted in what the renderer draws.
 
 use bevy_egui::egui::{Color32, PointerButton};
 use lights_camera_models::panel::state::{Action, Clipping, Session, ViewChange};
@@ -11,7 +11,7 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
     assert!(!bench.says("Clipped"));
-    // The fields of a quarter of the picture, at its upper left.
+    // The fields of a quarter of the picture, at the upper left.
     let rect = bench.area.rect;
     let [across, down] = Clipping::GRID;
     let field = (rect.area() / (across * down) as f32) as u32;
@@ -32,13 +32,13 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     bench.apply(Action::View(ViewChange::Clipping(true)));
     let selected = bench.session.selection;
     let [there, elsewhere] = shown(&mut bench);
-    // The sign itself switches them on and off.
+    // The badge itself toggles them.
     let sign = bench.tree.iter().find(|s| s.label.starts_with("Clipped")).map(|s| s.rect.center()).unwrap();
     bench.click_at(sign, PointerButton::Primary);
     assert!(!bench.session.view.show_clipping);
     bench.click_at(sign, PointerButton::Primary);
     assert!(bench.session.view.show_clipping && bench.session.selection == selected);
-    // A chequered pattern, less what the object's marks cover.
+    // A chequered pattern, minus the part covered by the object's marks.
     assert!((3200..4900).contains(&there) && elsewhere == 0, "{there} and {elsewhere} of 8100");
 }
 
@@ -68,7 +68,7 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
         let arguments = ["view", &*scene, "--exit-after", "30", "--capture", &*file_name];
         let output = screen.lcm(&arguments, folder.path());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        // The rim of the sign, which nothing else there has.
+        // The rim of the badge, which nothing else there has.
         let warning = |p: [u8; 3]| p == [0xf0, 0xc0, 0x50];
         Picture::read(&file).count(212..480, 40..76, warning) > 100
     };
@@ -77,7 +77,7 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
     assert!(!sign("dim", 10.0, plain));
     assert!(sign("exposed", 10.0, r#"{ "exposure": 3 }"#));
     assert!(!sign("mapped", 60.0, r#"{ "tone_mapping": "reinhard" }"#));
-    // Of two views, the one that clips has the sign.
+    // Of two views, the one that clips has the badge.
     let views = |a: i32, b: i32| {
         let variants =
             format!(r#""variants": [{{ "exposure": {b} }}], "comparison": {{ "layout": "side_by_side" }}"#);

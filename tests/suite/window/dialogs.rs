@@ -102,7 +102,7 @@ fn enter_and_escape_reach_the_dialog_from_the_search() {
     bench.settle();
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(!bench.dialogs.is_open(), "one press closes");
-    // The name of the file keeps its Enter, and Escape closes from there too.
+    // The file name keeps its Enter, and Escape closes from there too.
     bench.key(Key::S, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL);
     assert!(bench.dialogs.is_open() && bench.ctx.text_edit_focused());
     bench.key(Key::Escape, Modifiers::NONE);
@@ -120,7 +120,7 @@ fn enter_and_escape_reach_the_dialog_from_the_search() {
 #[test]
 fn a_shortcut_is_no_text_for_the_search() {
     let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
-    // As the window hands it over after a slow frame: the letter before its key, and Ctrl let go again.
+    // As the window passes it on after a slow frame: the letter before its key, and Ctrl already released.
     let modifiers = Modifiers::COMMAND | Modifiers::CTRL;
     let key = Event::Key { key: Key::O, physical_key: None, pressed: true, repeat: false, modifiers };
     bench.frame(vec![Event::Text("o".to_owned()), key, Event::ModifiersChanged(Modifiers::NONE)]);
@@ -287,7 +287,7 @@ fn what_is_typed_and_what_is_selected_can_be_seen_in_both_themes() {
         let typed = typed.expect("the search is shown");
         let seen = contrast(typed, palette.field);
         assert!(seen >= 4.5, "{theme:?}: {typed:?} on {:?}: {seen}", palette.field);
-        // The style of the dialogs stays theirs.
+        // The style of the dialogs stays unchanged.
         assert_eq!(bench.ctx.global_style().visuals.selection.bg_fill, palette.chosen);
     }
 }

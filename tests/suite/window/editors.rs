@@ -7,7 +7,7 @@ use std::{
 
 use lights_camera_models::window::editor::{Application, Surroundings};
 
-/// A folder with programs of these names.
+/// A folder with programs with these names.
 fn programs(names: &[&str]) -> (tempfile::TempDir, Vec<PathBuf>) {
     let folder = tempfile::tempdir().expect("a folder");
     for name in names {

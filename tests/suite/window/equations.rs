@@ -17,7 +17,7 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// The runs of text of the frame, with their sizes and colours.
+/// The text runs of the frame, with their sizes and colours.
 fn texts(bench: &mut Bench) -> Vec<(String, f32, Color32)> {
     let run = |shape: &Shape| match shape {
         Shape::Text(text) => {
@@ -37,10 +37,10 @@ fn definitions_are_smaller_and_neutral_beside_terms_in_their_colours() {
         let texts = texts(&mut bench);
         let of = |what: &str| -> Vec<_> { texts.iter().filter(|(t, ..)| t == what).collect() };
         let specular = palette.term_text(Term::Specular);
-        // Indices are smaller.
+        // Subscripts are smaller.
         let term =
             of("s").into_iter().filter(|(.., colour)| *colour == specular).map(|t| t.1).fold(0.0, f32::max);
-        // "exp" stands in the definition of D only.
+        // "exp" appears only in the definition of D.
         let exp = of("exp");
         let [(_, size, colour)] = exp.as_slice() else { panic!("{exp:?}") };
         assert!(*size < 0.9 * term, "{size} beside {term}");
@@ -60,7 +60,7 @@ fn no_dashes_stand_before_equations() {
     assert_eq!(lines, 0);
 }
 
-/// The families of the letters of an equation, and where they are.
+/// The font families of a letter in an equation, and its positions.
 fn letters(bench: &mut Bench, letter: &str) -> Vec<(FontFamily, Pos2)> {
     let run = |shape: &Shape| match shape {
         Shape::Text(t) if t.galley.text() == letter => {
@@ -74,7 +74,7 @@ fn letters(bench: &mut Bench, letter: &str) -> Vec<(FontFamily, Pos2)> {
 
 #[test]
 fn variables_are_slanted_wherever_they_stand() {
-    // In a power, beside the imaginary unit, in a power with a fraction; and as often as they are written.
+    // In a power, next to the imaginary unit, in a power with a fraction; and as often as they are written.
     for (model, letter, least) in [
         ("minnaert", "k", 3),
         ("cook_torrance", "k", 1),

@@ -16,7 +16,7 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// Waits for what is made on a thread.
+/// Waits for work on a thread.
 pub fn until(bench: &mut Bench, what: &str, mut is: impl FnMut(&mut Bench) -> bool) {
     let begin = Instant::now();
     while !is(bench) {
@@ -43,7 +43,7 @@ fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
     assert_eq!((bench.session.title().as_str(), bench.session.path.clone()), ("Portrait", None));
     assert!(!bench.session.is_dirty() && bench.find("Example: Portrait").is_none());
     assert!(bench.effects.contains(&Effect::DocumentChanged));
-    // Saving asks where.
+    // Saving asks for a path.
     let effects = bench.session.apply(Action::Save, &bench.registry);
     assert_eq!(effects, [Effect::PickSave]);
 }
@@ -168,7 +168,7 @@ fn the_menu_of_the_examples_does_not_scroll_where_there_is_room() {
         _ => None,
     });
     assert!(entry.bottom() <= 1080.0 && name.is_some_and(|name| entry.contains_rect(name)), "{entry:?}");
-    // What is scrolled out is not under the pointer.
+    // A widget that is scrolled out is not under the pointer.
     let layer = bench.ctx.layer_id_at(entry.center()).expect("a menu");
     assert_eq!(layer.order, egui::Order::Foreground, "{entry:?}");
 }
@@ -207,7 +207,7 @@ fn every_example_gets_its_small_picture() {
             Preview::Waiting => false,
             Preview::Ready(shown) => {
                 assert_eq!(shown.name.as_deref(), Some(EXAMPLES[i].name.as_str()));
-                // On a machine that is slow, one with many lights may take too long.
+                // On a slow machine, one with many lights may take too long.
                 i > 0 || shown.picture.is_some()
             }
             Preview::Failed(why) => panic!("{}: {why}", EXAMPLES[i].file),

@@ -1,4 +1,4 @@
-//! The window by keyboard alone, without a window: where the focus goes, and that it is seen.
+//! The window used only with the keyboard, without a window: where the focus moves, and that it is visible.
 
 use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Popup, Rect, vec2};
 use lights_camera_models::{
@@ -17,17 +17,17 @@ fn focused(bench: &Bench) -> Option<Rect> {
     bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect))
 }
 
-/// True if all of what has the focus is in sight.
+/// True if the focused widget is completely visible.
 fn in_sight(bench: &Bench) -> bool {
     let id = bench.ctx.memory(egui::Memory::focused);
     let widget = id.and_then(|id| bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).copied()));
     widget.is_some_and(|w| w.interact_rect.expand(0.5).contains_rect(w.rect))
 }
 
-/// The name of what has the focus.
+/// The name of the focused widget.
 fn name(bench: &Bench) -> String {
     let Some(rect) = focused(bench) else { return "nothing".to_owned() };
-    // The tree has what is smaller within it too.
+    // The tree contains the smaller widgets within it too.
     let seen = bench.tree.iter().filter(|s| !s.label.is_empty());
     let near = seen.min_by(|a, b| {
         let apart = |s: &Rect| (s.min - rect.min).length() + (s.max - rect.max).length();
@@ -36,7 +36,7 @@ fn name(bench: &Bench) -> String {
     near.map_or_else(String::new, |s| s.label.clone())
 }
 
-/// Frames in the colour of the accent.
+/// Frames in the accent colour.
 fn rings(bench: &mut Bench) -> Vec<Rect> {
     let shapes = bench.shapes();
     shapes
@@ -103,7 +103,7 @@ fn menus_opened_by_mouse_listen_to_the_arrows_and_enter() {
     assert!(second.top() > first.top() && (second.left() - first.left()).abs() < 2.0);
     bench.key(Key::ArrowUp, Modifiers::NONE);
     assert_eq!(focused(&bench), Some(first));
-    // The first entry above the first one is the last.
+    // The entry above the first one is the last.
     bench.key(Key::ArrowUp, Modifiers::NONE);
     assert!(focused(&bench).expect("the last entry").top() > second.top());
     bench.key(Key::Escape, Modifiers::NONE);
@@ -155,7 +155,7 @@ fn the_menus_open_with_alt_and_with_f10() {
     assert!(bench.says("New default scene"), "F10 opens the first menu");
     bench.key(Key::F10, Modifiers::NONE);
     assert!(!bench.says("New default scene"), "and closes it");
-    // A letter with Alt is no command of the picture.
+    // A letter with Alt is not a command of the picture.
     let shading = bench.session.document.shading_model.clone();
     bench.key(Key::F, Modifiers::ALT);
     assert_eq!(bench.session.document.shading_model, shading);

@@ -1,4 +1,4 @@
-//! The handles of what is selected: a drag of one is a step of the history, and does not turn the camera.
+//! The handles of the selected part: dragging one is a step of the history, and does not turn the camera.
 
 use bevy_egui::egui::{
     Color32, Event, Key, Modifiers, PointerButton, Pos2, Shape, Vec2, epaint::ColorMode, pos2, vec2,
@@ -25,7 +25,7 @@ use crate::{library::plugins::lamp::RingLamp, window::panels::Bench};
 
 const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
-/// A sphere seen from the right and above, with a spotlight beside it.
+/// A sphere seen from the upper right, with a spotlight next to it.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     scene.lights.clear();
@@ -64,7 +64,7 @@ fn press(bench: &mut Bench, at: Pos2, pressed: bool) {
     bench.frame(vec![Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers }]);
 }
 
-/// Drags in steps, without letting go.
+/// Drags in steps, without releasing.
 fn pull(bench: &mut Bench, from: Pos2, by: Vec2, modifiers: Modifiers) {
     bench.frame(vec![Event::PointerMoved(from)]);
     press(bench, from, true);
@@ -87,7 +87,7 @@ fn position(bench: &Bench) -> Vec3 {
     bench.session.document.objects[0].position
 }
 
-/// The way in the picture of a step of the selected object along an axis.
+/// The movement in the picture for a step of the selected object along an axis.
 fn way(bench: &Bench, step: Vec3) -> Vec2 {
     let lens = Lens::of(&bench.session, bench.area.rect);
     lens.project(position(bench) + step).unwrap() - lens.project(position(bench)).unwrap()
@@ -102,7 +102,7 @@ fn a_drag_along_an_axis_is_one_step_of_the_history() {
     for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
         let mut bench = bench(scene());
         let before = position(&bench);
-        // A step of the same name before it is another one.
+        // A previous step with the same name is separate.
         let moved = Edit::Object(0, ObjectField::Position(before + Vec3::X * 0.1));
         bench.apply(Action::Edit(moved));
         let start = position(&bench);
@@ -333,7 +333,7 @@ fn painted(bench: &mut Bench) -> Vec<Pos2> {
     all.into_iter().filter(|p| bench.area.rect.contains(*p)).collect()
 }
 
-/// Shows the handles of a part, which are there and farther from the middle than the object reaches.
+/// Asserts that the handles of a part are shown and farther from the centre than the object reaches.
 fn around(bench: &mut Bench, part: HandleMode, middle: Pos2, radius: f32) {
     bench.apply(mode(part));
     bench.settle();
@@ -366,7 +366,7 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     assert!(!painted(&mut bench).is_empty());
     seconds(&mut bench, 3);
     assert_eq!(painted(&mut bench), [], "the pointer rests");
-    // They are there for as long as the pointer is over one of them.
+    // They stay as long as the pointer is over one of them.
     let tip = handle(&bench, "move Sphere 1 along x");
     bench.frame(vec![Event::PointerMoved(tip)]);
     seconds(&mut bench, 3);
@@ -389,7 +389,7 @@ fn where_an_object_leaves_no_room_its_handles_are_at_the_edge_of_the_view() {
     let right = bench.session.facts.camera * Vec3::X;
     let radius = lens.project(position(&bench) + right).unwrap().distance(middle);
     assert!(radius > 0.6 * 0.5 * bench.area.rect.height(), "{radius} of {:?}", bench.area.rect);
-    // A pointer that moves wakes them.
+    // A moving pointer shows them again.
     for x in [0.0, 4.0] {
         bench.frame(vec![Event::PointerMoved(middle + vec2(x, 0.0))]);
         bench.settle();
@@ -419,7 +419,7 @@ fn every_view_has_its_handles() {
     bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
     bench.apply(Action::Select(Selection::Object(0)));
     let name = "Handle: move Sphere 1 along x";
-    // From left to right, as the views.
+    // From left to right, like the views.
     let handles = |bench: &Bench| {
         let named = bench.tree.iter().filter(|s| s.label == name);
         let mut all: Vec<_> = named.map(|s| s.rect.center()).collect();
@@ -466,7 +466,7 @@ fn keys_choose_the_handles_and_nudge_the_selection() {
     bench.key(Key::F3, Modifiers::NONE);
     bench.key(Key::PageUp, CTRL);
     assert_eq!(bench.session.document.objects[0].rotation, Vec3::new(0.0, 5.0, 0.0));
-    // In a field the keys are those of the text.
+    // In a field the keys belong to the text.
     let done = bench.session.document.done();
     let field = bench.field("Name").rect.center();
     bench.click_at(field, PointerButton::Primary);
@@ -505,7 +505,7 @@ impl LightType for Banner {
     }
 }
 
-/// A lamp that is selected, with handles for its sizes.
+/// A selected lamp, with handles for its sizes.
 fn lamp(light_type: &str) -> Bench {
     let mut registry = Registry::builtin();
     registry.add_light_type::<Banner>().add_light_type::<RingLamp>();
@@ -532,7 +532,7 @@ fn numbers<const N: usize>(bench: &Bench, names: [&str; N]) -> [f32; N] {
     names.map(|name| light.parameters.number(entry.parameter(name).unwrap()))
 }
 
-/// The places of the handles of a parameter of the lamp, at its first end and at the other.
+/// The positions of the handles of the lamp's parameter, at its first end and at the other.
 fn ends(bench: &Bench, parameter: &str) -> Vec<Pos2> {
     let lamp = bench.session.name_of(Selection::Light(0), &bench.registry);
     ["", ", at the other end"]
@@ -602,7 +602,7 @@ fn a_size_stays_within_its_range_and_goes_in_steps_with_ctrl() {
     let out = (at - middle).normalized();
     drag(&mut bench, at, -500.0 * out, Modifiers::NONE);
     assert_eq!(numbers(&bench, ["span"]), [0.2]);
-    // There its handle is apart from the middle all the same.
+    // There its handle is separate from the centre nevertheless.
     let at = ends(&bench, "span")[0];
     assert!(at.distance(middle) > 20.0, "{at:?}");
     pull(&mut bench, at, 700.0 * out, Modifiers::NONE);
@@ -659,7 +659,7 @@ fn a_lamp_is_rolled_about_its_direction() {
             bench.apply(Action::Undo);
             assert_eq!(numbers(&bench, [name]), [0.0]);
         }
-        // The direction is turned by its own handle, which leaves the room to the sizes.
+        // The direction has its own handle, which leaves space for the sizes.
         handle(&bench, "direction of");
         bench.apply(mode(HandleMode::Size));
         assert!(!bench.says("Handle: direction of"));
@@ -693,7 +693,7 @@ fn each_view_has_the_handles_of_a_lamp_and_a_presentation_has_none() {
     assert!(!bench.says("Handle:"));
 }
 
-/// The closed lines in the colour of the selection.
+/// The closed lines in the selection colour.
 fn outlines(bench: &mut Bench) -> Vec<Vec<Pos2>> {
     let selected = Color32::from_rgb(0x7c, 0xc8, 0xff);
     let of = |shape| match shape {

@@ -1,4 +1,4 @@
-//! The lines of the knobs: what can be seen without scrolling, and that there is more where there is.
+//! The lines of the controls: visible without scrolling, or with a sign that there are more.
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
@@ -32,7 +32,7 @@ fn every_knob_of_phong_is_seen_at_1280_by_720_without_scrolling() {
         for model in ["phong", "blinn_phong"] {
             let mut bench = laptop(model);
             bench.apply(Action::View(ViewChange::Theme(theme)));
-            // The panel reaches from the bar at the top to the line at the bottom, as the picture does.
+            // The panel spans from the bar at the top to the line at the bottom, like the picture.
             let seen = bench.area.rect.y_range();
             let labels = ["ambient coefficient", "diffuse coefficient", "specular coefficient", "shininess"];
             for label in labels {
@@ -87,7 +87,7 @@ fn the_tooltip_says_where_range_and_slider_end() {
     }
 }
 
-/// The bars at the right edge of the window: narrow and long, in another colour than the panel.
+/// The bars at the right edge of the window: narrow and long, in a different colour than the panel.
 fn scroll_bars(bench: &mut Bench) -> Vec<Rect> {
     let right = bench.size.x;
     let bar = |shape: &Shape| match shape {
@@ -167,7 +167,7 @@ fn pictures_of_the_knobs() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The texts that are painted, each with its place and true if some of it is left out.
+/// The painted texts, each with its position and true if some of it is cut.
 fn painted(bench: &mut Bench) -> Vec<(String, Pos2, bool)> {
     let text = |shape| match shape {
         Shape::Text(t) => Some((t.galley.text().to_owned(), t.pos, t.galley.elided)),
@@ -204,7 +204,7 @@ fn derived_values_stand_in_line() {
     assert_eq!(left("equivalent GGX α"), left("equivalent roughness"));
 }
 
-/// True if a knob of that name is there to be turned.
+/// True if a control with this name exists.
 fn has_knob(bench: &Bench, label: &str) -> bool {
     bench.tree.iter().any(|s| s.role == Role::TextInput && s.label.starts_with(label))
 }
@@ -231,7 +231,7 @@ fn the_groups_of_a_model_fold_and_say_how_much_is_changed() {
         bench.frame(Vec::new());
     }
     assert!(!has_knob(&bench, "sheen tint") && has_knob(&bench, "roughness"), "folded");
-    // A model without groups has no headings and no filter.
+    // A model without groups has neither headings nor a filter.
     let bench = Bench::with_model("phong");
     assert!(bench.find("Only changed").is_none());
 }
@@ -244,7 +244,7 @@ fn the_filter_shows_what_differs_and_keeps_what_is_being_changed() {
     bench.click("Only changed");
     bench.settle();
     assert!(has_knob(&bench, "sheen") && !has_knob(&bench, "sheen tint") && !has_knob(&bench, "roughness"));
-    // Dragged to its default, the knob stays until it is let go of.
+    // Dragged to its default, the control stays until it is released.
     let slider = widget(&bench, Role::Slider, "sheen").rect;
     let press = |pressed, pos| Event::PointerButton {
         pos,

@@ -1,4 +1,4 @@
-//! The law check of the window: its button, the process behind it, and what it shows.
+//! The law check of the window: the button, the process behind it, and the result.
 
 use std::{path::PathBuf, sync::mpsc, time::Duration};
 
@@ -43,7 +43,7 @@ fn laws_are_checked_in_another_process_and_shown() {
     bench.apply(Action::Model(ModelCommand::CheckLaws));
     assert_eq!(bench.effects.len(), 1, "one at a time");
 
-    // A new user has no folder of models yet.
+    // A new user has no model folder yet.
     let nowhere = tempfile::tempdir().expect("a folder").path().join("models");
     let folders = Folders { models: Some(nowhere), ..Folders::default() };
     let found = outcome("lambert", &folders, program());
@@ -93,7 +93,7 @@ fn a_model_of_the_folder_that_breaks_a_law_is_shown_with_the_place() {
     let report = outcome("mine", &folders, program()).expect("was checked");
     assert_eq!(report.broken(), ["reciprocal"]);
     assert!(report.laws[0].at[0].starts_with("at l (θ "), "{:?}", report.laws[0].at);
-    // A model that cannot be checked says why.
+    // The reason is shown for a model that cannot be checked.
     std::fs::write(folder.path().join("mine.wgsl"), "/* lcm { } */\nfn response(").expect("writable");
     let why = outcome("mine", &folders, program()).expect_err("is broken");
     assert!(why.contains("this ( is not closed"), "{why}");

@@ -1,4 +1,5 @@
-//! The room that the panels leave to the picture, and the texts in them that are shown whole; without a window.
+//! The space that the panels leave for the picture, and the texts in them that are shown in full; without a
+//! window.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +16,7 @@ use lights_camera_models::{
 
 use crate::window::panels::Bench;
 
-/// A window of 1280×720 pixels in which everything is so large, per cent.
+/// A window of 1280×720 pixels with this scale, in per cent.
 fn bench(scale: u16) -> Bench {
     let mut bench = Bench::with_model("phong");
     bench.size = vec2(1280.0, 720.0);
@@ -30,7 +31,7 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
         let mut bench = bench(scale);
         let picture = bench.area.rect;
         assert!(picture.width() >= share * whole - 2.0, "{scale} %: {} of {whole}", picture.width());
-        // Also when the window becomes smaller while it is open, and the other way round.
+        // Also when the window shrinks while it is open, and vice versa.
         bench.size = vec2(1920.0, 1080.0);
         bench.settle();
         assert!(bench.area.rect.width() >= 0.45 * 1.5 * whole - 2.0);
@@ -141,7 +142,7 @@ fn the_list_of_keys_has_its_descriptions_in_line_and_clear_of_the_scroll_bar() {
         if let Shape::Text(text) = shape
             && labels.iter().any(|label| label == text.galley.text())
             && text.pos.y > 100.0
-            // A key is called as what it does: Delete.
+            // A key is named after what it does: Delete.
             && (300.0..900.0).contains(&text.pos.x)
         {
             lefts.insert(text.pos.x.round() as i32);
@@ -152,7 +153,7 @@ fn the_list_of_keys_has_its_descriptions_in_line_and_clear_of_the_scroll_bar() {
     assert!(bar.is_finite() && right <= bar - 4.0, "{right}, and the bar at {bar}");
 }
 
-/// The texts on screen, and their places.
+/// The texts on screen, and their positions.
 pub fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
     let text = |shape| match shape {
         Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect())),
@@ -161,7 +162,7 @@ pub fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
     bench.shapes().into_iter().filter_map(text).collect()
 }
 
-/// The words of a text as they are on screen, with … where it is cut.
+/// The words of a text as displayed, with … where it is cut.
 fn glyphs(text: &TextShape) -> String {
     text.galley.rows.iter().flat_map(|row| &row.glyphs).map(|glyph| glyph.chr).collect()
 }
@@ -177,7 +178,7 @@ fn the_last_message_is_whole_where_there_is_room() {
         _ => None,
     };
     assert_eq!(bench.shapes().into_iter().find_map(whole), Some(true));
-    // A long one leaves room for what stands at the right.
+    // A long one leaves space for the texts on the right.
     bench.session.say(Severity::Info, words.repeat(9));
     bench.settle();
     let selected = bench.find("Sphere 1 selected · F1 keys").expect("shown").rect;
@@ -212,7 +213,7 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
             assert!((parse(text) - parse(whole)).abs() < 0.006, "{scale} %: {text}");
         }
     }
-    // What is rounded is typed into as it is.
+    // A rounded number is edited as it is.
     let mut bench = bench(100);
     let number = Vec3::new(-0.40824, -0.0824, -0.8165);
     bench.apply(Action::AddLight("directional".to_owned()));

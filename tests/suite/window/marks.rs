@@ -1,4 +1,4 @@
-//! The marks over the picture can be seen on every picture, and show lights that are outside it.
+//! The marks over the picture are visible on every picture, and show lights that are outside it.
 
 use bevy_egui::egui::{Color32, Event, PointerButton, Pos2, Rect, Shape, Vec2, epaint::ColorMode};
 use glam::Vec3;
@@ -31,7 +31,7 @@ fn point(at: [f32; 3]) -> Light {
     Light { position: Some(Vec3::from_array(at)), ..Light::default() }
 }
 
-/// A sphere that is selected, three lights in view, and the observer beside the camera.
+/// A selected sphere, three lights in view, and the observer next to the camera.
 fn marked() -> Scene {
     let mut scene = Scene::default();
     let down = Some(Vec3::new(0.3, -1.0, 0.0));
@@ -111,7 +111,7 @@ fn every_line_stands_out_of_every_picture() {
             .collect();
         assert!(pixels.len() > 3000, "on {ground:?}: {} pixels of marks", pixels.len());
         let stands_out = |x: u32, y: u32| contrast(with.at(x, y), ground) >= 3.0;
-        // No further than from the middle of a lamp to its rim.
+        // No further than from the centre of a lamp to its rim.
         let lost = pixels
             .iter()
             .filter(|(x, y)| !(x - 6..=x + 6).any(|x| (y - 6..=y + 6).any(|y| stands_out(x, y))));
@@ -143,7 +143,7 @@ fn a_light_outside_the_view_has_an_arrow_that_selects_it() {
     let mut bench = bench(Scene::default());
     let rect = bench.area.rect;
     let arrow = bench.find("Outside the view: Point 1").map(|s| s.rect.center()).unwrap();
-    // It stands at the upper right.
+    // It is at the upper right.
     assert!(arrow.x > rect.center().x && arrow.y < rect.center().y, "{arrow:?}");
     let edge = rect.shrink(50.0);
     assert!(rect.contains(arrow) && !edge.contains(arrow), "{arrow:?} in {rect:?}");
@@ -184,7 +184,7 @@ fn many_lights_share_their_arrows() {
         }
     }
     let many = arrows.iter().find(|a| a.label.ends_with("more")).unwrap();
-    // Clicking again goes on to the next.
+    // Clicking again selects the next.
     bench.click_at(many.rect.center(), PointerButton::Primary);
     let first = bench.session.selection;
     bench.click_at(many.rect.center(), PointerButton::Primary);
@@ -210,11 +210,11 @@ fn a_new_directional_light_has_its_mark_in_the_view() {
     }
 }
 
-/// The colours of lights and of what is selected.
+/// The colours of lights and of the selection.
 const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
 const BLUE: Color32 = Color32::from_rgb(0x7c, 0xc8, 0xff);
 
-/// The lines in a colour.
+/// The lines in this colour.
 fn lines(bench: &mut Bench, colour: Color32) -> Vec<Vec<Pos2>> {
     let line = |shape| match shape {
         Shape::Path(p) if p.stroke.color == ColorMode::Solid(colour) => Some(p.points),
@@ -268,7 +268,7 @@ fn light_from_a_direction_has_a_small_mark_beside_the_objects() {
         for line in lines(&mut bench, YELLOW) {
             let size = Rect::from_points(&line).size();
             assert!(size.x.max(size.y) <= 60.0, "{file}: a line of {size:?}");
-            // Lights that have a place are where they are.
+            // Lights with a position are drawn there.
             if scene.lights.iter().all(|l| l.position.is_none()) {
                 let over = line.iter().any(|p| objects.iter().any(|(at, r)| at.distance(*p) < *r));
                 assert!(!over, "{file}: {line:?} lies across an object");

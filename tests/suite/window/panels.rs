@@ -41,7 +41,7 @@ use lights_camera_models::{
     shader::Source,
 };
 
-// ── a model with everything that a panel can be asked for, and enough of them ──
+// ── a model with everything that a panel can be asked for, and many more ──
 
 const DISTRIBUTION: Parameter =
     Parameter::choice("distribution", &[("beckmann", "Beckmann"), ("ggx", "GGX (Trowbridge–Reitz)")], 1)
@@ -152,7 +152,7 @@ fn crowd() -> Registry {
     registry
 }
 
-/// A window that exists in memory only.
+/// A window that exists only in memory.
 pub struct Bench {
     pub ctx: egui::Context,
     pub session: Session,
@@ -172,7 +172,7 @@ pub struct Bench {
     painter: Painter,
 }
 
-/// A widget as a screen reader sees it.
+/// A widget as seen by a screen reader.
 #[derive(Clone, Debug)]
 pub struct Seen {
     pub role: accesskit::Role,
@@ -186,7 +186,7 @@ impl Bench {
         Self::with_registry(session, Registry::builtin())
     }
 
-    /// A window on a sphere under the model [`Everything`], among many models.
+    /// A window with a sphere and the model [`Everything`], among many models.
     pub fn with_everything() -> Self {
         let scene = Scene { reflection_model: "everything".to_owned(), ..Scene::default() };
         Self::with_registry(Session::new(scene), crowd())
@@ -223,7 +223,7 @@ impl Bench {
     pub fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
         self.time += 1.0 / 30.0;
         let input = RawInput {
-            // As bevy_egui does: of so many points is a window of so many pixels.
+            // As in bevy_egui: a window of this many points has this many pixels.
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size / self.ctx.zoom_factor())),
             time: Some(self.time),
             focused: true,
@@ -319,7 +319,7 @@ impl Bench {
         self.settle();
     }
 
-    /// Rests the pointer somewhere until the tooltip is there.
+    /// Rests the pointer somewhere until the tooltip appears.
     pub fn hover(&mut self, at: Pos2) {
         self.frame(vec![Event::PointerMoved(at)]);
         (0..30).for_each(|_| drop(self.frame(Vec::new())));
@@ -366,7 +366,7 @@ impl Bench {
         self.texts_within(Rect::EVERYTHING)
     }
 
-    /// Those over the picture.
+    /// The texts over the picture.
     pub fn words(&mut self) -> Vec<String> {
         self.texts_within(self.area.rect)
     }
@@ -379,7 +379,7 @@ impl Bench {
         self.shapes().into_iter().filter_map(text).collect()
     }
 
-    /// Lets lobes be finished.
+    /// Waits until lobes are finished.
     pub fn wait_for_lobes(&mut self) {
         for _ in 0..500 {
             self.settle();
@@ -391,7 +391,7 @@ impl Bench {
         panic!("the lobe is never finished");
     }
 
-    /// Draws the window in software and writes it to a file, over this colour in the place of the picture.
+    /// Renders the window in software and writes it to a file, with this colour instead of the picture.
     pub fn picture(&mut self, file: &Path, ground: egui::Color32) -> Result<(), Box<dyn std::error::Error>> {
         // Tooltips wait for the pointer to rest.
         for _ in 0..30 {
@@ -512,7 +512,7 @@ fn sliders_are_dragged_and_a_double_click_sets_the_default() {
         pressed,
         modifiers: Modifiers::NONE,
     };
-    // Long enough for the click before not to count.
+    // Long enough that the previous click does not count.
     (0..6).for_each(|_| bench.settle());
     for _ in 0..2 {
         bench.frame(vec![press(true)]);
@@ -530,7 +530,7 @@ fn a_complaint_moves_nothing() {
     bench.type_into("diffuse coefficient", "0.2");
     assert!(bench.says("between 0.5 and 1"));
     assert_eq!(place(&bench), before);
-    // Elsewhere it is not in the way any more.
+    // Elsewhere it is no longer in the way.
     let at = bench.field("shininess").rect.center();
     bench.click_at(at, PointerButton::Primary);
     assert!(!bench.says("between 0.5 and 1"));
@@ -556,7 +556,7 @@ fn three_numbers_are_typed_one_by_one_or_at_once() {
     assert_eq!(value(&bench), Value::Triple([1.33; 3]));
     bench.type_into("refractive index G", "2");
     assert_eq!(value(&bench), Value::Triple([1.33, 2.0, 1.33]));
-    // The end of the range is legal, what lies beyond is not.
+    // The end of the range is legal, values beyond it are not.
     bench.type_into("refractive index B", "0.01");
     assert_eq!(value(&bench), Value::Triple([1.33, 2.0, 0.01]));
     for field in ["refractive index B", "refractive index: all three"] {
@@ -582,15 +582,15 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     assert_eq!(material.get(&EXTINCTION), Value::Triple(gold.k));
     assert!(bench.says("measured material: Gold"));
     assert!(bench.says("reflectance at normal incidence: 0.942"), "the read-out follows");
-    // Away from what was measured, it is that material no more.
+    // With values other than the measured ones, it is no longer that material.
     bench.type_into("extinction coefficient R", "3");
     assert!(bench.says("measured material: none"));
-    // Nothing illegal gets in this way, not even in part.
+    // No illegal value gets in this way, not even in part.
     let before = bench.session.document.scene().clone();
     let bad = vec![("ior", Value::Triple([2.0; 3])), ("extinction", Value::Triple([99.0; 3]))];
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Preset(bad))));
     assert_eq!(*bench.session.document, before);
-    // A model that cannot be a measured material has no such knob.
+    // A model that cannot represent measured materials has no such control.
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.says("measured material"));
     assert!(bench.says("equivalent roughness: 0.352"));
@@ -794,14 +794,14 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     let (mut bench, version) = ask();
     bench.click("Keep mine");
     assert_eq!(bench.effects, keep(version));
-    // The first answer, which loses nothing, has the keyboard.
+    // The first answer, which loses nothing, has the keyboard focus.
     let (mut bench, version) = ask();
     bench.key(Key::Enter, Modifiers::NONE);
     assert_eq!(bench.effects, keep(version));
     let (mut bench, _) = ask();
     bench.click("Reload from disk");
     assert_eq!(bench.effects, [Effect::LookAtFile { discard: true }]);
-    // To leave the question is to decide later, and the picture says that there is something to decide.
+    // Leaving the question postpones the decision, and the picture shows that one is pending.
     let (mut bench, _) = ask();
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(bench.effects.is_empty() && bench.session.questions.open.is_none());
@@ -932,7 +932,7 @@ fn a_parameter_of_a_shape_has_its_knob_its_step_and_its_place_in_the_file() {
     bench.apply(Action::Undo);
     assert_eq!(tube(&bench), None);
     bench.apply(Action::Redo);
-    // As with lights, another type keeps only what is its own.
+    // As with lights, another type keeps only its own parameters.
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("superellipsoid".to_owned()))));
     assert_eq!(tube(&bench), None);
     for label in ["vertical exponent", "horizontal exponent"] {
@@ -965,7 +965,7 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
     bench.click("unit: lumen");
     bench.click("cd  candela");
     assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
-    // Lights without a flux have no choice.
+    // Lights without a flux offer no choice.
     bench.apply(Action::Edit(Edit::Light(0, LightField::Type("directional".to_owned()))));
     assert!(!bench.says("unit: ") && !bench.says(" lm"));
     let refused = bench.session.messages.len() + 1;
@@ -1235,7 +1235,7 @@ fn a_panel_from_outside_gets_a_tab() {
 
 // ── pictures ──
 
-/// A spotlight as printed on its box.
+/// A spotlight as specified on its box.
 fn lamp(bench: &mut Bench) {
     bench.apply(Action::AddLight("spot".to_owned()));
     let light = bench.session.document.lights.len() - 1;
@@ -1462,7 +1462,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Draws what egui wants drawn, in software: slow, and needs nothing.
+/// Renders egui's output in software: slow, and without dependencies.
 #[derive(Default)]
 struct Painter {
     textures: HashMap<TextureId, egui::ColorImage>,
@@ -1533,7 +1533,7 @@ impl Painter {
                 let w =
                     [edge(v[1].pos, v[2].pos, p), edge(v[2].pos, v[0].pos, p), edge(v[0].pos, v[1].pos, p)]
                         .map(|e| e / area);
-                // An edge that two triangles share belongs to one of them.
+                // An edge shared by two triangles belongs to one of them.
                 let owned = |k: usize| {
                     let (a, b) = (v[(k + 1) % 3].pos, v[(k + 2) % 3].pos);
                     let d = if area > 0.0 { b - a } else { a - b };
@@ -1581,7 +1581,7 @@ fn sample(texture: &egui::ColorImage, u: f32, v: f32) -> [f32; 4] {
 
 // ── changes ──
 
-/// Runs frames of the window of a bench with these events; the number of those that changed its state.
+/// Runs frames of a bench with these events, and returns the number of those that changed its state.
 fn changes(bench: &mut Bench, frames: impl IntoIterator<Item = Vec<Event>>) -> usize {
     let mut world = World::new();
     world.insert_resource(std::mem::take(&mut bench.session));

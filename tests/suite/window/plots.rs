@@ -49,7 +49,7 @@ fn open(bench: &mut Bench) {
     bench.apply(Action::View(ViewChange::BottomTab(PLOTS_TAB.to_owned())));
 }
 
-/// Draws frames until something is so.
+/// Draws frames until a condition holds.
 fn wait(bench: &mut Bench, until: impl Fn(&Bench) -> bool) {
     for _ in 0..2000 {
         bench.frame(Vec::new());
@@ -61,7 +61,7 @@ fn wait(bench: &mut Bench, until: impl Fn(&Bench) -> bool) {
     panic!("it does not come; there are {:?}", bench.tree.iter().map(|s| &s.label).collect::<Vec<_>>());
 }
 
-/// A window with the plots of the default scene under a model.
+/// A window with the plots of the default scene with a model.
 fn plots(model: &str, kind: Kind) -> Bench {
     let mut bench = Bench::with_model(model);
     bench.size = vec2(1280.0, 720.0);
@@ -165,7 +165,7 @@ fn the_light_is_dragged_in_the_plot() {
             "{kind:?} {}",
             bench.session.plots.theta_i
         );
-        // Far out it stops above the horizon, and the keys go on from there.
+        // Far out it stops above the horizon, and the keys continue from there.
         let start = light(&bench);
         bench.frame(vec![Event::PointerMoved(start)]);
         bench.frame(vec![press(start, true)]);
@@ -181,7 +181,7 @@ fn the_light_is_dragged_in_the_plot() {
         assert_eq!(bench.session.plots.theta_i, 0.0);
         assert!(!bench.session.is_dirty(), "the plots are not the scene's");
     }
-    // Where nothing depends on it there is none.
+    // Where nothing depends on it, there is no handle.
     let bench = plots("phong", Kind::Albedo);
     assert!(bench.find(LIGHT).is_none());
 }
@@ -203,7 +203,7 @@ fn curves_are_pinned_hidden_and_removed() {
     bench.click("Pin");
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(64)))));
     wait(&mut bench, |bench| bench.find("Phong, α = 64").is_some());
-    // The pinned one stays as it was, with a colour of its own.
+    // The pinned one stays unchanged, with a separate colour.
     assert!(surface(&bench).label.ends_with("Phong, α = 64; Phong"), "{}", surface(&bench).label);
     let styles = [bench.session.plots.live_style, bench.session.plots.pins[0].style];
     assert!(styles[0].colour != styles[1].colour && styles[0].line != styles[1].line);
@@ -218,7 +218,7 @@ fn curves_are_pinned_hidden_and_removed() {
     assert_eq!(bench.session.plots.pins.len(), 1);
     bench.click("Remove the curve of Phong");
     assert!(bench.session.plots.pins.is_empty());
-    // The style comes back for the next.
+    // The style is reused for the next.
     ask(&mut bench, PlotCommand::Pin);
     assert_eq!(bench.session.plots.pins[0].style, styles[1]);
 }
@@ -238,7 +238,7 @@ fn colour_and_dash_are_chosen_in_the_list() {
     let dotted = offered(&bench, "dotted").expect("it is offered");
     bench.click_at(dotted, PointerButton::Primary);
     assert_eq!(bench.session.plots.live_style, Style { colour: 2, line: Line::Dotted });
-    // Files have the same.
+    // Files contain the same.
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.svg");
     let request = Request::of(&bench.session, &bench.registry);
@@ -261,7 +261,7 @@ fn models_and_measured_data_are_laid_over() {
     assert!(matches!(&of[0], Of::Model { id, .. } if id.contains("oren")), "{of:?}");
     assert!(matches!(&of[1], Of::Measured(id) if id.starts_with("gold-metallic")), "{of:?}");
     wait(&mut bench, |bench| surface(bench).label.contains("gold metallic paint"));
-    // A paint at an angle at which it was measured, and at another.
+    // A paint at a measured angle, and at another.
     ask(&mut bench, PlotCommand::Add(Of::Measured("garnet_red".to_owned())));
     wait(&mut bench, |bench| bench.says("Garnet red was measured with the light at"));
     let said = bench.tree.iter().find(|s| s.label.contains("measured with the light at")).expect("there");
@@ -275,7 +275,7 @@ fn models_and_measured_data_are_laid_over() {
 fn what_a_model_lacks_is_said() {
     let mut bench = plots("lambert", Kind::Fresnel);
     wait(&mut bench, |bench| bench.says("Lambert has no Fresnel factor F. Models with one: "));
-    // It needs no choice of the light, which would change nothing.
+    // It needs no choice of the light, which would have no effect.
     assert!(bench.field("Angle of the light θ_i in degrees").disabled);
     ask(&mut bench, PlotCommand::Kind(Kind::Albedo));
     ask(&mut bench, PlotCommand::Add(Of::Measured("acryl_blue".to_owned())));
@@ -362,7 +362,7 @@ fn nothing_is_calculated_while_the_plots_are_closed_and_no_frame_waits() {
     for red in 0..10 {
         change(&mut bench, red);
     }
-    // A change asks the model which terms it has, and nothing more.
+    // A change only asks the model which terms it has.
     let before = calls();
     bench.settle();
     thread::sleep(Duration::from_millis(300));
@@ -376,14 +376,14 @@ fn nothing_is_calculated_while_the_plots_are_closed_and_no_frame_waits() {
     assert!(!bench.says("Image slice of the BRDF: Counted"), "it cannot be there yet");
     assert!(frames < Duration::from_millis(1200), "the frames waited: {frames:?}");
     wait(&mut bench, |_| calls() > before);
-    // Folded away, the work stops within a few frames.
+    // When collapsed, the work stops within a few frames.
     bench.apply(Action::View(ViewChange::Bottom(false)));
     thread::sleep(Duration::from_millis(1000));
     let stopped = calls();
     assert!(stopped < before + 48 * 48);
     thread::sleep(Duration::from_millis(300));
     assert_eq!(calls(), stopped);
-    // And goes on when they are shown again.
+    // And continues when they are shown again.
     ask(&mut bench, PlotCommand::Kind(Kind::Brdf));
     open(&mut bench);
     wait(&mut bench, |bench| surface(bench).label.ends_with("Counted, base colour = (20, 0, 0)"));
@@ -440,7 +440,7 @@ fn files_that_are_something_else_stay() {
     refused(&at("a.csv"), true, &[at("a.csv")]);
     assert_eq!(write(&request, &at("a.csv"), true, &[], &Progress::NONE), Ok(Vec::new()));
     assert!(refused(&at("none/a.csv"), false, &[]).contains("could not be written"));
-    // A plot without curves is no plot.
+    // A plot without curves is not a plot.
     let mut empty = request.clone();
     empty.entries.iter_mut().for_each(|entry| entry.shown = false);
     let why = write(&empty, &at("b.svg"), false, &[], &Progress::NONE).expect_err("it is empty");
@@ -565,7 +565,7 @@ fn the_time_of_a_frame_while_a_knob_is_dragged() {
     }
 }
 
-/// What is calculated is in the pictures.
+/// Asserts that the calculated curves appear in the pictures.
 fn rest(bench: &mut Bench) {
     for _ in 0..12 {
         thread::sleep(Duration::from_millis(60));

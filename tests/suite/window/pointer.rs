@@ -1,5 +1,5 @@
-//! The camera turns alike under a mouse, which tells how far it was moved, and under a pointer that tells only where
-//! it is, as those of virtual machines do.
+//! The camera turns equally with a mouse, which reports its movement, and with a pointer that reports only
+//! its position, as in virtual machines.
 
 #![cfg(target_os = "linux")]
 
@@ -30,7 +30,8 @@ fn after_drag(step: impl Fn(&mut Keyboard, i16)) -> (Picture, Picture) {
     (before, window.rest())
 }
 
-/// The pixels of the picture between the panels that differ, without the line that tells the frames per second.
+/// The pixels of the picture between the panels that differ, without the line that shows the frames per
+/// second.
 fn differ(a: &Picture, b: &Picture) -> usize {
     let places = (40..680).flat_map(|y| (215..930).map(move |x| (x, y)));
     places.filter(|(x, y)| (0..3).any(|c| a.at(*x, *y)[c].abs_diff(b.at(*x, *y)[c]) > 8)).count()
@@ -39,7 +40,7 @@ fn differ(a: &Picture, b: &Picture) -> usize {
 #[test]
 fn a_press_that_comes_with_its_move_is_of_the_panel_where_it_is_made() {
     let screen = Screen::new(1280, 720);
-    // A scene, since the strip of examples would change as their pictures come.
+    // A scene, since the strip of examples would change as their pictures arrive.
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/default.json");
     let mut window = screen.start(&["view", scene]);
     window.until("a sphere", |p| p.at(610, 310)[0] > 180);

@@ -1,4 +1,4 @@
-//! The size of everything, the presentation, and a layout that stands still.
+//! The size of everything, presentation mode, and a stable layout.
 
 use std::collections::HashMap;
 
@@ -249,12 +249,12 @@ fn a_presentation_says_for_a_moment_what_happened() {
     assert!(!said(&mut bench), "what was said before is none of its news");
     assert!(bench.texts().iter().any(|text| text == "Esc leaves the presentation"));
     for _ in 0..2 {
-        // The same again is news again.
+        // The same message again is news again.
         bench.session.say(Severity::Info, words);
         bench.settle();
         assert!(said(&mut bench));
         assert!(!bench.texts().iter().any(|text| text.starts_with("Esc")), "one at a time");
-        // A frame is a thirtieth of a second.
+        // A frame takes a thirtieth of a second.
         (0..160).for_each(|_| drop(bench.frame(Vec::new())));
         assert!(!said(&mut bench), "for a moment");
     }
@@ -275,7 +275,7 @@ fn the_chooser_of_a_presentation_comes_without_the_bar() {
     assert!(!bench.session.view.chooser_open, "a click beside it closes it");
 }
 
-/// The heights of the capitals on screen, points, with the text that they are in.
+/// The heights of the capitals on screen, in points, with the text that contains them.
 fn capitals(bench: &mut Bench) -> Vec<(f32, String)> {
     let mut all = Vec::new();
     for shape in bench.shapes() {
@@ -327,7 +327,7 @@ fn equations_of_a_presentation_leave_room_for_the_picture() {
     }
 }
 
-/// The definitions that are shown, as a screen reader finds them.
+/// The visible definitions, as found by a screen reader.
 fn definitions_shown(bench: &Bench) -> Vec<String> {
     let labels = bench.tree.iter().filter(|s| s.role == Role::Label && s.label.contains(" = "));
     labels.flat_map(|s| s.label.split("; ").map(str::to_owned).collect::<Vec<_>>()).collect()
@@ -350,7 +350,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             }
             let height = 720.0 / bench.area.zoom;
             for (high, text) in capitals(&mut bench) {
-                // Indices may be smaller: those of P_L and F_V are capitals.
+                // Subscripts may be smaller: those of P_L and F_V are capitals.
                 let least = if text.chars().count() == 1 { 0.017 } else { 0.025 };
                 assert!(high >= least * height, "{}, {scale} %: {text}: {high} of {height}", d.id);
             }
@@ -366,7 +366,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             let edge = lens.project(object.position + 0.5 * object.size * glam::Vec3::X).unwrap();
             for shape in bench.shapes() {
                 let Shape::Rect(r) = shape else { continue };
-                // Around the picture, rectangles have no rounded corner.
+                // Around the picture, rectangles have no rounded corners.
                 let hidden = r.rect.clamp(at).distance(at) < edge.distance(at);
                 assert!(
                     !hidden || r.rect == picture || r.rect.contains_rect(picture),
@@ -390,7 +390,7 @@ fn no_definition_of_a_presentation_is_broken_within_brackets() {
             for shape in bench.shapes() {
                 let Shape::Text(text) = shape else { continue };
                 let Some(glyph) = text.galley.rows.first().and_then(|r| r.glyphs.first()) else { continue };
-                // Brackets that are as tall as fractions are no text, and come in pairs.
+                // Brackets that are as tall as fractions are not text, and come in pairs.
                 let line = (text.pos.y + glyph.pos.y).round() as i32;
                 let signs = text.galley.text().chars().map(|c| i32::from(c == '(') - i32::from(c == ')'));
                 *open.entry(line).or_default() += signs.sum::<i32>();
@@ -529,7 +529,7 @@ fn the_menus_stand_at_the_same_place_in_every_scene() {
     assert!(bench.says(long));
 }
 
-/// The places of everything that has a name of its own.
+/// The positions of all named widgets.
 fn places(bench: &Bench) -> HashMap<String, egui::Rect> {
     let named = bench.tree.iter().filter(|s| !s.label.is_empty());
     let once = named.filter(|s| bench.tree.iter().filter(|o| o.label == s.label).count() == 1);
@@ -607,7 +607,7 @@ mod on_screen {
     const SURROUND: [u8; 3] = [46, 46, 46];
     const PANEL: [u8; 3] = [21, 21, 21];
 
-    /// True if a place is of one colour, nearly.
+    /// True if an area has nearly one colour.
     fn is(p: &Picture, x: std::ops::Range<u32>, y: std::ops::Range<u32>, colour: [u8; 3]) -> bool {
         let all = (x.len() * y.len()) as f32;
         p.count(x, y, |at| at == colour) as f32 > 0.8 * all

@@ -28,12 +28,12 @@ fn capture(size: Option<(u32, u32)>, scene: &str) -> Picture {
 #[test]
 fn the_window_shows_the_picture_between_the_panels() {
     let window = capture(None, "default.json");
-    // The sphere stands in the middle of the picture, lit from the upper right.
+    // The sphere is in the middle of the picture, lit from the upper right.
     let (lit, dark) = (window.at(610, 310), window.at(505, 430));
     assert!(lit[0] > 180 && lit[0] == lit[1] && lit[1] == lit[2], "the lit side is {lit:?}");
     assert!(dark[0] < 40, "the dark side is {dark:?}");
     assert_eq!(window.at(230, 60), [46, 46, 46], "the surround is neutral");
-    // Both panels, the bar above and the line below hold text.
+    // Both panels, the bar above and the line below contain text.
     for (what, x, y) in [
         ("tree", 0..200, 40..200),
         ("inspector", 950..1270, 40..600),

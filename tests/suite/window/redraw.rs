@@ -1,4 +1,4 @@
-//! The picture is drawn when something that it shows changed, and at no other time.
+//! The picture is drawn when something that it shows has changed, and at no other time.
 
 #![cfg(target_os = "linux")]
 
@@ -6,8 +6,8 @@ use std::{thread, time::Duration};
 
 use crate::{helpers::keyboard::Keyboard, helpers::screen::Screen};
 
-/// The frames that a window drew in which the pointer was moved: those with panels alone, those with the picture too,
-/// and those in which its state changed.
+/// The frames drawn by a window in which the pointer was moved: those with only panels, those with the
+/// picture too, and those in which its state changed.
 fn frames(moves: impl Fn(&mut Keyboard)) -> [u64; 3] {
     let screen = Screen::new(1280, 720);
     let mut window = screen.start(&["view", "--verbose"]);
@@ -29,7 +29,7 @@ fn a_pointer_over_the_panels_draws_no_picture_and_a_drag_in_the_picture_does() {
     let pause = || thread::sleep(Duration::from_millis(40));
     let [_, still, calm] = frames(|_| {});
     let [panels, hovered, changes] = frames(|pointer| {
-        // Over the scene list, the knobs on the right, and the strip below.
+        // Over the scene list, the controls on the right, and the strip below.
         for k in 0..15 {
             for (x, y) in [(60, 80 + 30 * k), (1100, 80 + 30 * k), (300 + 40 * k, 700)] {
                 pointer.point_at(x, y);

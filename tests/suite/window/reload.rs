@@ -1,4 +1,4 @@
-//! The open window follows the file of its scene, by itself and without any input.
+//! The open window follows the file of its scene, automatically and without any input.
 
 #![cfg(target_os = "linux")]
 
@@ -17,7 +17,7 @@ use crate::{
     helpers::screen::{Picture, Running, Screen},
 };
 
-/// A sphere of a colour in the middle of the picture.
+/// A sphere with this colour in the middle of the picture.
 fn scene(colour: [u8; 3]) -> String {
     format!(
         r#"{{
@@ -33,7 +33,7 @@ fn scene(colour: [u8; 3]) -> String {
     )
 }
 
-/// True if the picture shows a sphere that is all in one channel.
+/// True if the picture shows a sphere in only one channel.
 fn shows(channel: usize) -> impl Fn(&Picture) -> bool {
     move |picture| {
         let lit = |p: [u8; 3]| p[channel] > 100 && (0..3).all(|c| c == channel || p[c] < 40);
@@ -46,7 +46,7 @@ fn error_badge(picture: &Picture) -> bool {
     picture.count(210..700, 40..90, |p| p == [0xff, 0x8a, 0x7a]) > 100
 }
 
-/// Saves as many editors do: another file takes the place of the old one.
+/// Saves as many editors do: another file replaces the old one.
 fn save_by_renaming(file: &Path, text: &str) {
     let new = file.with_extension("new");
     fs::write(&new, text).expect("writable");
@@ -79,7 +79,7 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     assert!(shows(2)(&picture) && !error_badge(&picture));
     assert_eq!(window.said(), "", "an empty file for a moment is no error");
 
-    // A window that rests uses no processor at all.
+    // A resting window uses no processor time at all.
     let begin = Instant::now();
     loop {
         let before = window.ticks();
@@ -104,7 +104,7 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     assert!(!shows(2)(&picture));
 }
 
-/// The same scene as a table.
+/// The scene as a table.
 fn table([r, g, b]: [u8; 3]) -> String {
     format!(
         "part,type,position,direction,intensity,size,material.base_colour,reflection_model,shading_model,scene_size.height,scene_size.width,scene_size.depth,field_of_view
@@ -181,7 +181,8 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{
     )
 }
 
-/// Waits until the window said something on standard error since all was well last; that.
+/// Waits until the window has written a matching message to standard error since the last valid state, and
+/// returns it.
 fn until_said(window: &Running<'_>, expected: impl Fn(&str) -> bool) -> String {
     let begin = Instant::now();
     loop {
@@ -195,7 +196,7 @@ fn until_said(window: &Running<'_>, expected: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// True if the picture has something in the colour of errors: the badge and the frame of stale shaders.
+/// True if the picture contains the colour of errors: the badge and the frame of stale shaders.
 fn stale(picture: &Picture) -> bool {
     picture.count(210..920, 40..560, |p| p == [0xff, 0x8a, 0x7a]) > 1000
 }
@@ -220,7 +221,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     ]);
     window.until("a red sphere", shows(0));
 
-    // The text alone, then a parameter too, which turns the layout of the rows.
+    // The text alone, then a parameter too, which changes the layout of the rows.
     save_by_renaming(&model, &custom_model("vec3(0.0, 1.0, 0.0)", ""));
     window.until("a green sphere", shows(1));
     let knob = r#"{ "name": "tint", "type": "colour", "default": [0, 0, 255] }, "base_colour""#;
@@ -228,7 +229,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     window.until("a blue sphere", shows(2));
     assert_eq!(window.said(), "");
 
-    // Five mistakes; each leaves the blue sphere and says where it is.
+    // Five errors; each leaves the blue sphere and reports its position.
     for (mistake, line) in [
         (custom_model("m.tint", knob).replace("dot(frame.n, l)", "dot(frame.n l)"), "8:"),
         (custom_model("m.tnt", knob), "8:"),
@@ -248,7 +249,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
         assert!(shows(2)(&picture));
     }
 
-    // A file that all shaders share, broken for all; then the light loop takes the green away.
+    // A file that all shaders share, broken for all; then the light loop removes the green.
     let file = assets.join("shaders/loop.wgsl");
     let text = fs::read_to_string(&file).expect("there");
     save_in_place(&file, &text.replace("fn illuminate(", "fn illuminate(("));
@@ -259,14 +260,14 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     save_by_renaming(&file, &turned);
     let picture = window.until("a red sphere", shows(0));
     assert!(!stale(&picture) || !stale(&window.until("no badge", |p| !stale(p))));
-    // A file that is gone is missed, and the picture stays.
+    // A missing file is reported, and the picture stays.
     fs::remove_file(&model).expect("removed");
     assert!(shows(0)(&window.until("a badge", stale)));
     fs::write(&model, custom_model("vec3(0.0, 1.0, 0.0)", "")).expect("writable");
     window.until("a green sphere", |p| shows(1)(p) && !stale(p));
 }
 
-/// A model whose response does something before it answers.
+/// A model whose response does something before it returns.
 fn doing(global: &str, what: &str) -> String {
     custom_model("vec3(0.0, 1.0, 0.0)", "").replace(
         "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {",
@@ -307,7 +308,7 @@ fn hostile_models_neither_end_nor_freeze_an_open_window() {
         until_said(&window, |news| news.contains("tinted.wgsl:"));
         println!("{name}: told after {:?}", begin.elapsed());
         assert!(shows(0)(&window.until("a badge", stale)), "{name}: the last good version stays");
-        // It goes on answering: another scene is shown.
+        // It still responds: another scene is shown.
         save_by_renaming(&room, &text.replace("\"size\": 2,", "\"size\": 2.5,"));
         window.until("a larger sphere", |p| shows(0)(p));
         save_by_renaming(&room, &text);
@@ -315,7 +316,7 @@ fn hostile_models_neither_end_nor_freeze_an_open_window() {
         until_said(&window, str::is_empty);
         window.until("no badge", |p| shows(0)(p) && !stale(p));
     }
-    // The twin: a model that is none of these is drawn.
+    // The twin: a harmless model is drawn.
     save_by_renaming(&model, &doing("", "x = x + 1.0;"));
     window.until("a green sphere", shows(1));
 }

@@ -1,4 +1,5 @@
-//! The scene list: hiding, colours, deleting, names for life; and what the picture and the messages say of it.
+//! The scene list: hiding, colours, deleting, permanent names; and what the picture and the messages report
+//! about it.
 
 use std::{collections::BTreeSet, path::PathBuf};
 
@@ -184,7 +185,7 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench), ["Sphere 1", "Sphere 2", "Cube 1", "Sphere 3"]);
     bench.apply(Action::Remove(Selection::Object(0)));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3"]);
-    // The others are what they were: nothing is written into them ; the file gets the names.
+    // The others are unchanged: nothing is written into them; the file gets the names.
     assert!(bench.session.document.objects.iter().all(|object| object.name.is_none()));
     bench.apply(Action::AddObject("sphere".to_owned()));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3", "Sphere 4"]);
@@ -194,13 +195,13 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench)[1..], ["Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
-    // The file has them too, and of its parts only those that it would call otherwise.
+    // The file has them too, and names only the parts that it would otherwise name differently.
     let again = |session: &Session, registry: &Registry| {
         names(&Bench::new(Session::new(read(&written(&session.document.named(registry))))))
     };
     assert_eq!(again(&bench.session, &bench.registry), all);
     assert_ne!(names(&Bench::new(Session::new(read(&written(&bench.session.document))))), all);
-    // A system that changes a type or the list gives no other part another name.
+    // A system that changes a type or the list does not rename other parts.
     let mut scene = bench.session.document.scene().clone();
     scene.objects[2].object_type = "torus".to_owned();
     scene.objects.remove(1);
@@ -211,7 +212,7 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(again(&bench.session, &bench.registry), fewer);
     bench.apply(Action::Undo);
     assert_eq!(names(&bench), all);
-    // A name that is taken away makes room for no second one of its kind.
+    // Removing a name does not allow a second one of its kind.
     let name = |text: &str| Action::Edit(Edit::Object(3, ObjectField::Name(text.to_owned())));
     bench.apply(name("Ball"));
     bench.apply(Action::Edit(Edit::Object(4, ObjectField::Name("Sphere 3".to_owned()))));
@@ -242,7 +243,7 @@ fn the_caption_says_what_the_picture_shows() {
         caption_text(&session, &registry),
         "Phong · Phong shading · computed per pixel · k_a 0.1 · k_d 0.8 · k_s 0.5 · α 32"
     );
-    // The scene's shading reaches no object that has its own.
+    // The scene's shading does not affect an object with its own.
     session.document.amend(|scene| scene.objects[0].shading_model = Some("gouraud".to_owned()));
     session.document.amend(|scene| scene.shading_model = "flat".to_owned());
     session.selection = Selection::Room;
@@ -264,7 +265,7 @@ fn terms_that_are_empty_are_passed_over() {
         bench.key(Key::T, Modifiers::NONE);
         bench.session.view.terms
     };
-    // One term: there is nothing to take apart.
+    // One term: nothing to separate.
     let mut bench = Bench::new(Session::default());
     assert_eq!(press(&mut bench), TermSelection::All);
     assert!(bench.session.messages.iter().any(|m| m.text.contains("one term")));
@@ -275,7 +276,7 @@ fn terms_that_are_empty_are_passed_over() {
     assert_eq!(press(&mut bench), TermSelection::Diffuse, "k_a is 0: there is no ambient term");
     assert!(bench.says("Only the diffuse term"), "a badge while terms are hidden");
     assert_eq!(press(&mut bench), TermSelection::Specular);
-    // The model changes: what is left is one term, which is not the one that is shown.
+    // The model changes: a single term is left, other than the one shown.
     bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
     assert!(bench.says("Terms: specular"), "the way back is there");
     assert_eq!(press(&mut bench), TermSelection::All);
@@ -310,7 +311,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
         bench.effects,
         [Effect::SaveFile { path: PathBuf::from("/somewhere/a.json"), overwrite: false }]
     );
-    // A name that the user gave stays.
+    // A name given by the user stays.
     bench.apply(Action::Edit(Edit::SceneName("My lecture".to_owned())));
     bench.apply(Action::SaveAs(PathBuf::from("/somewhere/other.json")));
     assert_eq!(bench.session.title(), "My lecture");
@@ -341,7 +342,7 @@ fn the_caption_has_key_values_in_the_order_of_their_declaration() {
         assert!(caption.contains(values), "{caption}");
         assert!(caption.matches(" · ").count() <= 6, "{caption}");
     }
-    // A parameter that was changed is shown, wherever it stands.
+    // A changed parameter is scrolled into view, wherever it is.
     let mut bench = Bench::with_model("disney");
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("clearcoat", Value::Number(0.25)))));
     assert!(caption_text(&bench.session, &bench.registry).ends_with(" 0.25"));
@@ -370,7 +371,7 @@ fn the_caption_is_broken_between_its_parts_and_never_long() {
                 .collect();
             assert!(texts.iter().any(|(t, ..)| t.contains("shading")), "{scale}: {texts:?}");
             assert!(texts.iter().all(|(t, _, rows)| *rows == 1 && !t.contains('_')), "{scale}: {texts:?}");
-            // Where there is room for some of the values only, the exponent is among them.
+            // If only some values fit, the exponent is among them.
             let shows = |value: &str| texts.iter().any(|(t, ..)| t == value);
             let coefficients = ["0.1", "0.8", "0.5"].into_iter().any(shows);
             assert!(model != "blinn_phong" || !coefficients || shows("32"), "{scale}: {texts:?}");
@@ -394,7 +395,7 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
         assert_eq!((bench.session.view.terms, bench.session.selection), (TermSelection::All, part));
         assert!(badge(&bench).is_none());
     }
-    // A model that lacks the term shows black, and the badge says why.
+    // A model that lacks the term is black, and the badge explains why.
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
     assert!(badge(&bench).unwrap().label.contains("which is 0 with Lambert"));
@@ -443,7 +444,7 @@ fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
     bench.letter(Key::G, "g");
     assert!(bench.session.messages.iter().any(|m| m.text.contains("overrides the shading model")));
     assert!(!bench.session.view.bottom_open && bench.says("overrides the shading model"), "in sight");
-    // As often as it is asked for, until something else is done.
+    // As often as requested, until something else is done.
     bench.letter(Key::F, "f");
     assert!(bench.says("overrides the shading model"));
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Size(0.5))));
@@ -472,7 +473,7 @@ fn a_scene_that_was_saved_elsewhere_is_called_so() {
     bench.settle();
     assert_eq!(bench.session.window_title(), "ex1");
     assert!(bench.says("ex1 has no unsaved changes"), "the bar says the same");
-    // A scene that came from a file has the name that its author gave it.
+    // A scene that came from a file has the name given by its author.
     let example = EXAMPLES[shapes].scene(&bench.registry).expect("shipped");
     bench.session.opened(PathBuf::from("/somewhere/shapes_and_lights.json"), example);
     let path = PathBuf::from("/somewhere/copy.json");
@@ -487,7 +488,7 @@ fn a_scene_that_was_saved_elsewhere_is_called_so() {
 fn scenes_are_saved_with_their_extension() {
     let mut bench = Bench::new(Session::default());
     for (typed, file, overwrite) in [
-        // Nobody was asked about the file that this is.
+        // Nobody was asked about this file.
         ("/somewhere/renamed", "/somewhere/renamed.json", false),
         ("/somewhere/lesson.v2", "/somewhere/lesson.v2.json", false),
         ("/somewhere/a.json", "/somewhere/a.json", true),
@@ -525,7 +526,7 @@ fn names_that_begin_alike_can_be_told_apart() {
     bench.apply(Action::Select(Selection::Room));
     let shown: BTreeSet<_> = (bench.shapes().into_iter())
         .filter_map(|shape| match shape {
-            // As it is painted: what is left out is in no glyph.
+            // As painted: omitted text is not in any glyph.
             Shape::Text(t) if t.galley.text().starts_with("gold") => {
                 Some(t.galley.rows[0].glyphs.iter().map(|g| g.chr).collect::<String>())
             }

@@ -47,7 +47,7 @@ fn trouble(file: &str, line: usize, column: usize, source: &str, message: &str, 
     }
 }
 
-/// A word is missing in the model that the window shows.
+/// A missing word in the model shown by the window.
 fn broken_lambert() -> Trouble {
     trouble(
         "reflection/lambert.wgsl",
@@ -98,7 +98,7 @@ fn bench_with(troubles: Vec<Trouble>) -> Bench {
     bench
 }
 
-/// The badge on the picture, as a screen reader finds it.
+/// The badge on the picture, as found by a screen reader.
 fn badge(bench: &Bench) -> Option<(String, egui::Rect)> {
     let found = bench.tree.iter().find(|s| s.label.starts_with("Showing the last good version"))?;
     Some((found.label.clone(), found.rect))
@@ -138,7 +138,7 @@ fn the_strip_that_an_error_unfolded_folds_itself_once_the_file_is_healed() {
         let before = strip(&bench);
         set(&mut bench, vec![broken_lambert()]);
         assert_eq!(strip(&bench), shader);
-        // Another error, and one of the two healed: it stays.
+        // Another error, and one of the two fixed: it stays.
         let other = trouble("reflection/phong.wgsl", 3, 1, "", "another one", &[]);
         set(&mut bench, vec![broken_lambert(), other.clone()]);
         set(&mut bench, vec![other]);
@@ -146,7 +146,7 @@ fn the_strip_that_an_error_unfolded_folds_itself_once_the_file_is_healed() {
         set(&mut bench, Vec::new());
         assert_eq!(strip(&bench), before, "as it was");
     }
-    // What the user opened, or chose meanwhile, stays.
+    // Anything opened or selected by the user meanwhile stays.
     set(&mut bench, vec![broken_lambert()]);
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     set(&mut bench, Vec::new());
@@ -360,7 +360,7 @@ fn every_file_of_the_picture_is_listed_and_can_be_opened() {
     ] {
         assert!(bench.says(&format!("{name}: {path}")), "{path}");
     }
-    // The scene has no spot, so its shaders do without.
+    // The scene has no spotlight, so its shaders omit it.
     assert!(!bench.says("the light type: spot: light/spot.wgsl"));
     assert!(bench.says("the model: reflection/lambert.wgsl: error in line 12"));
     bench.click("Open reflection/lambert.wgsl in an editor");
@@ -451,7 +451,7 @@ fn paths_keep_both_ends_where_there_is_little_room() {
     let shown = texts(&mut bench);
     let folder = shown.iter().find(|text| text.ends_with("lab/shaders")).expect("the folder that is watched");
     assert!(folder.starts_with("/home") && folder.contains('…'), "{folder}");
-    // Beside the line of an error, the name of the file is what counts.
+    // Next to the line of an error, the file name matters.
     bench.session.shaders.troubles = vec![broken_lambert()];
     bench.settle();
     let shown = texts(&mut bench);
@@ -467,7 +467,7 @@ fn paths_keep_both_ends_where_there_is_little_room() {
     assert!(texts(&mut bench).contains(&whole), "{:?}", texts(&mut bench));
 }
 
-/// The texts that are painted.
+/// The painted texts.
 fn texts(bench: &mut Bench) -> Vec<String> {
     let text = |s| if let Shape::Text(t) = s { Some(t.galley.text().to_owned()) } else { None };
     bench.shapes().into_iter().filter_map(text).collect()
@@ -498,7 +498,7 @@ fn a_new_model_is_named_and_written() {
     let mut bench = bench_with(Vec::new());
     bench.key(Key::N, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
     assert_eq!(bench.session.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
-    // The field has the focus, and typing replaces the proposal.
+    // The field has the focus, and typing replaces the suggestion.
     bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
     assert!(bench.says("“groesse” would do"), "what would be right");
@@ -604,7 +604,7 @@ fn a_model_that_vanishes_leaves_a_sentence() {
     bench.settle();
     assert!(bench.says("models/my_velvet.wgsl:3:9: expected a declaration"));
     assert!(bench.says("no version of the file models/my_velvet.wgsl yet that works"));
-    // Nothing that can be asked of it is a reason to stop.
+    // Nothing that it can be asked causes it to stop.
     for ask in [ModelCommand::Duplicate, ModelCommand::EditShown] {
         bench.apply(Action::Model(ask));
     }
@@ -676,7 +676,7 @@ fn an_editor_is_started_and_a_failure_is_told() -> Result<(), Box<dyn std::error
             assert!(complaints[0].contains(word), "{complaints:?}");
         }
     }
-    // An editor that stays open holds nothing up.
+    // An editor that stays open blocks nothing.
     let started = Instant::now();
     editors.open(Some("sh -c sleep\t3 {file}"), &file, 1, wake());
     assert!(started.elapsed() < Duration::from_secs(1));
@@ -725,7 +725,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert!(bench.find("Custom models").is_some(), "a family of its own");
     bench.key(Key::Escape, Modifiers::NONE);
 
-    // The same once more is refused, and asked again.
+    // The same again is refused, with another question.
     fs::write(&file, "mine")?;
     let copy = |id: &str, name: &str| Effect::DuplicateModel {
         model: "phong".to_owned(),
@@ -747,7 +747,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let gone = Effect::DuplicateModel { model: "gone".to_owned(), id: name.clone(), name };
     write(&gone, &mut bench.session, &bench.registry);
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
-    // A folder that cannot be one.
+    // A path that cannot be a folder.
     bench.registry.set_custom_folder(&file);
     write(&new, &mut bench.session, &bench.registry);
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("could not be written")));
@@ -773,13 +773,13 @@ fn shaders_are_written_out_once_and_told() -> Result<(), Box<dyn std::error::Err
     Ok(())
 }
 
-/// The least that a file of one's own can be.
+/// The minimum of a custom model file.
 const BARE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
 ";
 
-/// A window on a model that says nothing of itself.
+/// A window with a model without a description.
 fn bare() -> Bench {
     let mut bench = bench_with(Vec::new());
     let path = Path::new("/home/mira/lab/models/bare.wgsl");
@@ -806,7 +806,7 @@ fn a_model_without_equation_source_and_laws_is_shown_as_it_is() {
     assert!(!bench.tree.iter().any(|s| s.label == "✗ not reciprocal"), "what is not claimed is not denied");
 }
 
-/// Asserts that these are whole within the strip.
+/// Asserts that these are completely within the strip.
 fn whole(bench: &Bench, labels: &[&str]) {
     let scale = bench.area.zoom;
     let bottom = (720.0 - 22.0) / scale;

@@ -1,4 +1,4 @@
-//! Pictures that the window saves.
+//! Pictures saved by the window.
 
 use std::{fs, path::Path};
 
@@ -32,7 +32,7 @@ const SCENE: &str = r#"{
 const RED: fn([u8; 3]) -> bool = |p| p[0] > 200 && p[1] < 30 && p[2] < 30;
 const BLUE: fn([u8; 3]) -> bool = |p| p[2] > 200 && p[1] < 30 && p[0] < 30;
 
-/// A lab without a window, on this scene, with views of 120×90 pixels.
+/// A windowless lab with this scene, and views of 120×90 pixels.
 fn lab(folder: &Path) -> App {
     let scene = folder.join("room.json");
     fs::write(&scene, SCENE).expect("writable");
@@ -40,9 +40,9 @@ fn lab(folder: &Path) -> App {
     app(bevy::app::PluginGroup::build(plugins), |_| ())
 }
 
-/// Lets a lab take a picture, until it says how that ended or asks something.
+/// Takes a picture in a lab, until it reports the result or asks something.
 fn take(app: &mut App, view: Option<usize>, file: &Path, overwrite: bool) -> Vec<(Severity, String)> {
-    // Messages that repeat one are none.
+    // Repeated messages do not count.
     session(app).messages.clear();
     let effect = Effect::Picture { view, file: Some(file.to_owned()), overwrite };
     app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(effect));
@@ -80,7 +80,7 @@ fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = lab(folder.path());
     session(&mut app).view.picture_caption = false;
-    // Without the ending, which is added.
+    // Without the extension, which is added.
     let saved = take(&mut app, None, &folder.path().join("taken"), false);
     let file = folder.path().join("taken.png");
     assert_eq!(saved, [(Severity::Info, format!("Saved the picture to {}.", file.display()))]);
@@ -90,13 +90,13 @@ fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
     let scene = opened(&file);
     assert_eq!(scene.variants[0].name.as_deref(), Some("in blue"));
     assert_eq!(scene.observer, session(&mut app).document.observer);
-    // With a caption it is as wide, and higher.
+    // With a caption it has the same width, and is taller.
     session(&mut app).view.picture_caption = true;
     let _ = take(&mut app, None, &file, true);
     let captioned = Picture::read(&file);
     assert!(captioned.width == 120 && captioned.height > 100, "{}", captioned.height);
     assert_eq!(captioned.at(60, 45), picture.at(60, 45));
-    // Seen from elsewhere, it opens from there.
+    // Seen from another position, it opens from there.
     session(&mut app).facts.eye.x += 1.0;
     session(&mut app).facts.camera_left = true;
     let _ = take(&mut app, None, &file, true);

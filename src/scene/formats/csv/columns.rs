@@ -43,32 +43,32 @@ impl Part {
     }
 }
 
-/// The components of vectors and of colours in the names of columns.
+/// The components of vectors and of colours in column names.
 const AXES: [&str; 3] = ["x", "y", "z"];
 const CHANNELS: [&str; 3] = ["r", "g", "b"];
 /// The keys of vectors.
 const VECTORS: [&str; 3] = ["position", "direction", "rotation"];
-/// The keys of texts that are no parameters.
+/// The keys of texts that are not parameters.
 const TEXTS: [&str; 7] =
     ["type", "name", "description", "reflection_model", "shading_model", "tone_mapping", "encoding"];
 
 /// A column that a table may have.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
-    /// Its name.
+    /// The name in the first line of the table.
     pub(super) name: String,
-    /// The way to the field, from the part on: `material`, `k_d`.
+    /// The path of the field within the part: `material`, `k_d`.
     pub(super) keys: Vec<&'static str>,
     /// The index in the list if the column is one component of it.
     pub(super) component: Option<usize>,
-    /// The parts whose field of that name is a text.
+    /// The parts in which a field of this name is a text.
     texts: Vec<Part>,
     /// The parts that have the field.
     pub(super) of: Vec<Part>,
 }
 
 impl Column {
-    /// True if a cell of this column is a text, whatever it looks like.
+    /// True if a cell of this column is a text even if it looks like a number.
     pub(super) fn is_text(&self, part: Part) -> bool {
         self.texts.contains(&part)
     }
@@ -79,12 +79,12 @@ pub(super) fn components(key: &str) -> [&'static str; 3] {
     if VECTORS.contains(&key) { AXES } else { CHANNELS }
 }
 
-/// True if the components of a list have a column each in a new table.
+/// True if each component of a list has its own column in a new table.
 pub(super) fn is_spread(key: &str) -> bool {
     VECTORS.contains(&key)
 }
 
-/// All columns that a table may have, in the order of a new one.
+/// All columns that a table may have, in the order of a new table.
 pub(super) fn all(registry: &Registry) -> Vec<Column> {
     let mut all = All(Vec::new());
     for key in ["type", "name"] {
@@ -124,7 +124,7 @@ fn keys(part: Part) -> &'static [&'static str] {
     }
 }
 
-/// The columns so far.
+/// The columns collected so far.
 struct All(Vec<Column>);
 
 impl All {
@@ -172,20 +172,21 @@ impl All {
 
 /// The columns of a table.
 pub(super) struct Columns {
-    /// After the first; `None` for those that are not known.
+    /// The columns after the first; `None` for unknown ones.
     pub(super) list: Vec<Option<Column>>,
-    /// Those of the list without a name.
+    /// The indices of columns without a name.
     pub(super) unnamed: HashSet<usize>,
-    /// The row of the heading among those of the grid.
+    /// The index of the heading's row in the grid.
     pub(super) heading: usize,
-    /// The byte at which the heading begins.
+    /// The index of the heading's first byte.
     pub(super) start: usize,
-    /// Names that are not known, and those given twice.
+    /// The problems of unknown names and of names given twice.
     pub(super) problems: Problems,
 }
 
 impl Columns {
-    /// The columns in the heading of a table; the byte and the reason if it has none.
+    /// The columns in the heading of a table. The error is a byte index and the reason why the table has no
+    /// heading.
     pub(super) fn of(grid: &Grid, registry: &Registry) -> Result<Self, (usize, String)> {
         let rows = grid.rows.iter().enumerate();
         let heading = rows
@@ -231,7 +232,7 @@ impl Columns {
     }
 }
 
-/// The nearest name of a column, by its last word or by what other programs call it.
+/// The nearest name of a column, by its last word or by the name in other programs.
 fn hint(written: &str, known: &[Column]) -> String {
     let names = known.iter().map(|column| (column.name.as_str(), column.name.as_str()));
     let last = |column: &Column| column.name.rsplit_once('.').map_or(0, |(before, _)| before.len() + 1);

@@ -1,4 +1,4 @@
-//! Cells and their places: CSV as RFC 4180 has it, with the separators of spreadsheets.
+//! Cells and their positions: CSV according to RFC 4180, with the separators of spreadsheets.
 
 use std::{borrow::Cow, ops::Range};
 
@@ -11,16 +11,16 @@ const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 /// A cell.
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
-    /// The bytes of its content, without quotation marks around it and white space outside them.
+    /// The bytes of the content, without quotation marks around it and white space outside them.
     pub(super) range: Range<usize>,
-    /// True if it is in quotation marks.
+    /// True if the cell is in quotation marks.
     quoted: bool,
 }
 
 /// A line of the table; a cell may have line breaks.
 #[derive(Clone, Debug)]
 pub(super) enum Row {
-    /// A remark: the bytes of the whole line.
+    /// A remark: the byte range of the whole line.
     Comment(Range<usize>),
     /// Cells, of which at least one is not empty.
     Cells(Vec<Cell>),
@@ -30,16 +30,16 @@ pub(super) enum Row {
 pub(super) struct Grid<'a> {
     pub(super) text: &'a str,
     pub(super) separator: u8,
-    /// In the order of the text, without those that are empty.
+    /// The rows in the order of the text, without empty ones.
     pub(super) rows: Vec<Row>,
-    /// The rows that are no remarks.
+    /// The number of rows that are not remarks.
     filled: usize,
-    /// All cells and remarks.
+    /// The number of all cells and remarks.
     cells: usize,
 }
 
 impl<'a> Grid<'a> {
-    /// The table in a text, or the byte at which it is none and the reason.
+    /// The table in a text. The error is a byte index and the reason why the text is not a table.
     pub(super) fn of(text: &'a str) -> Result<Self, (usize, String)> {
         let mut grid = Self { text, separator: separator(text), rows: Vec::new(), filled: 0, cells: 0 };
         let mut at = 0;
@@ -58,7 +58,7 @@ impl<'a> Grid<'a> {
         Ok(grid)
     }
 
-    /// Counts a cell or a remark at a byte.
+    /// Counts a cell or a remark at this byte.
     fn count(&mut self, at: usize) -> Result<(), (usize, String)> {
         self.cells += 1;
         match self.cells {
@@ -75,7 +75,7 @@ impl<'a> Grid<'a> {
         content(self.text, cell)
     }
 
-    /// Reads the row at a byte; returns the byte after it.
+    /// Reads the row at this byte; returns the index of the byte after it.
     fn row(&mut self, start: usize) -> Result<usize, (usize, String)> {
         let bytes = self.text.as_bytes();
         let end_of_line =
@@ -121,7 +121,7 @@ impl<'a> Grid<'a> {
         Ok(end + 1)
     }
 
-    /// Reads the cell at a byte; returns the byte of the separator or line break after it.
+    /// Reads the cell at this byte; returns the index of the separator or line break after it.
     fn cell(&self, start: usize) -> Result<(Cell, usize), (usize, String)> {
         let bytes = self.text.as_bytes();
         let ends = |b: u8| b == self.separator || b == b'\n';
@@ -155,7 +155,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// A text whose lines end as those of old Macintosh programs, with today's ends at the same bytes.
+/// A text with the line ends of old Macintosh programs replaced by line feeds, at the same bytes.
 pub(super) fn with_line_feeds(text: &str) -> Cow<'_, str> {
     if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n").into() } else { text.into() }
 }
@@ -177,12 +177,12 @@ fn trimmed(text: &str, range: Range<usize>) -> Range<usize> {
     start..start + all.trim().len()
 }
 
-/// The separator with which the first line that is no remark has the most columns.
+/// The separator that gives the most columns in the first line that is not a remark.
 fn separator(text: &str) -> u8 {
     let is_remark = |line: &str| line.trim_start_matches('"').starts_with('#');
     let first = text.lines().find(|line| !line.trim().is_empty() && !is_remark(line)).unwrap_or_default();
     let count = |separator: u8| first.bytes().filter(|b| *b == separator).count();
-    // Of equal ones, the last is the greatest.
+    // Among equal counts, `max_by_key` returns the last.
     SEPARATORS.into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 

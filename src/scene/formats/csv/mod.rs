@@ -1,15 +1,17 @@
 //! Scenes as tables (CSV, RFC 4180): one row per part, for scenes that are made in a spreadsheet or by a script.
 //!
-//! The first column, `part`, says what a row is: `scene`, `light`, `observer` or `object`. The other columns have the
-//! names of the fields of scene files in JSON, from the part on: `type`, `size`, `material.k_d`. Of lists, each component
-//! may have a column: `position.x`. Empty cells count as not given. Rows whose first cell begins with `#` are comments.
+//! The first column, `part`, gives the kind of a row: `scene`, `light`, `observer` or `object`. The other
+//! columns have the names of the fields of scene files in JSON, relative to the part: `type`, `size`,
+//! `material.k_d`. Each component of a list may have a column: `position.x`. Empty cells count as missing.
+//! Rows whose first cell begins with `#` are comments.
 //!
-//! A table becomes the same tree of values that JSON does, with the places of its cells, and is read from there by the
-//! same code; and it is written from what would be written as JSON. So all rules, all parameters and all messages are
-//! those of JSON.
+//! A table becomes the same tree of values as JSON, with the positions of its cells, and is read from there
+//! by the same code; it is written from what would be written as JSON. All rules, parameters and messages are
+//! therefore those of JSON.
 //!
-//! As spreadsheets in some countries write tables, columns may be separated by semicolons or tabs; numbers may have a
-//! decimal comma then. Lines may end as on old Macintoshes. A table that is written again keeps its separators, the order of its columns, and its comments.
+//! As in tables from spreadsheets in some countries, columns may be separated by semicolons or tabs; numbers
+//! may then have a decimal comma. Lines may end as on old Macintoshes. A table that is written again keeps
+//! its separators, the order of its columns, and its comments.
 
 use std::borrow::Cow;
 
@@ -37,12 +39,13 @@ use grid::Grid;
 pub struct Csv;
 
 impl Csv {
-    /// The most rows that are no remarks: the heading, the scene, the observer, and all parts that a scene may have. A
-    /// table with more is read no further, so it costs what the largest legal one does.
+    /// Maximum number of rows except comments: the header, the scene, the observer, and all parts that a
+    /// scene may have. Reading stops after this number, so a longer table costs no more than the largest
+    /// legal one.
     pub const MAX_ROWS: usize = 3 + MAX_LIGHTS + MAX_OBJECTS;
-    /// The most cells of a row. There are some hundred columns with a meaning.
+    /// Maximum number of cells in a row. Only some hundred columns have a meaning.
     pub const MAX_COLUMNS: usize = 1 << 15;
-    /// The most cells and remarks; a legal table with all columns has a third.
+    /// Maximum number of cells and remarks; a legal table with all columns has a third of it.
     pub const MAX_CELLS: usize = 4_000_000;
 }
 
@@ -55,7 +58,7 @@ impl SceneFormat for Csv {
         &["csv"]
     }
 
-    /// True if the first line that is no comment begins with the name of the first column.
+    /// True if the first line that is not a comment begins with the name of the first column.
     fn recognises(&self, content: &[u8]) -> bool {
         let mut lines = after_mark(content).split(|b| b"\r\n".contains(b)).map(<[u8]>::trim_ascii);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();

@@ -1,11 +1,12 @@
-//! The problems that are found before the values of a table are read: as many as are listed, and the number of the rest.
+//! The problems found before the values of a table are read: up to the maximum that is listed, and the number
+//! of the rest.
 
 use crate::scene::{
     error::Problem,
     read::{MAX_PROBLEMS, MAX_SUGGESTIONS},
 };
 
-/// Problems, each with its byte.
+/// Problems, each with its byte index.
 #[derive(Debug, Default)]
 pub(super) struct Problems {
     list: Vec<(usize, Problem)>,
@@ -13,7 +14,7 @@ pub(super) struct Problems {
 }
 
 impl Problems {
-    /// Adds one. It is told if it should look for what was meant, which takes time.
+    /// Adds a problem. The argument of `problem` is true if it should look for suggestions, which takes time.
     pub(super) fn add(&mut self, at: usize, problem: impl FnOnce(bool) -> Problem) {
         match self.list.len() {
             MAX_PROBLEMS.. => self.unlisted += 1,
@@ -21,7 +22,7 @@ impl Problems {
         }
     }
 
-    /// Those that are listed, and the number of the rest.
+    /// The listed problems, and the number of the rest.
     pub(super) fn into_parts(self) -> (Vec<(usize, Problem)>, usize) {
         (self.list, self.unlisted)
     }

@@ -1,4 +1,4 @@
-//! From the cells of a table to the tree of values that JSON would give.
+//! Conversion from the cells of a table to the tree of values that JSON would give.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// The rows below the heading, with their parts; `None` for those of no part.
+/// The rows below the header, with their parts; `None` for rows without a part.
 fn parts<'g>(grid: &'g Grid, columns: &Columns) -> impl Iterator<Item = (&'g [Cell], Option<Part>)> {
     grid.rows[columns.heading + 1..].iter().filter_map(|row| match row {
         Row::Comment(_) => None,
@@ -32,7 +32,7 @@ fn parts<'g>(grid: &'g Grid, columns: &Columns) -> impl Iterator<Item = (&'g [Ce
     })
 }
 
-/// The bytes of the decimal commas. Where commas separate columns, they are none.
+/// The bytes of the decimal commas; empty if commas separate columns.
 pub(super) fn decimal_commas(grid: &Grid, columns: &Columns) -> Vec<usize> {
     let mut commas = Vec::new();
     if grid.separator == b',' {
@@ -61,7 +61,7 @@ pub(super) fn decimal_commas(grid: &Grid, columns: &Columns) -> Vec<usize> {
     commas
 }
 
-/// The text with points at these bytes.
+/// The text with the commas at these bytes replaced by points.
 pub(super) fn with_points(text: &str, commas: &[usize]) -> String {
     let mut pointed = text.to_owned();
     for at in commas {
@@ -177,7 +177,7 @@ fn fields<'a>(
     fields
 }
 
-/// Puts a value under its keys, of which there are two at most.
+/// Inserts a value under its keys, of which there are at most two.
 fn put<'a>(fields: &mut Vec<ObjectProp<'a>>, keys: &[&'static str], place: &Range<usize>, value: Ast<'a>) {
     match keys {
         [outer, inner] => {
@@ -195,7 +195,7 @@ fn put<'a>(fields: &mut Vec<ObjectProp<'a>>, keys: &[&'static str], place: &Rang
     }
 }
 
-/// The value in a cell: a text where the field is one, and otherwise what it looks like.
+/// The value in a cell: text if the field is a text, and otherwise according to its appearance.
 fn value<'a>(text: &'a str, cell: &Cell, column: &Column, part: Part) -> Ast<'a> {
     let place = range(&cell.range);
     let string = || Ast::StringLit(StringLit { range: place, value: content(text, cell) });
@@ -220,7 +220,7 @@ fn value<'a>(text: &'a str, cell: &Cell, column: &Column, part: Part) -> Ast<'a>
     }
 }
 
-/// True for numbers as people write them; infinity and the like are none.
+/// True for numbers as people write them, but not for infinity and the like.
 fn is_number(text: &str) -> bool {
     text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b)) && text.parse::<f64>().is_ok()
 }

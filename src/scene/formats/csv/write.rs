@@ -1,4 +1,4 @@
-//! From the tree of values that JSON has to the rows of a table.
+//! Conversion from the tree of values of JSON to the rows of a table.
 
 use std::{borrow::Cow, collections::HashSet};
 
@@ -12,7 +12,7 @@ use crate::{
     text::json::{self, Ast, STRICT},
 };
 
-/// What a table that is written again keeps of the old one.
+/// The properties of an existing table that are kept when it is written again.
 struct Manner {
     separator: char,
     line_end: &'static str,
@@ -20,11 +20,11 @@ struct Manner {
     decimal_comma: bool,
     /// The names of the columns.
     columns: Vec<String>,
-    /// Remarks, each before the row with that part and index; `None` for those at the end.
+    /// The remarks, each with the part and index of the row after it; `None` for those at the end.
     remarks: Vec<(Option<Place>, String)>,
 }
 
-/// The place of a row: the heading, or the n-th row of a part.
+/// The position of a row: the heading, or the n-th row of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Heading,
@@ -45,7 +45,7 @@ impl Default for Manner {
 }
 
 impl Manner {
-    /// The manner of a table; that of new ones if it is none.
+    /// The properties of a table; the defaults if the text is not a table.
     fn of(old: &str, registry: &Registry) -> Self {
         let text = old.trim_start_matches('\u{FEFF}');
         let text = &*with_line_feeds(text);
@@ -82,12 +82,12 @@ impl Manner {
     }
 }
 
-/// True if the first line ends as on Windows.
+/// True if the first line ends with a Windows line break.
 fn ends_as_on_windows(text: &str) -> bool {
     text.find('\n').is_some_and(|at| text[..at].ends_with('\r'))
 }
 
-/// A row: the names of its columns, each with its cell.
+/// A row: its cells, each with the name of its column.
 struct Cells {
     part: Part,
     list: Vec<(String, String)>,
@@ -130,7 +130,7 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
         let cell = |name: &String| list.iter().find(|(n, _)| n == name).map_or("", |(_, cell)| cell.as_str());
         line([part.name()].into_iter().chain(names.iter().map(cell)), &manner, &mut out);
     }
-    // Remarks on rows that are gone stay, too.
+    // Comments on removed rows stay too.
     let gone = |place: Option<Place>| match place {
         None => true,
         Some(Place::Heading) => false,
@@ -140,7 +140,7 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
     out
 }
 
-/// The values below one, each with the name of its column and as its cell.
+/// The values within a value, each as a cell with the name of its column.
 fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec<(String, String)>) {
     use jsonc_parser::common::Ranged as _;
     let number = |value: &Ast| {
@@ -172,7 +172,7 @@ fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec
     }
 }
 
-/// The columns of the table: those that it had, and those that it needs.
+/// The columns of the table: the existing ones, and those that are needed.
 fn names(rows: &[Cells], manner: &Manner, registry: &Registry) -> Vec<String> {
     let used: HashSet<&str> = rows.iter().flat_map(|row| row.list.iter().map(|(n, _)| n.as_str())).collect();
     let mut names = manner.columns.clone();
@@ -184,7 +184,7 @@ fn names(rows: &[Cells], manner: &Manner, registry: &Registry) -> Vec<String> {
     names
 }
 
-/// Writes the remarks of some places.
+/// Writes the remarks at the selected positions.
 fn remarks(manner: &Manner, of: impl Fn(Option<Place>) -> bool, out: &mut String) {
     for (_, remark) in manner.remarks.iter().filter(|(place, _)| of(*place)) {
         out.push_str(remark);
@@ -202,7 +202,7 @@ fn line<'c>(cells: impl Iterator<Item = &'c str>, manner: &Manner, out: &mut Str
     out.push_str(manner.line_end);
 }
 
-/// A cell, in quotation marks if it needs them.
+/// A cell, in quotation marks if necessary.
 fn escaped(cell: &str, separator: char) -> Cow<'_, str> {
     if cell.contains([separator, '"', '\n', '\r']) || cell != cell.trim() {
         return format!("\"{}\"", cell.replace('"', "\"\"")).into();

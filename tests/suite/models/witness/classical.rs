@@ -1,4 +1,5 @@
-//! The classical models, and the two highlights of the *Commonality Analysis*, whose lobes other programs share.
+//! The classical models, and the two highlights of the *Commonality Analysis*, with lobes shared by other
+//! programs.
 
 use std::f64::consts::{LN_2, PI};
 
@@ -52,8 +53,8 @@ fn at(surface: &dyn Surface, i: f64, r: f64, phi: f64) -> f64 {
     f64::from(brdf(surface, direction(i, 0.0), direction(r, phi), &LOCAL).x)
 }
 
-/// The directional albedo `∫ f cos θ dω` at a cosine, by Gauss's rule of two points in each of many steps
-/// of cos θ and of φ: exact enough for BRDFs without narrow lobes.
+/// The directional albedo `∫ f cos θ dω` at a cosine, by two-point Gauss quadrature in each of many steps of
+/// cos θ and of φ: accurate enough for BRDFs without narrow lobes.
 fn albedo(surface: &dyn Surface, mu: f64) -> f64 {
     const STEPS: usize = 400;
     let view = direction(mu.acos().to_degrees(), 0.0);
@@ -95,7 +96,7 @@ fn normalised_blinn_phong_is_the_lobe_of_brdf_explorer_times_the_exact_factor() 
     // The factor itself: not (n + 8)/8π, which is 0.9549297.
     assert_near(at(&normalised(1.0, 16.0), 0.0, 0.0, 0.0), 0.895_028_0, 1e-6);
     assert!(!near(0.954_929_7, 0.895_028_0, 0.05));
-    // α = 0 is Lambert, and so is a lobe of which nothing is reflected.
+    // α = 0 is Lambert, and so is a lobe without reflection.
     for surface in [normalised(1.0, 0.0), normalised(0.0, 500.0), normalised(0.3, 0.0)] {
         assert_near(at(&surface, 50.0, 20.0, 130.0), 1.0 / PI, 1e-6);
     }
@@ -115,7 +116,7 @@ fn modified_phong_is_that_of_brdf_explorer_and_of_bbm() {
 fn narrow_lobes_have_the_height_and_width_of_the_formula() {
     let n: f64 = 1e6;
     for tilt in [0.0f64, 0.02, 0.05, 0.1, 0.2] {
-        // Light at 30°, view off the mirror direction by the tilt in its plane; H off N by half of it.
+        // Light at 30°, view tilted off the mirror direction in its plane; H off N by half of it.
         let off = tilt.to_radians();
         let expected = (n + 2.0) / (2.0 * PI) * off.cos().powf(n);
         // For directions in f32 the angle is accurate to 3e-8, which the power multiplies to n · off · 3e-8.
@@ -286,7 +287,8 @@ fn hapke_is_what_was_published_at_all_angles() {
                 let (i, e) = (f64::to_radians(i), f64::to_radians(e));
                 let got = f64::from(brdf(surface, l, v, &LOCAL).x);
                 let expected = published_hapke(surface, i, e, g);
-                // The azimuth, which the published form derives from the phase angle, is accurate to some 1e-6.
+                // The azimuth, which the published form derives from the phase angle, is accurate to about
+                // 1e-6.
                 assert!(near(got, expected, 1e-4), "{n} at {i} {e} {phi}: {got} is not {expected}");
                 let wrong = Hapke { mean_slope: surface.mean_slope + 0.1, ..*surface };
                 told_apart |= !near(got, published_hapke(&wrong, i, e, g), 1e-4);

@@ -16,7 +16,7 @@ use lights_camera_models::{
 
 use super::{LOCAL, Row, assert_rows, near, rows};
 
-/// Asserts that a factor is that of every row, and that `wrong` is not.
+/// Asserts that a factor equals that of every row, and that `wrong` does not.
 fn assert_factor(rows: &[Row], factor: impl Fn(Vec3, Vec3) -> f32, wrong: impl Fn(Vec3, Vec3) -> f32) {
     for row in rows {
         let got = f64::from(factor(row.l, row.v));
@@ -150,7 +150,7 @@ fn combinations_are_those_of_three_programs() {
 }
 
 /// BBM's anisotropic rows mask with the geometric mean of the two roughnesses, where the theory (E. Heitz
-/// 2014) has the roughness along the direction. With its masking, its distribution is ours.
+/// 2014) uses the roughness along the direction. With its masking, its distribution equals ours.
 #[test]
 fn anisotropic_lobes_are_those_of_bbm_but_for_its_masking() {
     let alpha = Vec2::new(0.2, 0.5);
@@ -175,8 +175,8 @@ fn anisotropic_lobes_are_those_of_bbm_but_for_its_masking() {
     assert!(rows.iter().any(|row| !near(f(alpha.yx(), row), row.f[0], 1e-2)), "the wrong twin passes");
 }
 
-/// Mitsuba converts measured spectra of n and k to three numbers in its own way. One pair (n, k) per channel matches
-/// all its rows with this lobe, and none with another lobe.
+/// Mitsuba converts measured spectra of n and k to three numbers in its own way. One pair (n, k) per channel
+/// matches all its rows with this lobe, and none with another lobe.
 #[test]
 fn metals_of_mitsuba_are_conductors_with_one_pair_of_constants() {
     let misfit = |rows: &[Row], d: u32, alpha: [f32; 2], channel: usize| {

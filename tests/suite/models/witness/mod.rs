@@ -1,5 +1,5 @@
-//! Every model against values calculated by other programs (`tests/data/golden/`), and against closed forms. One file
-//! for each group of models.
+//! Every model against values calculated by other programs (`tests/data/golden/`), and against closed forms.
+//! One file for each group of models.
 
 mod classical;
 mod microfacet;
@@ -14,9 +14,10 @@ use lights_camera_models::{
     reflection::{Surface, brdf},
 };
 
-/// One value of another program: the BRDF in sr⁻¹ without the cosine, or the bare factor that the row is named after.
+/// A value from another program: the BRDF in sr⁻¹ without the cosine, or the bare factor after which the row
+/// is named.
 pub struct Row {
-    /// The program's input, in its own words.
+    /// The program's input, in its own notation.
     pub params: String,
     /// Unit vector to the light, in the local frame: normal +z, tangent +x.
     pub l: Vec3,
@@ -29,10 +30,10 @@ pub struct Row {
 /// The frame of the rows.
 pub const LOCAL: Frame = Frame::LOCAL;
 
-/// The rows of a model of a program whose parameters contain `params`.
+/// The rows of a program's model whose parameters contain `params`.
 ///
 /// # Panics
-/// If there are none: a comparison with nothing is no test.
+/// Panics if there are none: a comparison with nothing is not a test.
 pub fn rows(oracle: &str, model: &str, params: &str) -> Vec<Row> {
     let text = include_str!("../../../data/golden/brdf_values.csv");
     let rows: Vec<_> = text
@@ -73,7 +74,7 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// True if two values are equal up to `tolerance`, relative; values below 1e-7 count as zero.
+/// True if two values are equal up to the relative `tolerance`; values below 1e-7 count as zero.
 pub fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * a.abs().max(b.abs()) + 1e-7
 }

@@ -1,5 +1,5 @@
-//! OpenPBR against Adobe's program: values and albedos, with the tolerances by which its tables and fits differ from
-//! integration.
+//! OpenPBR against Adobe's implementation: values and albedos, with the tolerances by which its tables and
+//! fits differ from integration.
 
 use glam::{DVec3, Vec2, Vec3};
 use lights_camera_models::{
@@ -23,12 +23,12 @@ use super::{LOCAL, cells, direction};
 /// A material of the golden files.
 struct Set {
     group: String,
-    /// The parameters that are not default, in OpenPBR's names.
+    /// The non-default parameters, with OpenPBR's names.
     own: Map<String, Json>,
     material: OpenPbr,
 }
 
-/// The name of a parameter of ours.
+/// The name of a parameter here.
 fn ours(name: &str) -> String {
     match name {
         "base_metalness" => "metallic".into(),
@@ -38,7 +38,7 @@ fn ours(name: &str) -> String {
     }
 }
 
-/// A material from OpenPBR's names; what is missing has its default.
+/// A material from OpenPBR's names; missing parameters have their defaults.
 fn material(own: &Map<String, Json>) -> OpenPbr {
     let mut values = Values::default();
     for (name, value) in own {
@@ -96,8 +96,8 @@ fn f(material: &OpenPbr, l: Vec3, v: Vec3) -> DVec3 {
     brdf_of(material.response(l, v, &LOCAL), l, v, &LOCAL).as_dvec3()
 }
 
-/// The relative and the absolute tolerance of a group: Adobe's tables have 16 bits, those of albedos are coarse near an
-/// index of 1, and its means of F are fits.
+/// The relative and the absolute tolerance of a group: Adobe's tables have 16 bits, those of albedos are
+/// coarse near an index of 1, and its means of F are fits.
 fn tolerance(set: &Set) -> (f64, f64) {
     match set.group.as_str() {
         "gloss" => (4e-5, 1e-7),
@@ -111,7 +111,7 @@ fn tolerance(set: &Set) -> (f64, f64) {
     }
 }
 
-/// By how many tolerances two values differ.
+/// The difference between two values, in tolerances.
 fn distance(set: &Set, a: DVec3, b: DVec3) -> f64 {
     let (t, s) = tolerance(set);
     (0..3).map(|i| (a[i] - b[i]).abs() / (t * a[i].abs().max(b[i].abs()) + s)).fold(0.0, f64::max)
@@ -139,7 +139,7 @@ fn openpbr_has_the_values_of_adobes_program() {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), rows.len(), wrong.join("\n"));
 }
 
-/// The largest distance of a twin to the rows of a group.
+/// The largest difference of a twin from the rows of a group.
 fn worst(group: &str, twin: impl Fn(&Set, Vec3, Vec3) -> DVec3) -> f64 {
     let (sets, rows) = values();
     let of = |row: &Row| {
@@ -164,7 +164,7 @@ fn number(set: &Set, name: &str, default: f64) -> f64 {
 
 #[test]
 fn openpbrs_wrong_twins_are_rejected() {
-    // Masking that correlates heights, for isotropic boundaries of index 1.5.
+    // Height-correlated masking, for isotropic boundaries of index 1.5.
     let correlated = worst("gloss", |set, l, v| {
         if set.own.len() > 1 {
             return f(&set.material, l, v);
@@ -180,19 +180,19 @@ fn openpbrs_wrong_twins_are_rejected() {
         let swapped = worst(group, |set, l, v| f(&set.material, v, l));
         assert!(swapped > 1.5, "{group}: {swapped}");
     }
-    // The weight of the base outside the rough body.
+    // The weight of the base outside the rough diffuse term.
     let outside = worst("diffuse", |set, l, v| {
         number(set, "base_weight", 1.0) * f(&with(set, &[("base_weight", 1.0)]), l, v)
     });
     assert!(outside > 10.0, "{outside}");
-    // Twice the roughening by the coat, as the text has it.
+    // Twice the roughening by the coat, as in the text.
     let twice = worst("coat", |set, l, v| {
         let (r, c) = (number(set, "specular_roughness", 0.3), number(set, "coat_roughness", 0.0));
         let more = (r.powi(4) + (1.0 + 1.0 / number(set, "coat_ior", 1.6)) * c.powi(4)).min(1.0).powf(0.25);
         f(&with(set, &[("specular_roughness", more)]), l, v)
     });
     assert!(twice > 10.0, "{twice}");
-    // Other wavelengths of the film: the same as another thickness in each channel.
+    // Other wavelengths of the film: equivalent to another thickness in each channel.
     let other = worst("thin_film", |set, l, v| {
         let d = number(set, "thin_film_thickness", 0.5);
         let at = |ratio: f64| f(&with(set, &[("thin_film_thickness", d * ratio)]), l, v);
@@ -252,7 +252,7 @@ fn openpbr_has_the_albedos_of_adobes_program() {
 
 #[test]
 fn a_white_body_below_a_smooth_boundary_reflects_everything() {
-    // Without roughness of the body and without film, coat and fuzz, nothing is lost or gained.
+    // Without roughness of the diffuse base and without film, coat and fuzz, nothing is lost or gained.
     for (roughness, strength) in [(0.3, 1.0), (0.7, 1.0), (1.0, 0.5)] {
         let own = serde_json::json!({
             "base_color": [1.0, 1.0, 1.0], "specular_roughness": roughness, "specular_weight": strength

@@ -1,8 +1,8 @@
 //! Torrance–Sparrow, Cook–Torrance, metallic–roughness and Disney.
 //!
-//! Omitted rows, since nothing here is defined like them: Mitsuba's `roughplastic` (light that is scattered below and
-//! leaves through the surface again) and the last set of its `principled` (its clear coat has another strength and
-//! distribution).
+//! Omitted rows, since nothing here has an equal definition: Mitsuba's `roughplastic` (light that is
+//! scattered below and leaves through the surface again) and the last set of its `principled` (its clear coat
+//! has another strength and distribution).
 
 use std::f64::consts::{PI, TAU};
 
@@ -37,8 +37,8 @@ fn cook_torrance(slope: f32) -> CookTorrance {
 
 #[test]
 fn cook_torrance_is_a_quarter_of_what_the_paper_prints() {
-    // BBM follows the print: F D G/(π (N·L)(N·V)) with D = exp(−tan²/m²)/(m² cos⁴), four times the form
-    // of a normalised D.
+    // BBM follows the printed version: F D G/(π (N·L)(N·V)) with D = exp(−tan²/m²)/(m² cos⁴), four times the
+    // form of a normalised D.
     let printed = rows("bbm", "CookTorrance", "");
     assert_rows(&scaled(printed, |_| 0.25), &cook_torrance(0.2), &cook_torrance(0.2001), TOLERANCE);
     let at_normal = f64::from(brdf(&cook_torrance(0.2), Vec3::Z, Vec3::Z, &LOCAL).x);
@@ -47,14 +47,14 @@ fn cook_torrance_is_a_quarter_of_what_the_paper_prints() {
 
 #[test]
 fn cook_torrance_is_beckmann_of_other_programs_where_nothing_is_masked() {
-    // They mask by Smith's theory, which differs from V-shaped cavities at 85° only.
+    // They mask by Smith's theory, which differs from V-shaped cavities only at 85°.
     let open = |rows: Vec<Row>| rows.into_iter().filter(|r| r.l.z > 0.3).collect::<Vec<_>>();
     for (model, params) in [("CookTorranceWalter", "0.3"), ("CookTorranceHeitz", "[0.3, 0.3]")] {
         let rows = open(rows("bbm", model, params));
         assert_eq!(rows.len(), 5);
         assert_rows(&rows, &cook_torrance(0.3), &cook_torrance(0.3002), TOLERANCE);
     }
-    // Aluminium: Mitsuba converts spectra to colours, here three wavelengths stand for them, hence 3 %.
+    // Aluminium: Mitsuba converts spectra to colours, which three wavelengths replace here, hence 3 %.
     let metal = preset::by_id("aluminium").unwrap();
     let aluminium = |slope| CookTorrance {
         ior: metal.n.into(),
@@ -81,7 +81,7 @@ fn torrance_sparrow_is_the_gaussian_form_of_blinn_1977_normalised() {
     assert_rows(&rows, &surface(0.1), &surface(0.1001), TOLERANCE);
 }
 
-/// The base colour that BRDF Explorer calculates with: it decodes by gamma 2.2.
+/// The base colour used by BRDF Explorer, which decodes with gamma 2.2.
 fn gamma(rgb: [f64; 3]) -> Vec3 {
     DVec3::from(rgb.map(|c| c.powf(2.2))).as_vec3()
 }

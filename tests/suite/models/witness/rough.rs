@@ -22,7 +22,7 @@ const EXPLORER: &str = "disney_brdf_explorer";
 const WARD: u32 = 0;
 const DUER: u32 = 1;
 
-/// Ward's highlight alone, white.
+/// Only Ward's highlight, white.
 fn ward(ward_form: u32, alpha_x: f32, alpha_y: f32) -> Ward {
     Ward { base_colour: Vec3::ONE, specular_colour: Vec3::ONE, k_s: 1.0, alpha_x, alpha_y, ward_form }
 }
@@ -63,7 +63,7 @@ fn lambert_has_the_values_of_other_programs() {
     for (oracle, model) in [(BBM, "Lambertian"), (EXPLORER, "lambert")] {
         assert_rows(&rows(oracle, model, ""), &lambert(0.5), &lambert(0.5001), 1e-5);
     }
-    // Those of rough surfaces without roughness are Lambert too.
+    // Rough diffuse surfaces without roughness are Lambert too.
     let rows = rows(BBM, "Lambertian", "");
     assert_rows(&rows, &oren_nayar(FULL, 0.0, 0.5), &oren_nayar(FULL, 0.1, 0.5), 1e-5);
     assert_rows(&rows, &oren_nayar(QUALITATIVE, 0.0, 0.5), &oren_nayar(QUALITATIVE, 0.1, 0.5), 1e-5);
@@ -106,7 +106,7 @@ fn qualitative_oren_nayar_has_the_values_of_another_program() {
 
 #[test]
 fn burley_is_what_colours_the_disney_model_of_another_program() {
-    // Without tint, sheen and metal only the base is coloured, so the channels differ by it alone.
+    // Without tint, sheen and metal only the base is coloured, so only it makes the channels differ.
     let colour = [0.82f64, 0.67, 0.16].map(|c| c.powf(2.2));
     let differences = |c: [f64; 3]| [c[0] - c[1], c[1] - c[2], c[0] - c[2]];
     let rows: Vec<_> = rows(EXPLORER, "disney", "baseColor=.82,.67,.16")
@@ -120,7 +120,7 @@ fn burley_is_what_colours_the_disney_model_of_another_program() {
     assert_rows(&rows, &surface(0.5), &surface(0.501), 1e-5);
 }
 
-/// Pairs of directions above the surface, the same in every run; none closer to grazing than 0.6°.
+/// Pairs of directions above the surface, identical in every run; none closer to grazing than 0.6°.
 fn pairs() -> impl Iterator<Item = (Vec3, Vec3)> {
     // The fractions of multiples of irrational numbers fill the square evenly.
     let fraction = |i: usize, step: f64| (i as f64 * step).fract();
@@ -241,7 +241,7 @@ fn fon_albedo(mu: f64, r: f64) -> f64 {
     a + r * a / PI * g
 }
 
-/// Its average, and ρ of what is reflected more than once.
+/// The average albedo, and ρ for light reflected more than once.
 fn fon_average(r: f64, rho: f64) -> (f64, f64) {
     let a = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * r);
     let average = a * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * r);
@@ -283,8 +283,8 @@ fn burley_is_its_published_equation() {
     }
 }
 
-/// The directional albedo `∫ f_r cos θ dω` at cos θ_v = `mu`, of the terms that `pick` picks: midpoint
-/// rule in polar angle and azimuth.
+/// The directional albedo `∫ f_r cos θ dω` at cos θ_v = `mu`, for the terms selected by `pick`: midpoint rule
+/// in polar angle and azimuth.
 fn albedo_of(surface: &dyn Surface, mu: f64, pick: impl Fn(Terms) -> Vec3) -> f64 {
     const ROWS: usize = 300;
     let v = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu).as_vec3();
@@ -429,7 +429,7 @@ fn the_narrowest_and_the_widest_lobes_are_the_same_on_the_gpu() {
         ("eon", vec![number("roughness", 1.0)]),
         ("burley_diffuse", vec![number("roughness", 1.0)]),
     ];
-    // Around the mirror direction at all distances from it, and around the way back.
+    // Around the mirror direction at all distances from it, and around the reverse direction.
     let pairs: Vec<_> = pairs()
         .zip(0i32..)
         .map(|((l, away), i)| {
