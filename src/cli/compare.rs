@@ -6,7 +6,7 @@ use std::{
 };
 
 use clap::Args;
-use serde::Serialize;
+use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
     Options, Outcome, gauged,
@@ -20,18 +20,14 @@ use super::{
 use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
-    compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
+    compare::{Largest, Measured, Metric, Metrics, Pair, Shown, cells, compose, metric::Way, size_around},
     export::write::inputs,
     failure::Failure,
     progress::Progress,
     reference::{self, Reached, Settings},
     registry::Registry,
     render::capture::png::About,
-    scene::{
-        Comparison, Scene,
-        comparison::{Compared, Layout},
-        variant::LETTERS,
-    },
+    scene::{Comparison, Scene, comparison::{Compared, Layout}, variant::LETTERS},
     text::{listed, nearest},
 };
 
@@ -56,49 +52,22 @@ pub(super) struct Arguments {
     sampling: Sampling,
     #[command(flatten)]
     choice: Choice,
-    /// Fail if a metric is larger: rmse, flip, largest, light_rmse; with covered. before it, over covered pixels only
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = above)]
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = above, help = help("larger", false))]
     fail_above: Vec<Limit>,
-    /// Fail if a metric is smaller: psnr, ssim; with covered. before it, over covered pixels only
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = below)]
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = below, help = help("smaller", true))]
     fail_below: Vec<Limit>,
 }
 
-/// A metric on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Metric {
-    Rmse,
-    Psnr,
-    Ssim,
-    Flip,
-    LightRmse,
-    Largest,
-}
-
-impl Metric {
-    const ALL: [Self; 6] = [Self::Rmse, Self::Flip, Self::Largest, Self::LightRmse, Self::Psnr, Self::Ssim];
-
-    fn id(self) -> &'static str {
-        match self {
-            Self::Rmse => "rmse",
-            Self::Psnr => "psnr",
-            Self::Ssim => "ssim",
-            Self::Flip => "flip",
-            Self::LightRmse => "light_rmse",
-            Self::Largest => "largest",
-        }
-    }
-
-    /// True for metrics that are larger for more similar pictures.
-    fn of_likeness(self) -> bool {
-        matches!(self, Self::Psnr | Self::Ssim)
-    }
+/// The help of an option for metrics that are larger where pictures are more alike, or for the others.
+fn help(side: &str, of_likeness: bool) -> String {
+    let known = Metric::ids(of_likeness).collect::<Vec<_>>().join(", ");
+    format!("Fail if a metric is {side}: {known}; with covered. before it, over covered pixels only")
 }
 
 /// A limit on a metric.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Limit {
-    metric: Metric,
+    metric: &'static Metric,
     covered: bool,
     value: f64,
 }
@@ -119,19 +88,19 @@ fn limit(text: &str, of_likeness: bool) -> Result<Limit, String> {
         Some(id) => (true, id),
         None => (false, name.trim()),
     };
-    let metric = Metric::ALL.into_iter().find(|metric| metric.id() == id).ok_or_else(|| {
-        let known = Metric::ALL.map(Metric::id);
-        let hint = nearest(id, known.map(|k| (k, k)).into_iter())
+    let metric = Metric::from_id(id).ok_or_else(|| {
+        let known: Vec<_> = Metric::ids(false).chain(Metric::ids(true)).collect();
+        let hint = nearest(id, known.iter().map(|k| (*k, *k)))
             .map_or_else(String::new, |k| format!("; did you mean {k}?"));
         format!("the metric must be {}{hint}", listed(&known, "or"))
     })?;
-    if metric.of_likeness() != of_likeness {
+    if metric.of_likeness != of_likeness {
         let flag = if of_likeness { "above" } else { "below" };
         let moves = if of_likeness { "grows" } else { "falls" };
         return Err(format!("{id} {moves} as pictures differ more; use --fail-{flag} {text}"));
     }
-    if metric == Metric::Largest && covered {
-        return Err("largest is that of all pixels; omit covered.".to_owned());
+    if matches!(metric.way, Way::Largest(_)) && covered {
+        return Err(format!("{id} is that of all pixels; omit covered."));
     }
     match value.trim().parse() {
         Ok(value) if f64::is_finite(value) => Ok(Limit { metric, covered, value }),
@@ -286,21 +255,17 @@ struct Side {
     noise: Option<f32>,
 }
 
-#[derive(Serialize)]
-struct Numbers {
-    pixels: u64,
-    rmse: f64,
-    /// Null if infinite.
-    psnr: Option<f64>,
-    ssim: f64,
-    flip: f64,
-    light_rmse: Option<f64>,
-}
+/// The metrics by id; null where one is infinite, or not known.
+struct Numbers(Metrics);
 
-impl From<Metrics> for Numbers {
-    fn from(metrics: Metrics) -> Self {
-        let Metrics { pixels, rmse, psnr, ssim, flip, light_rmse } = metrics;
-        Self { pixels, rmse, psnr: psnr.is_finite().then_some(psnr), ssim, flip, light_rmse }
+impl Serialize for Numbers {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut map = to.serialize_map(None)?;
+        map.serialize_entry("pixels", &self.0.pixels)?;
+        for (id, number) in &self.0.numbers {
+            map.serialize_entry(id, &number.filter(|number| number.is_finite()))?;
+        }
+        map.end()
     }
 }
 
@@ -407,8 +372,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         height: size[1],
         values: comparison.values.id(),
         channel: comparison.channel.id(),
-        all: measured.all.into(),
-        covered: measured.covered.map(Numbers::from),
+        all: Numbers(measured.all.clone()),
+        covered: measured.covered.clone().map(Numbers),
         largest: differences.largest.map(Place::from),
     };
     let printed = print_json(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
@@ -558,24 +523,20 @@ fn broken(
     let mut broken = Vec::new();
     for limit in arguments.fail_above.iter().chain(&arguments.fail_below) {
         let Limit { metric, covered, value } = *limit;
-        let name = format!("{}{}", if covered { "covered." } else { "" }, metric.id());
+        let name = format!("{}{}", if covered { "covered." } else { "" }, metric.id);
         let unknown = |why: &str| Failure::Invalid(format!("{name} is unknown: {why}"));
-        let metrics = match (covered, measured.covered) {
-            (false, _) => measured.all,
+        let metrics = match (covered, &measured.covered) {
+            (false, _) => &measured.all,
             (true, Some(covered)) => covered,
             (true, None) => return Err(unknown("no pixel is known to be covered by an object")),
         };
-        let found = match metric {
-            Metric::Rmse => metrics.rmse,
-            Metric::Psnr => metrics.psnr,
-            Metric::Ssim => metrics.ssim,
-            Metric::Flip => metrics.flip,
-            Metric::Largest => largest.map_or(0.0, |largest| f64::from(largest.difference.abs())),
-            Metric::LightRmse => {
-                metrics.light_rmse.ok_or_else(|| unknown("the light of a picture is not known"))?
+        let found = match metric.way {
+            Way::Largest(of) => largest.as_ref().map_or(0.0, of),
+            Way::Pixels(..) => {
+                metrics.of(metric.id).ok_or_else(|| unknown("the light of a picture is not known"))?
             }
         };
-        let likeness = metric.of_likeness();
+        let likeness = metric.of_likeness;
         // NaN satisfies no limit.
         let kept = if likeness { found >= value } else { found <= value };
         if !kept {
@@ -592,8 +553,9 @@ mod tests {
 
     #[test]
     fn limits_name_a_metric_and_its_side() {
-        assert_eq!(above("rmse=0.01"), Ok(Limit { metric: Metric::Rmse, covered: false, value: 0.01 }));
-        assert_eq!(below("covered.ssim= 0.9"), Ok(Limit { metric: Metric::Ssim, covered: true, value: 0.9 }));
+        let parts = |limit: Limit| (limit.metric.id, limit.covered, limit.value);
+        assert_eq!(above("rmse=0.01").map(parts), Ok(("rmse", false, 0.01)));
+        assert_eq!(below("covered.ssim= 0.9").map(parts), Ok(("ssim", true, 0.9)));
         for (said, expected) in [
             (above("rmse"), "it must be METRIC=VALUE, e.g. rmse=0.01"),
             (below("ssim"), "it must be METRIC=VALUE, e.g. ssim=0.99"),
@@ -608,7 +570,7 @@ mod tests {
             (above("rmse=inf"), "the limit must be a number, e.g. rmse=0.01"),
             (above("covered.largest=1"), "largest is that of all pixels; omit covered."),
         ] {
-            assert_eq!(said, Err(expected.to_owned()));
+            assert_eq!(said.map(parts), Err(expected.to_owned()));
         }
     }
 }

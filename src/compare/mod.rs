@@ -13,7 +13,7 @@
 //! let [a, b] = [0, 1].map(|view| Shown::of_view(&scene, view, &registry, &settings).expect("there is one"));
 //! let pair = Pair::new(&a, &b).expect("both have the same size");
 //! let numbers = pair.measure().expect("there are pixels").all;
-//! assert!(numbers.rmse > 0.0 && numbers.ssim < 1.0);
+//! assert!(numbers.of("rmse") > Some(0.0) && numbers.of("ssim") < Some(1.0));
 //! let map = pair.map(&Comparison::default()).expect("codes are always known");
 //! assert_eq!(map.len(), 64 * 36 * 3);
 //! ```
@@ -21,21 +21,16 @@
 mod canvas;
 mod channel;
 mod colours;
-mod filter;
-mod flip;
 mod layout;
 mod legend;
 mod map;
-mod metrics;
+pub mod metric;
 mod pair;
-mod power;
 mod shown;
-mod ssim;
 
 pub use channel::with_legends;
-pub use flip::PIXELS_PER_DEGREE;
 pub use layout::{Cell, cells, compose, edge, size_around};
 pub use legend::{fitting_amplification, short};
-pub use metrics::{Measured, Metrics};
+pub use metric::{Measured, Metric, Metrics, PIXELS_PER_DEGREE};
 pub use pair::{Differences, Largest, Pair, Unequal};
 pub use shown::{Shown, WrongSize};

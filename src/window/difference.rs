@@ -21,17 +21,17 @@ use super::{
     views::{DifferenceMap, ShownViews},
 };
 use crate::{
-    compare::{Measured, Pair, Shown, short},
+    compare::{
+        Measured, Pair, Shown,
+        metric::{self, InWindow},
+        short,
+    },
     optics::TermSelection,
     panel::state::{LARGEST, Numbers, Session},
     reference::{self, Picture, Settings},
     registry::Registry,
     render::view::ViewSystems,
-    scene::{
-        Comparison, Observer, Scene,
-        comparison::{Compared, Layout},
-        variant::LETTERS,
-    },
+    scene::{Comparison, Observer, Scene, comparison::{Compared, Layout}, variant::LETTERS},
 };
 
 /// Compares the views of a comparison.
@@ -235,53 +235,18 @@ pub(super) fn light(
     reference::render(&seen, registry, &settings)
 }
 
-/// A similarity up to 1; only equality is shown as 1.
-fn likeness(value: f64) -> String {
-    let text = format!("{value:.3}");
-    if value < 1.0 && text == "1.000" { "> 0.999".to_owned() } else { text }
-}
-
 /// The statistics for display, over the pixels covered by objects; names the views if there are `several` beside A.
 fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Numbers {
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);
     let letter = LETTERS.get(with).copied().unwrap_or("B");
-    let psnr = if shown.psnr.is_finite() { format!("{:.1} dB", shown.psnr) } else { "∞".to_owned() };
-    let mut all = vec![
-        [
-            "RMSE".to_owned(),
-            format!("{:.3}", shown.rmse),
-            format!(
-                "Root mean square error of {letter} against A, in display codes from 0 to 1, over the pixels that \
-                 objects cover; over all pixels {:.3}.",
-                measured.all.rmse
-            ),
-        ],
-        [
-            "FLIP".to_owned(),
-            format!("{:.3}", shown.flip),
-            format!(
-                "Mean FLIP (Andersson et al. 2020): the difference that people see when they flip between the \
-                 pictures, 0 for none to 1, over the pixels that objects cover; over all pixels {:.3}.",
-                measured.all.flip
-            ),
-        ],
-        [
-            "SSIM".to_owned(),
-            likeness(shown.ssim),
-            format!(
-                "Structural similarity (Wang et al. 2004): 1 for equal pictures, over the pixels that objects cover; \
-                 over all pixels {:.3}.",
-                measured.all.ssim
-            ),
-        ],
-        [
-            "PSNR".to_owned(),
-            psnr,
-            "Peak signal-to-noise ratio: 20 log₁₀ of 1 / RMSE, over the pixels that objects cover."
-                .to_owned(),
-        ],
-    ];
+    let mut known: Vec<_> = metric::ALL.iter().filter_map(|m| Some((m.id, m.shown.as_ref()?))).collect();
+    known.sort_by_key(|(_, metric)| metric.place);
+    let row = |(id, metric): (&str, &InWindow)| {
+        let help = (metric.help)(letter, measured.all.of(id)?);
+        Some([metric.name.to_owned(), (metric.text)(shown.of(id)?), help])
+    };
+    let mut all: Vec<_> = known.into_iter().filter_map(row).collect();
     if several {
         let help = format!("The numbers are about views {letter} and A. Click another view to compare it.");
         all.insert(0, [format!("{letter} to A"), String::new(), help]);

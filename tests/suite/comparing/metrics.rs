@@ -55,6 +55,26 @@ fn picture(pixel: Pixel) -> Shown {
     shown.covering(disc.collect()).expect("as many as pixels")
 }
 
+#[path = "../../../examples/metric.rs"]
+#[allow(dead_code)]
+mod metric;
+
+#[test]
+fn a_metric_of_another_crate_is_calculated_from_the_pixels() {
+    // Larger than a tile, and nowhere equal to itself but at the left.
+    let plain = |from: usize| {
+        let pixel = |i: usize| if i % 100 < from { [9; 3] } else { [200, 9, (i % 7) as u8] };
+        Shown::of_codes(100, 70, (0..7000).flat_map(pixel).collect()).expect("as many as pixels")
+    };
+    let (a, b) = (plain(25), plain(75));
+    let changed = |a: &Shown, b: &Shown| {
+        let pair = Pair::new(a, b).expect("of one size");
+        pair.measure_by(&[&metric::CHANGED]).expect("has pixels").all.numbers
+    };
+    assert_eq!(changed(&a, &b), [("changed", Some(0.5))]);
+    assert_eq!(changed(&a, &a), [("changed", Some(0.0))]);
+}
+
 fn measured(a: &Shown, b: &Shown) -> Measured {
     Pair::new(a, b).expect("of one size").measure().expect("has pixels")
 }
@@ -63,8 +83,9 @@ fn measured(a: &Shown, b: &Shown) -> Measured {
 type Four = [f64; 4];
 
 fn four(measured: &Measured) -> [Four; 2] {
-    let covered = measured.covered.expect("some are covered");
-    [measured.all, covered].map(|m| [m.rmse, m.psnr, m.ssim, m.flip])
+    let covered = measured.covered.as_ref().expect("some are covered");
+    [&measured.all, covered]
+        .map(|m| ["rmse", "psnr", "ssim", "flip"].map(|id| m.of(id).expect("codes are known")))
 }
 
 /// Maximum differences: both calculate in 32 bits in places.
@@ -90,9 +111,9 @@ fn metrics_are_those_of_other_programs() {
     let a = picture(left);
     for (other, expected) in [(right as Pixel, noisy), (shifted, further)] {
         let found = measured(&a, &picture(other));
-        assert_eq!((found.all.pixels, found.covered.map(|m| m.pixels)), (14_100, Some(2809)));
+        assert_eq!((found.all.pixels, found.covered.as_ref().map(|m| m.pixels)), (14_100, Some(2809)));
         assert!(agree(four(&found), expected), "{found:?}\n{expected:?}");
-        assert_eq!(found.all.light_rmse, None);
+        assert_eq!(found.all.of("light_rmse"), None);
     }
     // The wrong twin: the other pair.
     assert!(!agree(four(&measured(&a, &picture(shifted))), noisy));
@@ -111,11 +132,12 @@ fn metrics_do_not_depend_on_which_is_first_and_equal_pictures_have_no_difference
 #[test]
 fn black_and_white_are_as_different_as_can_be() {
     let plain = |code| Shown::of_codes(20, 10, vec![code; 600]).expect("as many as pixels");
-    let found = measured(&plain(0), &plain(255)).all;
-    assert_eq!((found.rmse, found.psnr), (1.0, 0.0));
+    let all = measured(&plain(0), &plain(255)).all;
+    let found = |id| all.of(id).expect("codes are known");
+    assert_eq!((found("rmse"), found("psnr")), (1.0, 0.0));
     // By hand: C₁ / (1 + C₁). From flip-evaluator 1.7.
-    assert!((found.ssim - 1e-4 / 1.0001).abs() < 1e-6, "{}", found.ssim);
-    assert!((found.flip - 0.967_390_656).abs() < 1e-5, "{}", found.flip);
+    assert!((found("ssim") - 1e-4 / 1.0001).abs() < 1e-6, "{all:?}");
+    assert!((found("flip") - 0.967_390_656).abs() < 1e-5, "{all:?}");
 }
 
 /// Two pixels of light, the second covered by half of its samples.
@@ -130,8 +152,11 @@ fn light_is_measured_where_it_is_known() {
     let found = measured(&a, &b);
     // √((0.4² + 0.3²) / 9) over three pixels, two of which are covered.
     let near = |x: Option<f64>, y: f64| (x.expect("light is known") - y).abs() < 1e-7;
-    assert!(near(found.all.light_rmse, 0.25_f64.sqrt() / 3.0), "{found:?}");
-    assert!(near(found.covered.expect("covered").light_rmse, (0.25_f64 / 6.0).sqrt()), "{found:?}");
+    assert!(near(found.all.of("light_rmse"), 0.25_f64.sqrt() / 3.0), "{found:?}");
+    assert!(
+        near(found.covered.as_ref().expect("covered").of("light_rmse"), (0.25_f64 / 6.0).sqrt()),
+        "{found:?}"
+    );
     let pair = Pair::new(&a, &b).expect("of one size");
     let in_light = |channel| {
         let comparison = Comparison { values: Compared::Light, channel, ..Comparison::default() };
@@ -410,7 +435,7 @@ fn the_command_prints_numbers() {
     let registry = Registry::builtin();
     let settings = Settings { width: 96, height: 54, ..Settings::default() };
     let shown = [0, 1].map(|view| Shown::of_view(&scene(), view, &registry, &settings).expect("there"));
-    assert_eq!(number("/all/flip"), measured(&shown[0], &shown[1]).all.flip);
+    assert_eq!(Some(number("/all/flip")), measured(&shown[0], &shown[1]).all.of("flip"));
 
     // Two files: view A of each.
     let two = with(&["plain.json", "phong.json"]);

@@ -10,10 +10,45 @@
 
 use std::sync::LazyLock;
 
+use fearless_simd::dispatch;
+
 use super::{
-    filter::{Padded, Plane, Rows, TILE, Tile, Weights, across, down, normalised},
+    InWindow, Metric, Pixels, Place, Way,
+    filter::{LEVEL, Padded, Plane, Rows, SIDE, TILE, Tile, Weights, across, down, normalised},
+    in_thousandths,
     power::{cube_root, power},
 };
+use crate::optics::colour::Encoding;
+
+pub(super) static METRIC: Metric = Metric {
+    id: "flip",
+    of_likeness: false,
+    way: Way::Pixels(&PIXELS, |sum, pixels| sum / pixels),
+    shown: Some(InWindow {
+        place: 1,
+        name: "FLIP",
+        text: in_thousandths,
+        help: |_, everywhere| {
+            format!(
+                "Mean FLIP (Andersson et al. 2020): the difference that people see when they flip between the \
+                 pictures, 0 for none to 1, over the pixels that objects cover; over all pixels {everywhere:.3}."
+            )
+        },
+    }),
+    row: Some(["ꟻLIP", "0 to 1", "0"]),
+};
+
+static PIXELS: Pixels = Pixels {
+    where_equal: Some(0.0),
+    measure: || {
+        let mut scratch = Scratch::default();
+        Box::new(move |place, out| dispatch!(*LEVEL, _simd => tile(place, &mut scratch, out)))
+    },
+};
+
+/// Linear light of each display code.
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|code| Encoding::Srgb.decode([code as u8; 3]).x));
 
 /// Pixels per degree of the field of view: a screen of 3840 pixels on 0.7 m, seen from 0.7 m, as the authors assume.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
@@ -134,7 +169,7 @@ fn times(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
 
 /// The opponent channels of linear light: Y, X − Y and Y − Z, each relative to white.
 #[inline(always)]
-pub(super) fn opponent(rgb: [f32; 3]) -> [f32; 3] {
+fn opponent(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = times(&TO_XYZ, rgb);
     [y, x - y, y - z]
 }
@@ -165,31 +200,49 @@ fn hyab(a: [f32; 3], b: [f32; 3]) -> f32 {
 
 /// The memory of the calculation of a tile.
 #[derive(Default)]
-pub(super) struct Scratch {
+struct Scratch {
+    opponents: [Plane<Padded>; 3],
     rows: [Plane<Rows>; 3],
     parts: [Plane<Tile>; 2],
+    seen: [Seen; 2],
 }
 
 /// A picture as perceived.
 #[derive(Default)]
-pub(super) struct Seen {
+struct Seen {
     /// The opponent channels, blurred.
     channels: [Plane<Tile>; 3],
     edges: Plane<Tile>,
     points: Plane<Tile>,
 }
 
-/// ꟻLIP of the pixels of a tile, from the opponent channels of both pictures.
+/// Reads the opponent channels of a picture.
 #[inline(always)]
-pub(super) fn tile(
-    opponents: &[[Plane<Padded>; 3]; 2],
-    scratch: &mut Scratch,
-    seen: &mut [Seen; 2],
-    out: &mut Tile,
-) {
+fn read(place: &Place<'_>, picture: usize, opponents: &mut [Plane<Padded>; 3]) {
+    let linear = &*LINEAR;
+    let [first, second, third] = opponents;
+    let rows = first.iter_mut().zip(second.iter_mut()).zip(third.iter_mut());
+    for (y, ((first, second), third)) in rows.enumerate() {
+        let mut light = [[0.0; SIDE]; 3];
+        for (x, codes) in place.padded(picture, y).iter().enumerate() {
+            for c in 0..3 {
+                light[c][x] = linear[usize::from(codes[c])];
+            }
+        }
+        for x in 0..SIDE {
+            [first[x], second[x], third[x]] = opponent([light[0][x], light[1][x], light[2][x]]);
+        }
+    }
+}
+
+/// ꟻLIP of the pixels of a tile.
+#[inline(always)]
+fn tile(place: &Place<'_>, scratch: &mut Scratch, out: &mut Tile) {
     let kernels = &*KERNELS;
-    for (planes, seen) in opponents.iter().zip(&mut *seen) {
-        let Scratch { rows: [first, second, third], parts: [part, other], .. } = scratch;
+    let Scratch { opponents, rows: [first, second, third], parts: [part, other], seen } = scratch;
+    for (picture, seen) in seen.iter_mut().enumerate() {
+        read(place, picture, opponents);
+        let planes = &*opponents;
         let [luminance, red_green, blue_yellow] = &mut seen.channels;
         across(&planes[0], [&kernels.achromatic], [], [first], []);
         down(first, [&kernels.achromatic], [], [luminance], []);

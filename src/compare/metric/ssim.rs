@@ -6,7 +6,43 @@
 
 use std::sync::LazyLock;
 
-use super::filter::{Padded, Plane, REACH, Rows, SIDE, Tile, Weights, across, down, normalised};
+use fearless_simd::dispatch;
+
+use super::{
+    InWindow, Metric, Pixels, Place, Way,
+    filter::{LEVEL, Padded, Plane, REACH, Rows, SIDE, Tile, Weights, across, down, normalised},
+};
+use crate::optics::colour::LUMINANCE;
+
+pub(super) static METRIC: Metric = Metric {
+    id: "ssim",
+    of_likeness: true,
+    way: Way::Pixels(&PIXELS, |sum, pixels| sum / pixels),
+    shown: Some(InWindow {
+        place: 2,
+        name: "SSIM",
+        // What is not equal is not 1.
+        text: |number| match format!("{number:.3}") {
+            text if number < 1.0 && text == "1.000" => "> 0.999".to_owned(),
+            text => text,
+        },
+        help: |_, everywhere| {
+            format!(
+                "Structural similarity (Wang et al. 2004): 1 for equal pictures, over the pixels that objects cover; \
+                 over all pixels {everywhere:.3}."
+            )
+        },
+    }),
+    row: Some(["structural similarity", "−1 to 1", "1"]),
+};
+
+static PIXELS: Pixels = Pixels {
+    where_equal: Some(1.0),
+    measure: || {
+        let mut scratch = Scratch::default();
+        Box::new(move |place, out| dispatch!(*LEVEL, _simd => tile(place, &mut scratch, out)))
+    },
+};
 
 /// The radius of the window, pixels.
 const RADIUS: usize = 5;
@@ -17,14 +53,15 @@ const C1: f32 = 0.01 * 0.01;
 /// The constant that keeps the quotient of deviations finite.
 const C2: f32 = 0.03 * 0.03;
 /// The constant subtracted from luma before squaring, so that the squares are small; variances do not change.
-pub(super) const CENTRE: f32 = 0.5;
+const CENTRE: f32 = 0.5;
 
 static WINDOW: LazyLock<Weights<{ RADIUS + 1 }>> =
     LazyLock::new(|| normalised(|x| (-x * x / (2.0 * DEVIATION * DEVIATION)).exp()));
 
 /// The memory of the calculation of a tile.
 #[derive(Default)]
-pub(super) struct Scratch {
+struct Scratch {
+    luma: [Plane<Padded>; 2],
     squares: Plane<Padded>,
     products: Plane<Padded>,
     rows: Plane<Rows>,
@@ -33,11 +70,20 @@ pub(super) struct Scratch {
     product: Plane<Tile>,
 }
 
-/// SSIM at the pixels of a tile, from the luma of both pictures minus [`CENTRE`].
+/// SSIM at the pixels of a tile.
 #[inline(always)]
-pub(super) fn tile([a, b]: &[Plane<Padded>; 2], scratch: &mut Scratch, out: &mut Tile) {
+fn tile(place: &Place<'_>, scratch: &mut Scratch, out: &mut Tile) {
     let window = &*WINDOW;
-    let Scratch { squares, products, rows, means, square, product } = scratch;
+    let Scratch { luma, squares, products, rows, means, square, product } = scratch;
+    for (picture, luma) in luma.iter_mut().enumerate() {
+        for y in 0..SIDE {
+            for (luma, codes) in luma[y].iter_mut().zip(place.padded(picture, y)) {
+                let (r, g, b) = (f32::from(codes[0]), f32::from(codes[1]), f32::from(codes[2]));
+                *luma = (LUMINANCE.x * r + LUMINANCE.y * g + LUMINANCE.z * b) / 255.0 - CENTRE;
+            }
+        }
+    }
+    let [a, b] = &*luma;
     for y in REACH - RADIUS..SIDE - REACH + RADIUS {
         for x in 0..SIDE {
             squares[y][x] = a[y][x] * a[y][x] + b[y][x] * b[y][x];

@@ -4,10 +4,15 @@
 use std::{
     array::from_fn,
     ops::{Deref, DerefMut},
+    sync::LazyLock,
 };
 
+use fearless_simd::Level;
+
+/// The instruction set of this machine.
+pub(super) static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);
 /// The side of a tile, pixels.
-pub(super) const TILE: usize = 64;
+pub const TILE: usize = 64;
 /// The number of pixels beside a tile that its filters need: the radius of the widest one.
 pub(super) const REACH: usize = 10;
 /// The side of a tile with its surroundings.
@@ -19,8 +24,8 @@ const LANES: usize = 16;
 pub(super) type Padded = [[f32; SIDE]; SIDE];
 /// A tile filtered across, with the rows above and below it.
 pub(super) type Rows = [[f32; TILE]; SIDE];
-/// A filtered tile.
-pub(super) type Tile = [[f32; TILE]; TILE];
+/// The numbers of the pixels of a tile.
+pub type Tile = [[f32; TILE]; TILE];
 
 /// Numbers on the heap: together they are too many for the stack of a thread.
 pub(super) struct Plane<T>(Box<T>);
