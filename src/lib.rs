@@ -12,6 +12,7 @@
 //!
 //! The outside of the program:
 //!
+//! - [`declared`]: enums whose values are declared in a file each.
 //! - [`text`]: words for messages, and JSON whose values know their place.
 //! - [`lettering`]: text in pictures.
 //! - [`program`]: the name of the program, and folders by it.
@@ -29,6 +30,7 @@
 //! - [`shader`]: WGSL text in, WGSL text out: composing, checking, interpreting.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per model, per shading
 //!   model, per light type, per object type.
+//! - [`debug`]: debug channels: one file per channel, with its formula in Rust and WGSL and its legend.
 //! - [`registry`]: all known models, lights and shapes, by id; registration from inside and outside the crate.
 //! - [`custom`]: reflection models written as one WGSL file.
 //!
@@ -36,7 +38,7 @@
 //!
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
-//! - [`channel`]: debug channels: the values that lead to a pixel, and the legends of their pictures.
+//! - [`channel`]: debug channels of scenes: their light, their scale, and their legends.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`explain`]: the colour of one pixel, with the equation and every number in it.
@@ -65,6 +67,8 @@ pub use bevy_egui;
 /// The version of glam used by the equations.
 pub use glam;
 
+pub mod declared;
+
 pub mod text;
 
 pub mod lettering;
@@ -88,6 +92,8 @@ pub mod light;
 pub mod reflection;
 pub mod shading;
 pub mod shape;
+
+pub mod debug;
 
 pub mod registry;
 

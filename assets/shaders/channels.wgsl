@@ -1,18 +1,10 @@
-// The debug channels: the values that lead to the colour of a pixel, drawn as colours; the twin of
-// `src/reference/channel.rs`. Colours are linear: their display codes are those of the legend.
+// What the debug channels share: the values that lead to the colour of a pixel, drawn as colours; the twin of
+// `src/reference/channel.rs`. The formulas of the channels are in `src/debug`. Colours are linear: their display codes
+// are those of the legend.
 
-// Must equal `DebugChannel::code` in src/channel/mod.rs (a test compares the pictures).
-const CHANNEL_LUMINANCE: u32 = 1u;
-const CHANNEL_CLIPPED: u32 = 2u;
-const CHANNEL_NOT_A_NUMBER: u32 = 3u;
-// From here on the shading model has no part in the picture.
-const CHANNEL_FACE_NORMALS: u32 = 4u;
-const CHANNEL_NORMALS: u32 = 5u;
-const CHANNEL_N_DOT_L: u32 = 6u;
-const CHANNEL_N_DOT_V: u32 = 7u;
-const CHANNEL_N_DOT_H: u32 = 8u;
-const CHANNEL_FACING: u32 = 9u;
-const CHANNEL_DEPTH: u32 = 10u;
+// From here on the shading model has no part in the picture. Must equal `OF_GEOMETRY` in src/debug/mod.rs (a test compares
+// them).
+const CHANNEL_OF_GEOMETRY: u32 = 64u;
 
 // Wherever something is not a number.
 const CHANNEL_NAN: vec3<f32> = vec3(255.0, 0.0, 200.0) / 255.0;
@@ -55,81 +47,37 @@ fn channel_cosine(cosine: f32) -> vec4<f32> {
     return select(vec4(cosine, 0.0, 0.0, CHANNEL_PLACE), CHANNEL_GREY, cosine < 0.0);
 }
 
-// The channels of the light that leaves a point.
-fn channel_of_light(light: vec3<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    // Above the bits of infinity there is no number.
-    let bits = bitcast<vec3<u32>>(light) & vec3(0x7fffffffu);
-    if any(bits > vec3(0x7f800000u)) {
-        return vec4(CHANNEL_NAN, CHANNEL_CODES);
+// The direction to the light of the channel; 0 if there is none. All lights shine from where they are, or along their
+// direction. To ask their types would cost every shader as much as the light loop does.
+fn channel_to_light(position: vec3<f32>) -> vec3<f32> {
+    if illumination.channel_light >= illumination.count {
+        return vec3(0.0);
     }
-    let infinite = any(bits == vec3(0x7f800000u));
-    let luminance = dot(clamp(light, vec3(-1e30), vec3(1e30)), vec3(0.2126, 0.7152, 0.0722));
-    if illumination.channel == CHANNEL_LUMINANCE {
-        if luminance <= 0.0 {
-            return vec4(0.0);
-        }
-        // Four decades, from 0.001 to 10.
-        return vec4(log2(luminance) * 0.0752575 + 0.75, 0.0, 0.0, CHANNEL_PLACE);
-    }
-    let exposed = light * illumination.exposure;
-    if illumination.channel == CHANNEL_CLIPPED {
-        if any(exposed > vec3(1.0005)) {
-            let stripe = (u32(pixel.x) + u32(pixel.y)) & 4u;
-            return vec4(select(CHANNEL_YELLOW, vec3(0.0), stripe != 0u), CHANNEL_CODES);
-        }
-        let shown = clamp(exposed, vec3(0.0), vec3(1.0));
-        return vec4(shown, select(CHANNEL_LIGHT, CHANNEL_CODES, illumination.gamma_naive != 0u));
-    }
-    if infinite {
-        return vec4(CHANNEL_YELLOW, CHANNEL_CODES);
-    }
-    if any(light < vec3(0.0)) {
-        return vec4(CHANNEL_BLUE, CHANNEL_CODES);
-    }
-    return vec4(vec3(min(0.25 * luminance * illumination.exposure, 0.25)), CHANNEL_LIGHT);
+    let light = illumination.lights[illumination.channel_light];
+    let from_position = illumination.channel_low > 0.5;
+    return select(-light.direction, unit_or_zero(light.position - position), from_position);
 }
 
-// The channels of the geometry at a point.
-fn channel_of_geometry(position: vec3<f32>, normal: vec3<f32>, face_normal: vec3<f32>) -> vec4<f32> {
-    let to_eye = observer_position() - position;
-    let v = unit_or_zero(to_eye);
-    if illumination.channel <= CHANNEL_NORMALS {
-        let shown = select(normal, face_normal, illumination.channel == CHANNEL_FACE_NORMALS);
-        return vec4(0.5 + 0.5 * shown, CHANNEL_CODES);
+// A cosine with the light; it is grey if there is none.
+fn channel_lit(cosine: f32) -> vec4<f32> {
+    if illumination.channel_light >= illumination.count {
+        return CHANNEL_GREY;
     }
-    if illumination.channel == CHANNEL_FACING {
-        let facing = dot(normal, v);
-        let colour = select(CHANNEL_BLUE, CHANNEL_RED, facing < 0.0);
-        return vec4((0.5 + 0.5 * abs(facing)) * colour, CHANNEL_CODES);
-    }
-    if illumination.channel == CHANNEL_DEPTH {
-        let range = illumination.channel_high - illumination.channel_low;
-        return vec4((length(to_eye) - illumination.channel_low) / range, 0.0, 0.0, CHANNEL_PLACE);
-    }
-    var direction = v;
-    if illumination.channel != CHANNEL_N_DOT_V {
-        if illumination.channel_light >= illumination.count {
-            return CHANNEL_GREY;
-        }
-        // All lights shine from where they are, or along their direction. To ask their types would cost every shader as
-        // much as the light loop does.
-        let light = illumination.lights[illumination.channel_light];
-        let from_position = illumination.channel_low > 0.5;
-        direction = select(-light.direction, unit_or_zero(light.position - position), from_position);
-        if illumination.channel == CHANNEL_N_DOT_H {
-            direction = unit_or_zero(direction + v);
-        }
-    }
-    return channel_cosine(dot(normal, direction));
+    return channel_cosine(cosine);
 }
 
 // The colour of a pixel in the channel that is shown.
 fn channel_colour(light: vec3<f32>, position: vec3<f32>, normal: vec3<f32>, face_normal: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     var made: vec4<f32>;
-    if illumination.channel < CHANNEL_FACE_NORMALS {
-        made = channel_of_light(light, pixel);
+    if illumination.channel >= CHANNEL_OF_GEOMETRY {
+        let to_eye = observer_position() - position;
+        made = channel_of_geometry(position, normal, face_normal, to_eye, unit_or_zero(to_eye));
+    } else if any((bitcast<vec3<u32>>(light) & vec3(0x7fffffffu)) > vec3(0x7f800000u)) {
+        // Above the bits of infinity there is no number.
+        made = vec4(CHANNEL_NAN, CHANNEL_CODES);
     } else {
-        made = channel_of_geometry(position, normal, face_normal);
+        let luminance = dot(clamp(light, vec3(-1e30), vec3(1e30)), vec3(0.2126, 0.7152, 0.0722));
+        made = channel_of_light(light, luminance, light * illumination.exposure, pixel);
     }
     if made.w == CHANNEL_PLACE {
         made = vec4(channel_viridis(made.x), CHANNEL_CODES);

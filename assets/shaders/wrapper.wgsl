@@ -78,7 +78,7 @@ fn vertex(in: VertexIn) -> Stages {
     out.clip_position = position_world_to_clip(corner.position);
     out.position = passed.position;
     out.normal = passed.normal;
-    if illumination.channel >= CHANNEL_FACE_NORMALS {
+    if illumination.channel >= CHANNEL_OF_GEOMETRY {
         // That of the vertex, whatever the shading model makes of it.
         out.normal = corner.normal;
     }

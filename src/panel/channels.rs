@@ -41,7 +41,7 @@ pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>)
 #[must_use]
 pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(DebugChannel, Legend)> {
     let channel = session.channel_of(view)?;
-    let other = channel == DebugChannel::Vertices && view != session.active();
+    let other = channel.declaration().legend_of_shading && view != session.active();
     let seen = other.then(|| session.document.seen(view, registry)).flatten();
     let scene = match &seen {
         Some((scene, _)) => scene,

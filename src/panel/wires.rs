@@ -205,7 +205,7 @@ fn start(
         let Question { channel, size: [width, height], observer, terms, .. } = question;
         let scene = Scene { observer, ..(*scene).clone() };
         let settings = Settings { width, height, samples: 1, terms };
-        let most = if channel == DebugChannel::Vertices { DOTS } else { LINES };
+        let most = if channel.has_dots() { DOTS } else { LINES };
         let wires = drawer.wires(&scene, &registry, &settings, channel, most);
         // The receiver is gone once the channel has changed.
         drop(sender.send((drawer, wires)));

@@ -6,25 +6,17 @@ use glam::{Mat4, Vec3};
 
 use super::{Settings, object::Draw};
 use crate::{
-    channel::{
-        DebugChannel, Setting,
-        colours::{AWAY, BELOW, CLIPPED, INFINITE, NAN, NEGATIVE, TOWARDS, codes},
-    },
+    channel::{Setting, colours::NAN},
+    debug::{Leaving, Made, Point, Shows},
     light::{Emitter, Incident, LightRecord},
     optics::{
-        colour::{Encoding, luminance, srgb_decode},
+        colour::{Encoding, luminance},
         tone::exposure_factor,
-        viridis::viridis,
     },
     registry::Registry,
     scene::{Scene, emitter, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
-
-/// Value above which a channel of the picture counts as clipped.
-const WHITE: f32 = 1.0005;
-/// Width of a diagonal stripe, in pixels.
-const STRIPE: u32 = 4;
 
 /// Everything from which a channel is calculated, apart from the point.
 #[derive(Clone)]
@@ -67,14 +59,13 @@ impl Sight {
         } else {
             (Stage::Pixel, Box::new(PhongShading::default()) as Box<dyn Shading>)
         };
-        Draw { stage, shading: Box::new(Channelled { inner, of_light, parts: self.0.clone() }), ..draw }
+        Draw { stage, shading: Box::new(Channelled { inner, parts: self.0.clone() }), ..draw }
     }
 }
 
 /// A shading model, and what a channel shows of it.
 struct Channelled {
     inner: Box<dyn Shading>,
-    of_light: bool,
     parts: Arc<Parts>,
 }
 
@@ -84,44 +75,36 @@ impl Shading for Channelled {
     }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
-        if self.of_light {
-            let light = self.inner.pixel(lighting, varying, face_normal);
-            return self.parts.of_light(light, varying.position);
+        match self.parts.setting.channel.declaration().shows {
+            Shows::Light(formula, _) => {
+                let light = self.inner.pixel(lighting, varying, face_normal);
+                self.parts.of_light(formula, light, varying.position)
+            }
+            Shows::Geometry(formula, _) => {
+                let normal = varying.normal.normalize_or_zero();
+                self.parts.of_geometry(formula, varying.position, normal, face_normal)
+            }
+            // They are no channel of a single point.
+            _ => self.inner.pixel(lighting, varying, face_normal),
         }
-        let normal = varying.normal.normalize_or_zero();
-        self.parts.of_geometry(varying.position, normal, face_normal).map(srgb_decode)
     }
 }
 
-/// A cosine as a colour, in display codes.
-fn cosine(cosine: f32) -> Vec3 {
-    if cosine < 0.0 { codes(BELOW) } else { viridis(cosine) }
-}
-
 impl Parts {
-    /// The colour of the light that leaves a point, linear.
-    fn of_light(&self, light: Vec3, position: Vec3) -> Vec3 {
-        let shown = |colour| codes(colour).map(srgb_decode);
+    /// The light that shows the light that leaves a point.
+    fn of_light(&self, formula: fn(&Leaving<'_>) -> Made, light: Vec3, position: Vec3) -> Vec3 {
         if light.is_nan() {
-            return shown(NAN);
+            return Made::colour(NAN).shown();
         }
-        let bright = luminance(light.clamp(Vec3::splat(-1e30), Vec3::splat(1e30)));
-        let exposed = light * self.exposure;
-        match self.setting.channel {
-            DebugChannel::Luminance if bright <= 0.0 => Vec3::ZERO,
-            DebugChannel::Luminance => viridis((bright.log10() + 3.0) / 4.0).map(srgb_decode),
-            DebugChannel::Clipped if exposed.max_element() > WHITE => {
-                let [x, y] = self.pixel(position);
-                shown(if (x + y) / STRIPE % 2 == 1 { [0; 3] } else { CLIPPED })
-            }
-            DebugChannel::Clipped => {
-                let c = exposed.clamp(Vec3::ZERO, Vec3::ONE);
-                if self.encoding == Encoding::Off { c.map(srgb_decode) } else { c }
-            }
-            _ if !light.is_finite() => shown(INFINITE),
-            _ if light.min_element() < 0.0 => shown(NEGATIVE),
-            _ => Vec3::splat(0.25 * (bright * self.exposure).clamp(0.0, 1.0)),
-        }
+        let leaving = Leaving {
+            light,
+            bright: luminance(light.clamp(Vec3::splat(-1e30), Vec3::splat(1e30))),
+            exposed: light * self.exposure,
+            exposure: self.exposure,
+            pixel: &|| self.pixel(position),
+            unencoded: self.encoding == Encoding::Off,
+        };
+        formula(&leaving).shown()
     }
 
     /// The pixel that shows a point.
@@ -133,10 +116,15 @@ impl Parts {
         })
     }
 
-    /// The colour of the geometry at a point, in display codes.
-    fn of_geometry(&self, position: Vec3, normal: Vec3, face_normal: Vec3) -> Vec3 {
+    /// The light that shows the geometry at a point.
+    fn of_geometry(
+        &self,
+        formula: fn(&Point<'_>) -> Made,
+        position: Vec3,
+        normal: Vec3,
+        face_normal: Vec3,
+    ) -> Vec3 {
         let to_eye = self.eye - position;
-        let v = to_eye.normalize_or_zero();
         let l = || {
             let (emitter, record) = self.light.as_ref()?;
             match emitter.incident(record, position) {
@@ -144,26 +132,22 @@ impl Parts {
                 Incident::Uniform { .. } => None,
             }
         };
-        let lit = |of: &dyn Fn(Vec3) -> f32| l().map_or(codes(BELOW), |l| cosine(of(l)));
-        let [low, high] = self.setting.range;
-        match self.setting.channel {
-            DebugChannel::FaceNormals => 0.5 + 0.5 * face_normal,
-            DebugChannel::NDotL => lit(&|l| normal.dot(l)),
-            DebugChannel::NDotH => lit(&|l| normal.dot((l + v).normalize_or_zero())),
-            DebugChannel::NDotV => cosine(normal.dot(v)),
-            DebugChannel::Facing => {
-                let facing = normal.dot(v);
-                (0.5 + 0.5 * facing.abs()) * codes(if facing < 0.0 { AWAY } else { TOWARDS })
-            }
-            DebugChannel::Depth => viridis((to_eye.length() - low) / (high - low)),
-            _ => 0.5 + 0.5 * normal,
-        }
+        let v = to_eye.normalize_or_zero();
+        let range = self.setting.range;
+        formula(&Point { normal, face_normal, to_eye, v, l: &l, range }).shown()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        channel::{
+            DebugChannel,
+            colours::{CLIPPED, INFINITE, NEGATIVE, codes},
+        },
+        optics::{colour::srgb_decode, viridis::viridis},
+    };
 
     fn parts(channel: DebugChannel, exposure: f32) -> Parts {
         let (mut scene, registry) = (Scene::default(), Registry::builtin());
@@ -173,10 +157,19 @@ mod tests {
         Arc::into_inner(sight.0).expect("no one else has it")
     }
 
+    impl Parts {
+        fn light(&self, light: Vec3) -> Vec3 {
+            let Shows::Light(formula, _) = self.setting.channel.declaration().shows else {
+                panic!("it is of light");
+            };
+            self.of_light(formula, light, Vec3::ZERO)
+        }
+    }
+
     #[test]
     fn light_that_is_no_light_has_a_colour_of_its_own() {
         let parts = parts(DebugChannel::NotANumber, 1.0);
-        let shown = |light: [f32; 3]| parts.of_light(light.into(), Vec3::ZERO);
+        let shown = |light: [f32; 3]| parts.light(light.into());
         let colour = |c| codes(c).map(srgb_decode);
         assert_eq!(shown([0.5, f32::NAN, f32::INFINITY]), colour(NAN));
         assert_eq!(shown([0.5, f32::INFINITY, -1.0]), colour(INFINITE));
@@ -189,7 +182,7 @@ mod tests {
     fn luminance_is_logarithmic_and_knows_no_exposure() {
         for exposure in [0.0, 3.0] {
             let parts = parts(DebugChannel::Luminance, exposure);
-            let shown = |light: f32| parts.of_light(Vec3::splat(light), Vec3::ZERO);
+            let shown = |light: f32| parts.light(Vec3::splat(light));
             for (light, place) in [(0.001, 0.0), (0.1, 0.5), (1.0, 0.75), (10.0, 1.0), (1e9, 1.0)] {
                 let right = viridis(place).map(srgb_decode);
                 assert!((shown(light) - right).abs().max_element() < 1e-3, "{light}");
@@ -200,9 +193,7 @@ mod tests {
 
     #[test]
     fn light_is_cut_off_after_exposure() {
-        let at = |exposure, light: f32| {
-            parts(DebugChannel::Clipped, exposure).of_light(Vec3::splat(light), Vec3::ZERO)
-        };
+        let at = |exposure, light: f32| parts(DebugChannel::Clipped, exposure).light(Vec3::splat(light));
         assert_eq!(at(0.0, 0.5), Vec3::splat(0.5));
         assert_eq!(at(1.0, 0.5), Vec3::ONE, "white is not cut off");
         assert!([Vec3::ZERO, codes(CLIPPED).map(srgb_decode)].contains(&at(1.0, 0.51)));

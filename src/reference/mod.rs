@@ -37,7 +37,7 @@ use glam::Vec4;
 use rayon::prelude::*;
 
 use crate::{
-    channel::{DebugChannel, Setting},
+    channel::Setting,
     optics::TermSelection,
     registry::Registry,
     scene::{Display, Scene, observer::clip_from_room},
@@ -146,7 +146,7 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 }
 
 /// Like [`render`]; sets `odd` if light that is not finite was replaced, as shown by the channel
-/// [`DebugChannel::NotANumber`].
+/// [`NotANumber`](crate::channel::DebugChannel::NotANumber).
 #[must_use]
 pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, odd: &AtomicBool) -> Picture {
     let pixels =
@@ -229,7 +229,7 @@ pub fn render_channel(scene: &Scene, registry: &Registry, settings: &Settings, s
 }
 
 /// Like [`render_channel`], with these samples of lights with extent, except for the [channel that is a
-/// picture](DebugChannel::is_picture).
+/// picture](crate::channel::DebugChannel::is_picture).
 #[must_use]
 pub fn render_channel_by(
     scene: &Scene,
@@ -243,14 +243,13 @@ pub fn render_channel_by(
     }
     let display = DisplayTransform::new(&Display::default());
     let background = display.apply(Vec4::ZERO);
-    let wires = setting.channel.has_wires();
-    let ground = if wires { DebugChannel::NotANumber } else { setting.channel };
-    let sight = Sight::new(scene, registry, settings, Setting { channel: ground, ..*setting });
+    let ground = Setting { channel: setting.channel.ground(), ..*setting };
+    let sight = Sight::new(scene, registry, settings, ground);
     let finish = |pixel| display.apply(pixel);
     let ever = (None, &AtomicBool::default(), samples);
     let seen: &Seen<'_> = &|draw| sight.seen(draw);
     let mut rgb8 = draw(scene, registry, settings, Some(seen), ever, background, finish).into_flattened();
-    if wires {
+    if setting.channel.has_wires() {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
     }
     rgb8

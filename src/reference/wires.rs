@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     channel::{DebugChannel, colours::EDGE},
+    debug::{Shows, Vertex},
     registry::Registry,
     scene::{Object, Scene, observer::clip_from_room},
     shading::Stage,
@@ -248,12 +249,13 @@ impl View<'_> {
         display: &DisplayTransform,
     ) -> Wires {
         let mut wires = Wires::default();
-        if channel == DebugChannel::Wireframe {
+        let shows = &channel.declaration().shows;
+        let (Shows::Normals(colour_of) | Shows::Dots(colour_of)) = shows else {
             let edges = edges(&draw, &posed.visible);
             let ends = |edge: [u32; 2]| edge.map(|corner| posed.positions[corner as usize]);
             wires.lines.extend(edges.into_iter().flat_map(|edge| self.in_sight(ends(edge))));
             return wires;
-        }
+        };
         let mut vertices: Vec<u32> = posed.visible.iter().flat_map(|(_, corners)| *corners).collect();
         vertices.sort_unstable();
         vertices.dedup();
@@ -268,10 +270,9 @@ impl View<'_> {
                 continue;
             }
             let normal = corner.normal.normalize_or_zero();
-            let of_normal = (255.0 * (0.5 + 0.5 * normal)).to_array().map(|c| c.round() as u8);
-            if channel == DebugChannel::Vertices {
-                let light = || draw.shading.vertex(&lighting, &corner).colour;
-                let colour = if gouraud { display.apply(light().extend(1.0)) } else { of_normal };
+            let colour = || display.apply(draw.shading.vertex(&lighting, &corner).colour.extend(1.0));
+            let colour = colour_of(&Vertex { normal, colour: gouraud.then_some(&colour) });
+            if matches!(shows, Shows::Dots(_)) {
                 wires.dots.push(Dot { at: corner.position, colour });
             } else {
                 // Normals have the same length in the picture, wherever they are in the room.
@@ -279,7 +280,7 @@ impl View<'_> {
                 let length = self.up * clip.w / scale;
                 let ends = [corner.position, corner.position + length * normal];
                 let towards = ends[1].distance_squared(self.eye) > 1e-6;
-                wires.lines.extend(towards.then_some(Line { ends, colour: of_normal, opacity: 1.0 }));
+                wires.lines.extend(towards.then_some(Line { ends, colour, opacity: 1.0 }));
             }
         }
         wires

@@ -9,6 +9,7 @@
 use std::fmt::Write as _;
 
 use crate::{
+    debug,
     light::{LightEntry, Twin},
     optics::{
         albedo::{NODES, NamedCurve, Spacing},
@@ -364,6 +365,7 @@ pub fn compose(
     }
     push_shading(&mut c, shading);
     c.source(&CHANNELS);
+    c.push("(channels)", &debug::wgsl());
     c.source(&DISPLAY);
     c.source(&WRAPPER);
     c.composed
