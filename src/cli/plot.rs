@@ -15,7 +15,9 @@ use super::{
 };
 use crate::files::Shown as _;
 use crate::{
-    curves::{Channel, CurveError, Detail, Format, Kind, Setup, Sheet, Subject, curve, slice, subjects_with},
+    curves::{
+        Channel, CurveError, Detail, Form, Format, Kind, Setup, Sheet, Subject, curve, slice, subjects_with,
+    },
     export::write::inputs,
     failure::Failure,
     files::{self, Output},
@@ -49,9 +51,7 @@ pub(super) struct Arguments {
     wanted: Vec<String>,
     #[command(flatten)]
     set: Settings,
-    /// The quantity: f (the BRDF), f_cos, pi_f_cos (the response), polar (f as a polar plot), albedo, fresnel, d and g
-    /// (factors of microfacet models), slice (f by half and difference angle)
-    #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true)]
+    #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true, help = format!("The quantity: {}", Kind::listed()))]
     kind: Kind,
     /// The angle between light and normal, degrees, for kinds in the plane of incidence
     #[arg(long, value_name = "DEG", default_value_t = 45.0, allow_negative_numbers = true, value_parser = angle)]
@@ -207,7 +207,7 @@ fn sheet(
     for (i, subject) in subjects.iter().enumerate() {
         let tell = |done: f32, _: &str| bar.set_position(100 * i as u64 + (100.0 * done) as u64);
         let progress = Progress { tell: &tell, cancelled: &|| false };
-        if setup.kind == Kind::Slice {
+        if setup.kind.form() == Form::Slices {
             sheet.slices.push(slice(subject, &setup, Detail::Fine, &progress).map_err(failed)?);
         } else {
             sheet.curves.push(curve(subject, &setup, Detail::Fine, &progress).map_err(failed)?);

@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::Vec3;
 
-use super::{Channel, Kind, draw::Axis, sample::GRAZING, sheet::span};
+use super::{Channel, Kind, angles::GRAZING, draw::Axis, sheet::span};
 use crate::{
     optics::{Frame, TermSelection, Terms, geometry::direction},
     progress::{Cancelled, Progress},

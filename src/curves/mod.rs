@@ -22,6 +22,8 @@
 //! [`data`] has measured values for comparison, [`draw`] the figures.
 
 mod adaptive;
+mod angles;
+mod channel;
 pub mod data;
 pub mod draw;
 mod format;
@@ -37,13 +39,14 @@ use glam::Vec3;
 
 use crate::progress::Cancelled;
 
+pub use channel::Channel;
 pub use format::Format;
-pub use kind::{Channel, Kind};
+pub use kind::{Declaration, Form, Kind};
 pub use lobe::Lobe;
-pub use sample::curve;
+pub use sample::{curve, subjects_with};
 pub use sheet::{Sheet, Style};
 pub use slice::{Slice, slice};
-pub use subject::{Subject, subjects_with};
+pub use subject::Subject;
 
 /// The settings shared by all curves of a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]

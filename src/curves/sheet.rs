@@ -3,7 +3,7 @@
 use std::io;
 
 use super::{
-    Channel, Curve, Kind, Setup, Slice,
+    Channel, Curve, Form, Kind, Setup, Slice,
     draw::{Axis, COLOURS, Figure, Line, Mark, Plot, Polar, SIDE, Series, Slices, Tile},
     slice::LOG_RANGE,
 };
@@ -20,7 +20,7 @@ pub struct Sheet {
     pub log: bool,
     /// The curves.
     pub curves: Vec<Curve>,
-    /// The slices, for [`Kind::Slice`].
+    /// The slices, where a quantity is [shown so](Form::Slices).
     pub slices: Vec<Slice>,
     /// The colour and the dash of each curve; by default, those that follow from its position in the list.
     pub styles: Vec<Style>,
@@ -94,17 +94,14 @@ impl Sheet {
     #[must_use]
     pub fn heading(&self) -> String {
         let Setup { kind, theta_i, phi_i } = self.setup;
-        let mut words = match kind {
-            Kind::Slice => "image slice of the BRDF".to_owned(),
-            _ => kind.name().to_owned(),
-        };
+        let mut words = kind.declaration().heading.unwrap_or(kind.name()).to_owned();
         if let Some(first) = words.get(..1) {
             words = format!("{}{}", first.to_uppercase(), &words[1..]);
         }
         if kind.has_light() {
             words += &format!(" in the plane of incidence, light at {theta_i}°");
         }
-        if phi_i != 0.0 && kind != Kind::Fresnel {
+        if phi_i != 0.0 && kind.has_azimuth() {
             words += &format!(", azimuth {phi_i}°");
         }
         match self.channel {
@@ -126,14 +123,15 @@ impl Sheet {
     #[must_use]
     pub fn figure(&self) -> Figure {
         let heading = self.heading();
-        let names: Vec<_> = match self.setup.kind {
-            Kind::Slice => self.slices.iter().map(|s| s.name.as_str()).collect(),
-            _ => self.curves.iter().map(|c| c.name.as_str()).collect(),
+        let form = self.setup.kind.form();
+        let names: Vec<_> = match form {
+            Form::Slices => self.slices.iter().map(|s| s.name.as_str()).collect(),
+            Form::Plot | Form::Polar => self.curves.iter().map(|c| c.name.as_str()).collect(),
         };
         let title = format!("{heading}: {}", names.join("; "));
-        match self.setup.kind {
-            Kind::Slice => Figure::Slices(self.tiles(heading, title)),
-            Kind::Polar => Figure::Polar(Polar {
+        match form {
+            Form::Slices => Figure::Slices(self.tiles(heading, title)),
+            Form::Polar => Figure::Polar(Polar {
                 title,
                 heading,
                 radius: self.axis(true),
@@ -143,11 +141,8 @@ impl Sheet {
                 legend: true,
                 notes: self.notes(),
             }),
-            _ => {
-                let (from, to) = match self.setup.kind {
-                    Kind::Albedo | Kind::Fresnel | Kind::Distribution => (0.0, 90.0),
-                    _ => (-90.0, 90.0),
-                };
+            Form::Plot => {
+                let (from, to) = self.setup.kind.declaration().horizontal.ends;
                 let y = self.axis(false);
                 let mut notes = self.notes();
                 notes.extend(self.beyond(&y));
@@ -237,8 +232,7 @@ impl Sheet {
     /// angles, and the last degree must not flatten the rest of a curve.
     fn limit(&self) -> f64 {
         let Setup { kind, theta_i, .. } = self.setup;
-        let rises = kind == Kind::Albedo || kind.is_lobe() && theta_i <= 70.0;
-        if rises { 86.0 } else { 90.0 }
+        if (kind.declaration().rises)(theta_i) { 86.0 } else { 90.0 }
     }
 
     /// The axis of the values, wide enough for those up to the limit.
@@ -264,7 +258,7 @@ pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> 
         let from = least.max(to / 10f64.powf(DECADES)).min(to / 10.0);
         return Axis::log(kind.quantity(), 10f64.powf((from.log10() + 1e-9).floor()), to);
     }
-    let whole = matches!(kind, Kind::Albedo | Kind::Fresnel | Kind::Masking);
+    let whole = kind.declaration().up_to_one;
     let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let to = match () {
         () if whole => top.max(1.0),

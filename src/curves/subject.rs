@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::{
-    CurveError, Kind,
+    CurveError,
     data::{self, PAINTS, Sgd},
 };
 use crate::{
@@ -13,7 +13,6 @@ use crate::{
     optics::{Frame, Terms, colour::Encoding},
     parameter::{Parameter, ParameterKind, Value, Values},
     reflection::{Factor, ModelEntry, Surface, brdf, usage},
-    registry::Registry,
     text::did_you_mean,
 };
 
@@ -135,37 +134,6 @@ impl Subject {
             _ => None,
         }
     }
-
-    /// Fails if the subject has no curve of this kind.
-    ///
-    /// # Errors
-    /// Returns the reason.
-    pub fn has(&self, kind: Kind) -> Result<(), CurveError> {
-        let asked = match kind {
-            Kind::Fresnel => Some(Factor::Fresnel { cos_d: 1.0 }),
-            Kind::Distribution => Some(Factor::Distribution { h: Vec3::Z }),
-            Kind::Masking => Some(Factor::Masking { l: Vec3::Z, v: Vec3::Z }),
-            _ => None,
-        };
-        let name = self.name.trim_end_matches(MEASURED).to_owned();
-        match asked {
-            Some(factor) if self.factor(factor).is_none() => {
-                Err(CurveError::NoFactor { name, what: kind.name() })
-            }
-            None if self.paint().is_some() && !kind.is_lobe() => {
-                Err(CurveError::NotMeasured { name, what: kind.name() })
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// The ids of the models that have curves of this kind.
-#[must_use]
-pub fn subjects_with(kind: Kind, registry: &Registry) -> Vec<&'static str> {
-    let has =
-        |entry: &&ModelEntry| Subject::model(entry, &Values::default(), Encoding::Srgb).has(kind).is_ok();
-    registry.models().iter().filter(has).map(|entry| entry.declaration.id).collect()
 }
 
 /// The measured values of a paint in the plane of incidence, by increasing angle of the viewer, for this

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use glam::Vec3;
 
-use super::{Channel, Kind, Setup, Sheet, sample::viewer};
+use super::{Channel, Sheet};
 
 /// A cell, in quotation marks if necessary.
 fn cell(text: &str) -> String {
@@ -22,21 +22,10 @@ impl Sheet {
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from("curve,");
-        let value = match self.setup.kind {
-            Kind::Brdf | Kind::Polar | Kind::Slice => "f",
-            Kind::BrdfCos => "f_cos",
-            Kind::Response => "pi_f_cos",
-            Kind::Albedo => "e",
-            Kind::Fresnel => "fresnel",
-            Kind::Distribution => "d",
-            Kind::Masking => "g",
-        };
-        text += match self.setup.kind {
-            Kind::Slice => "theta_h,theta_d,",
-            Kind::Albedo => "angle,mu,",
-            Kind::Fresnel | Kind::Distribution => "angle,",
-            _ => "angle,theta_i,phi_i,theta_o,phi_o,",
-        };
+        let declared = self.setup.kind.declaration();
+        let value = declared.column;
+        text += declared.horizontal.columns.0;
+        text.push(',');
         if self.setup.kind.is_scalar() {
             text += value;
         } else {
@@ -46,7 +35,7 @@ impl Sheet {
         for curve in &self.curves {
             let name = cell(&curve.name);
             for point in &curve.points {
-                let angles = self.angles(point.angle);
+                let angles = (declared.horizontal.columns.1)(&self.setup, point.angle);
                 self.row(&mut text, &name, &angles, point.rgb);
             }
         }
@@ -58,18 +47,6 @@ impl Sheet {
             }
         }
         text
-    }
-
-    fn angles(&self, angle: f64) -> String {
-        let Setup { kind, theta_i, phi_i } = self.setup;
-        match kind {
-            Kind::Albedo => format!("{angle},{}", angle.to_radians().cos()),
-            Kind::Fresnel | Kind::Distribution => format!("{angle}"),
-            _ => {
-                let (theta_o, phi_o) = viewer(angle, phi_i);
-                format!("{angle},{theta_i},{phi_i},{theta_o},{phi_o}")
-            }
-        }
     }
 
     fn row(&self, text: &mut String, name: &str, angles: &str, rgb: Vec3) {

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, ComboBox, Ui, WidgetInfo, WidgetType};
 
 use crate::{
-    curves::{Channel, Kind},
+    curves::{Channel, Form, Kind},
     panel::{
         knob, menu,
         state::{Action, MOST_LIGHT, PlotCommand, Session},
@@ -12,55 +12,15 @@ use crate::{
     scene::limits::Limits,
 };
 
-/// The quantity in a few words.
-pub(super) fn name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Brdf => "BRDF f",
-        Kind::BrdfCos => "f cos θ",
-        Kind::Response => "Response π f cos θ",
-        Kind::Polar => "Polar lobe",
-        Kind::Albedo => "Directional albedo E",
-        Kind::Fresnel => "Fresnel factor F",
-        Kind::Distribution => "Distribution D",
-        Kind::Masking => "Masking G",
-        Kind::Slice => "Image slice",
-    }
-}
-
-fn about(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Brdf => "The BRDF f in sr⁻¹ by the angle of the viewer, in the plane of light and normal.",
-        Kind::BrdfCos => {
-            "f cos θ_i in sr⁻¹: the light that leaves towards the viewer, per unit of irradiance at normal incidence."
-        }
-        Kind::Response => {
-            "π f cos θ_i: the response, which the picture shows. It is 1 for a white matte surface that faces the light."
-        }
-        Kind::Polar => "The BRDF around a point of the surface: the length of the ray to each viewer is f.",
-        Kind::Albedo => {
-            "The part of the light that leaves the surface when light comes evenly from everywhere, by the angle of the viewer. More than 1 means that energy is made from nothing."
-        }
-        Kind::Fresnel => {
-            "The part of the light that a mirror of this material reflects, by the angle between light and facet. A factor of microfacet models."
-        }
-        Kind::Distribution => {
-            "How the normals of the microfacets are spread: D in sr⁻¹ by their angle from the normal of the surface. A factor of microfacet models."
-        }
-        Kind::Masking => {
-            "The part of the microfacets that is neither in shadow nor hidden by others. A factor of microfacet models."
-        }
-        Kind::Slice => {
-            "π f as a picture, after B. Burley (2012): the half angle θ_h from left to right, the difference angle θ_d from bottom to top. Highlights are at the left, the Fresnel effect at the top, retroreflection at the bottom."
-        }
-    }
-}
-
 /// Shows them.
 pub(super) fn row(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let plots = &session.plots;
     let mut ask = |command: PlotCommand| actions.push(Action::Plot(command));
     ui.horizontal(|ui| {
-        let kinds = Kind::ALL.map(|kind| (kind, name(kind), about(kind)));
+        let kinds = Kind::ALL.map(|kind| {
+            let [name, about] = kind.declaration().choice;
+            (kind, name, about)
+        });
         if let Some(kind) = list(ui, "Quantity", 176.0, plots.kind, &kinds) {
             ask(PlotCommand::Kind(kind));
         }
@@ -75,7 +35,7 @@ pub(super) fn row(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let limits = Limits::between(-360.0, 360.0).slider(0.0, 360.0);
         let help = "The azimuth of the plane from the tangent. It matters to anisotropic models: brushed metal, hair.";
         let name = "Azimuth φ in degrees";
-        let turns = plots.kind != Kind::Fresnel;
+        let turns = plots.kind.has_azimuth();
         if let Some(angle) = angle(ui, ["φ", name, help], plots.phi_i, &limits, turns) {
             ask(PlotCommand::Azimuth(angle));
         }
@@ -87,9 +47,9 @@ pub(super) fn row(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
         ui.add_space(8.0);
         if !plots.kind.is_scalar() {
-            let plain = match plots.kind {
-                Kind::Slice => (None, "in colour", "Red, green and blue at once."),
-                _ => (None, "luminance", "The brightness, after ITU-R BT.709."),
+            let plain = match plots.kind.form() {
+                Form::Slices => (None, "in colour", "Red, green and blue at once."),
+                Form::Plot | Form::Polar => (None, "luminance", "The brightness, after ITU-R BT.709."),
             };
             let one = |(channel, name)| (Some(channel), name, "One channel of the linear colour.");
             let own = [Channel::Red, Channel::Green, Channel::Blue].map(|c| one((c, c.name())));

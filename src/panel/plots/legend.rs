@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     curves::{
-        Kind, Style,
+        Form, Kind, Style,
         data::{PAINTS, Sgd},
         draw::{COLOURS, Line, Mark, Series},
     },
@@ -222,7 +222,7 @@ fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<Stri
 
 /// The sample of a curve, which opens the choice of its colour and its dash.
 fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, actions: &mut Vec<Action>) {
-    if kind == Kind::Slice {
+    if kind.form() == Form::Slices {
         return;
     }
     let built = panel.figure.as_ref().and_then(|built| built.series(entry.slot));

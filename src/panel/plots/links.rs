@@ -24,15 +24,7 @@ pub(super) struct Influence {
 
 /// The symbols of a quantity in the equation of a model. A lobe is the answer of the whole model to light.
 pub(super) fn symbols(model: &ModelEntry, kind: Kind) -> &'static [&'static str] {
-    let whole = definition(model.declaration.equation, "I").is_some();
-    match kind {
-        Kind::Brdf | Kind::BrdfCos | Kind::Response | Kind::Polar | Kind::Slice if whole => &["I"],
-        Kind::Brdf | Kind::BrdfCos | Kind::Response | Kind::Polar | Kind::Slice => &["I_d", "I_s"],
-        Kind::Albedo => &["E", "E_V"],
-        Kind::Fresnel => &["F", "F_s"],
-        Kind::Distribution => &["D", "D_s"],
-        Kind::Masking => &["G", "G_2", "G_s"],
-    }
+    (kind.declaration().symbols)(definition(model.declaration.equation, "I").is_some())
 }
 
 /// The symbols that a curve of the list stands for, if it is of the model whose equation is shown.
@@ -78,9 +70,9 @@ pub(super) fn is_live_lit(ctx: &Context, request: &Request, known: &mut Vec<Infl
 /// The curve that is calculated to find out: for integrals and pictures, what they are made of.
 fn tried(request: &Request) -> Setup {
     let setup = request.calculated();
-    match setup.kind {
-        Kind::Albedo | Kind::Slice => Setup { kind: Kind::Brdf, theta_i: 45.0, ..setup },
-        _ => setup,
+    match setup.kind.declaration().tried {
+        Some((kind, theta_i)) => Setup { kind, theta_i, ..setup },
+        None => setup,
     }
 }
 

@@ -145,7 +145,7 @@ impl PlotPanel {
             coarse: known(entry).is_some(),
         };
         let items = missing.into_iter().map(item).collect();
-        let may_lack = matches!(setup.kind, Kind::Fresnel | Kind::Distribution | Kind::Masking);
+        let may_lack = setup.kind.declaration().factor.is_some();
         self.worker.ask(ctx, Job { setup, items, registry: may_lack.then(|| registry.clone()) });
         self.asked = Some(asked);
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     curves::{
-        Channel, Curve, CurveError, Detail, Kind, Setup, Sheet, Slice, Style, Subject, curve, slice,
+        Channel, Curve, CurveError, Detail, Form, Kind, Setup, Sheet, Slice, Style, Subject, curve, slice,
         subjects_with,
     },
     optics::colour::Encoding,
@@ -118,9 +118,9 @@ impl Recipe {
                 return Err(NoCurve::Because(format!("There is no reflection model “{id}”")));
             }
         };
-        let made = match setup.kind {
-            Kind::Slice => slice(&subject, setup, detail, progress).map(Drawn::Slice),
-            _ => curve(&subject, setup, detail, progress).map(Drawn::Curve),
+        let made = match setup.kind.form() {
+            Form::Slices => slice(&subject, setup, detail, progress).map(Drawn::Slice),
+            Form::Plot | Form::Polar => curve(&subject, setup, detail, progress).map(Drawn::Curve),
         };
         made.map_err(|error| match error {
             CurveError::Cancelled(_) => NoCurve::Cancelled,
@@ -190,7 +190,7 @@ impl Request {
         Setup {
             kind,
             theta_i: if kind.has_light() { theta_i } else { 0.0 },
-            phi_i: if kind == Kind::Fresnel { 0.0 } else { phi_i },
+            phi_i: if kind.has_azimuth() { phi_i } else { 0.0 },
         }
     }
 
