@@ -6,23 +6,20 @@ use bevy_egui::egui::Pos2;
 use glam::{Quat, Vec3};
 
 use super::{
-    lamp,
-    shape::{Body, Handle, LETTERS, Placed, Target},
+    Handle,
+    shape::{Body, Placed, Target},
 };
 use crate::{
     document::{Edit, LightField, ObjectField, Selection},
     panel::marks::{Lens, Ray},
     parameter::{Parameter, Value},
-    scene::{
-        SceneSize,
-        rotation::{rotation, turned},
-    },
+    scene::{SceneSize, rotation::rotation},
 };
 
 /// Step of positions and sizes with Ctrl, in metres.
 const METRES: f32 = 0.25;
 /// Step of angles with Ctrl, in degrees.
-const DEGREES: f32 = 15.0;
+pub(super) const DEGREES: f32 = 15.0;
 /// Sine of the angle between a ring's plane and the line of sight below which the ring turns like a wheel seen from the
 /// side.
 const EDGE_ON: f32 = 0.2;
@@ -47,6 +44,41 @@ pub(super) enum Dragged {
     Parameter(f32),
 }
 
+impl Dragged {
+    /// A parameter that is a number.
+    pub(super) fn parameter(value: Option<Value>) -> Option<Self> {
+        match value? {
+            Value::Number(value) => Some(Self::Parameter(value)),
+            _ => None,
+        }
+    }
+}
+
+/// A place of the pointer that pulls a handle.
+pub(super) struct Pull<'a> {
+    pub(super) lens: &'a Lens,
+    /// Centre of the handles.
+    pub(super) at: Vec3,
+    pub(super) pointer: Pos2,
+    /// The line of sight where the handle was grasped.
+    pub(super) start: Ray,
+    /// The line of sight now.
+    pub(super) now: Ray,
+    /// Values go in larger steps.
+    pub(super) snap: bool,
+    /// The step of lengths, metres.
+    pub(super) step: f32,
+    pub(super) room: SceneSize,
+}
+
+impl Pull<'_> {
+    /// The place where a line of sight meets the plane of the picture through the middle of the handles.
+    pub(super) fn flat(&self, ray: Ray) -> Option<Vec3> {
+        let [_, _, ahead] = self.lens.axes();
+        on_plane(ray, self.at, ahead)
+    }
+}
+
 /// A dragged handle, with the values from the start of the drag.
 #[derive(Clone, Debug)]
 pub(super) struct Grasp {
@@ -57,14 +89,14 @@ pub(super) struct Grasp {
     /// Position of the pointer.
     pub(super) pointer: Pos2,
     /// The point in the scene that the handle represents.
-    point: Vec3,
-    rotation: Quat,
-    size: f32,
-    direction: Vec3,
+    pub(super) point: Vec3,
+    pub(super) rotation: Quat,
+    pub(super) size: f32,
+    pub(super) direction: Vec3,
     /// The parameter of a light that the handle changes, and the value.
-    parameter: Option<(&'static Parameter, f32)>,
+    pub(super) parameter: Option<(&'static Parameter, f32)>,
     /// Vector to the end of a size of a light, and the fraction of the size that it covers.
-    end: Option<(Vec3, f32)>,
+    pub(super) end: Option<(Vec3, f32)>,
     /// True if the handle is on the side of its sphere that faces the camera.
     near: bool,
     /// True if the handle was pulled off its sphere; when it returns, it changes sides.
@@ -72,12 +104,12 @@ pub(super) struct Grasp {
 }
 
 /// The nearest multiple of a step.
-fn snapped(v: f32, step: f32) -> f32 {
+pub(super) fn snapped(v: f32, step: f32) -> f32 {
     (v / step).round() * step
 }
 
 /// An angle from −180° to 180°, in degrees.
-fn wrapped(radians: f32) -> f32 {
+pub(super) fn wrapped(radians: f32) -> f32 {
     let degrees = ((radians + PI).rem_euclid(TAU) - PI).to_degrees();
     if degrees <= -179.999 { 180.0 } else { degrees }
 }
@@ -111,12 +143,12 @@ fn is_near(arm: Vec3, eye: Vec3) -> bool {
 }
 
 /// The angle by which a rotation turns about an axis.
-fn twist(rotation: Quat, axis: Vec3) -> f32 {
+pub(super) fn twist(rotation: Quat, axis: Vec3) -> f32 {
     2.0 * rotation.xyz().dot(axis).atan2(rotation.w)
 }
 
 /// Azimuth and elevation of a direction in degrees: about y from +z, and above the horizon.
-fn angles(direction: Vec3) -> [f32; 2] {
+pub(super) fn angles(direction: Vec3) -> [f32; 2] {
     [direction.x.atan2(direction.z), direction.y.clamp(-1.0, 1.0).asin()].map(f32::to_degrees)
 }
 
@@ -141,95 +173,37 @@ impl Grasp {
             Body::Object(object, _) => {
                 (grasp.rotation, grasp.size) = (rotation(object.rotation), object.size);
             }
-            Body::Light(light, entry) => {
+            Body::Light(light, _) => {
                 grasp.direction = light.direction.and_then(Vec3::try_normalize).unwrap_or(Vec3::NEG_Y);
                 let parameter = target.parameter(placed.handle);
                 grasp.parameter = parameter.map(|p| (p, light.parameters.number(p)));
-                if let Handle::Extent(i, end) = placed.handle
-                    && let Some(size) = entry.declaration.sizes.get(i)
-                {
-                    let way = lamp::way(light, entry, *size, end, target.at, lens);
-                    grasp.end = Some((way, size.part()));
-                }
             }
         }
+        (placed.handle.sort.hold)(&mut grasp, target, lens);
         grasp
     }
 
     /// The value for a pointer position, in steps if `snap` is set; `None` if the position is meaningless.
     pub(super) fn drag(&self, lens: &Lens, pointer: Pos2, snap: bool, room: SceneSize) -> Option<Dragged> {
-        let [right, up, ahead] = lens.axes();
-        let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
         let step = if snap { METRES } else { decimal(lens.metres(self.at, 1.0)) };
-        let flat = |ray: Ray| on_plane(ray, self.at, ahead);
-        let parameter = |value: Option<Value>| match value? {
-            Value::Number(value) => Some(Dragged::Parameter(value)),
-            _ => None,
-        };
-        match self.handle {
-            Handle::Axis(axis) => {
-                let way = Vec3::AXES[axis];
-                let by = self.moved_along(lens, pointer, self.at, way)?;
-                let to = snapped(self.at[axis] + by, step);
-                let mut place = self.at;
-                place[axis] = room.nearest(Vec3::splat(to))[axis];
-                Some(Dragged::Position(place))
-            }
-            Handle::Plane => {
-                let to = self.at + flat(now)? - flat(start)?;
-                let to = to.map(|v| snapped(v, step));
-                Some(Dragged::Position(room.nearest(to)))
-            }
-            Handle::Ring(axis) => {
-                let axis = Vec3::AXES[axis];
-                let by = self.turned_about(lens, pointer, axis)?;
-                let before = twist(self.rotation, axis);
-                let after = snapped(wrapped(before + by), if snap { DEGREES } else { 1.0 });
-                let degrees = turned(self.rotation, axis, after.to_radians() - before);
-                Some(Dragged::Rotation(degrees, after + 0.0))
-            }
-            Handle::Size => {
-                // Distances from the centre, so that the grabbed point does not matter.
-                let radius = |ray: Ray| {
-                    let arm = flat(ray)? - self.at;
-                    Some(arm.dot(right).hypot(arm.dot(up)))
-                };
-                let part = radius(now)? / radius(start)?.max(1e-6);
-                Some(Dragged::Size(snapped(self.size * part, step).max(step.max(0.01))))
-            }
-            Handle::Direction => {
-                let p = self.pulled(lens, pointer)?;
-                if !snap {
-                    return Some(Dragged::Direction((p * 1000.0).round() / 1000.0 + Vec3::ZERO));
-                }
-                let [azimuth, elevation] = angles(p).map(|v| snapped(v, DEGREES).to_radians());
-                let level = elevation.cos();
-                let p = Vec3::new(level * azimuth.sin(), elevation.sin(), level * azimuth.cos());
-                Some(Dragged::Direction((p * 10_000.0).round() / 10_000.0 + Vec3::ZERO))
-            }
-            Handle::Cone => {
-                let angle = self.opened(lens, pointer)?.to_degrees();
-                let wanted = snapped(angle, if snap { DEGREES } else { 0.5 });
-                parameter(self.parameter?.0.nearest(&Value::Number(wanted)))
-            }
-            Handle::Extent(..) => {
-                let ((which, before), (way, part)) = self.parameter.zip(self.end)?;
-                let by = self.moved_along(lens, pointer, self.point, way)?;
-                let wanted = snapped(before + by / part, step).max(step);
-                parameter(which.nearest(&Value::Number(wanted)))
-            }
-            Handle::Roll => {
-                let (which, before) = self.parameter?;
-                let after = wrapped(before.to_radians() + self.turned_about(lens, pointer, self.direction)?);
-                parameter(which.nearest_angle(snapped(after, if snap { DEGREES } else { 1.0 }) + 0.0))
-            }
-        }
+        let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
+        (self.handle.sort.drag)(self, &Pull { lens, at: self.at, pointer, start, now, snap, step, room })
+    }
+
+    /// The legal value of its parameter that is nearest.
+    pub(super) fn nearest(&self, value: f32) -> Option<Dragged> {
+        Dragged::parameter(self.parameter?.0.nearest(&Value::Number(value)))
+    }
+
+    /// The name of its parameter.
+    pub(super) fn label(&self) -> &'static str {
+        self.parameter.map_or("", |(parameter, _)| parameter.label)
     }
 
     /// Displacement of a point along an axis, in metres, for the motion of the pointer. Only the motion along the
     /// projected axis counts, and the point moves as far in the picture as the pointer, wherever the handle was
     /// grabbed.
-    fn moved_along(&self, lens: &Lens, pointer: Pos2, from: Vec3, axis: Vec3) -> Option<f32> {
+    pub(super) fn moved_along(&self, lens: &Lens, pointer: Pos2, from: Vec3, axis: Vec3) -> Option<f32> {
         let place = lens.project(from)?;
         let end = lens.project(from + lens.metres(from, 10.0) * axis)?;
         let seen = (end - place).normalized();
@@ -237,7 +211,7 @@ impl Grasp {
     }
 
     /// The angle by which the pointer turns a ring about an axis, in radians.
-    fn turned_about(&self, lens: &Lens, pointer: Pos2, axis: Vec3) -> Option<f32> {
+    pub(super) fn turned_about(&self, lens: &Lens, pointer: Pos2, axis: Vec3) -> Option<f32> {
         let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
         let to_eye = (lens.eye() - self.at).normalize_or_zero();
         if axis.dot(to_eye).abs() < EDGE_ON {
@@ -255,9 +229,9 @@ impl Grasp {
         Some(angle(now)? - angle(start)?)
     }
 
-    /// Tracks the pointer: a direction handle that is pulled off its sphere and back changes sides.
+    /// Takes note of a place of the pointer: pulled off its sphere and back, a handle is on its other side.
     pub(super) fn follow(&mut self, lens: &Lens, pointer: Pos2) {
-        let Some(end) = self.end(lens, pointer).filter(|_| self.handle == Handle::Direction) else { return };
+        let Some(end) = self.end(lens, pointer).filter(|_| self.handle.sort.is_on_sphere) else { return };
         let (ray, to) = (lens.ray(end), self.at - lens.eye());
         let beside = to.reject_from_normalized(ray.way).length() / (self.point - self.at).length();
         if beside > OFF {
@@ -274,13 +248,13 @@ impl Grasp {
     }
 
     /// The direction to the represented point when the pointer pulls it along its sphere.
-    fn pulled(&self, lens: &Lens, pointer: Pos2) -> Option<Vec3> {
+    pub(super) fn pulled(&self, lens: &Lens, pointer: Pos2) -> Option<Vec3> {
         let ray = lens.ray(self.end(lens, pointer)?);
         on_sphere(ray, self.at, (self.point - self.at).length(), self.near)
     }
 
     /// The angle between the axis of a cone and the point to which the cone's edge is pulled.
-    fn opened(&self, lens: &Lens, pointer: Pos2) -> Option<f32> {
+    pub(super) fn opened(&self, lens: &Lens, pointer: Pos2) -> Option<f32> {
         let side = (self.point - self.at).reject_from(self.direction).normalize_or_zero();
         let normal = self.direction.cross(side);
         if normal.dot((lens.eye() - self.at).normalize_or_zero()).abs() < SIDEWAYS {
@@ -309,30 +283,24 @@ impl Grasp {
     /// The value in words.
     pub(super) fn words(&self, dragged: Dragged, metre: f32) -> String {
         let digits = if decimal(metre) < 0.005 { 3 } else { 2 };
-        let metres = |v: f32| format!("{v:.digits$}");
-        let text = match (dragged, self.handle) {
-            (Dragged::Position(p), Handle::Axis(axis)) => format!("{} {} m", LETTERS[axis], metres(p[axis])),
-            (Dragged::Position(p), _) => {
-                let [x, y, z] = p.to_array().map(metres);
-                format!("x {x}   y {y}   z {z} m")
-            }
-            (Dragged::Rotation(_, angle), Handle::Ring(axis)) => format!("{} {angle:.0}°", LETTERS[axis]),
-            (Dragged::Rotation(_, angle), _) => format!("{angle:.0}°"),
-            (Dragged::Size(size), _) => format!("size {} m", metres(size)),
-            (Dragged::Direction(d), _) => {
-                let [azimuth, elevation] = angles(d.normalize_or_zero()).map(|v| v.round() + 0.0);
-                format!("azimuth {azimuth}°   elevation {elevation}°")
-            }
-            (Dragged::Parameter(value), handle) => {
-                let label = self.parameter.map_or("", |(p, _)| p.label);
-                match handle {
-                    Handle::Extent(..) => format!("{label} {} m", metres(value)),
-                    Handle::Roll => format!("{label} {value:.0}°"),
-                    _ => format!("{label} {value:.1}°"),
-                }
-            }
-        };
-        text.replace('-', "−")
+        (self.handle.sort.words)(self, dragged, &|v| format!("{v:.digits$}")).replace('-', "−")
+    }
+}
+
+/// A value in words, with what says a length in metres.
+pub(super) fn words(grasp: &Grasp, dragged: Dragged, metres: &dyn Fn(f32) -> String) -> String {
+    match dragged {
+        Dragged::Position(p) => {
+            let [x, y, z] = p.to_array().map(metres);
+            format!("x {x}   y {y}   z {z} m")
+        }
+        Dragged::Rotation(_, angle) => format!("{angle:.0}°"),
+        Dragged::Size(size) => format!("size {} m", metres(size)),
+        Dragged::Direction(d) => {
+            let [azimuth, elevation] = angles(d.normalize_or_zero()).map(|v| v.round() + 0.0);
+            format!("azimuth {azimuth}°   elevation {elevation}°")
+        }
+        Dragged::Parameter(value) => format!("{} {value:.1}°", grasp.label()),
     }
 }
 
@@ -343,7 +311,7 @@ mod tests {
     use super::*;
     use crate::{
         panel::{
-            handles::shape::placed,
+            handles::{axis, cone, direction, plane, ring, shape::placed, size},
             state::{HandleMode, Session},
         },
         registry::Registry,
@@ -372,8 +340,7 @@ mod tests {
     fn grasp(session: &Session, mode: HandleMode, handle: Handle) -> (Grasp, Placed) {
         let registry = Registry::builtin();
         let target = Target::of(session, &registry, Vec::new).expect("selected");
-        let mut all = placed(&target, mode, session, &lens(session));
-        all.extend(lamp::placed(&target, mode, &lens(session)));
+        let all = placed(&target, mode, session, &lens(session));
         let handle = all.iter().find(|p| p.handle == handle).expect("it is there").clone();
         let start = handle.lines.first().map_or(handle.end, |line| line[line.len() / 2]);
         (Grasp::of(&handle, &target, &lens(session), start), handle)
@@ -388,7 +355,7 @@ mod tests {
         let session = session();
         let lens = lens(&session);
         for axis in 0..3 {
-            let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Axis(axis));
+            let (grasp, _) = grasp(&session, HandleMode::Move, axis::SORT.handle(axis));
             let way = Vec3::AXES[axis];
             // Half a metre further in the picture.
             let [from, after] = [0.0, 0.5].map(|t| lens.project(grasp.at + t * way).expect("in view"));
@@ -406,7 +373,7 @@ mod tests {
     #[test]
     fn a_drag_in_the_plane_keeps_what_was_grasped_under_the_pointer() {
         let session = session();
-        let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Plane);
+        let (grasp, _) = grasp(&session, HandleMode::Move, plane::SORT.handle(0));
         let by = vec2(60.0, -25.0);
         let Dragged::Position(p) = drag(&session, &grasp, grasp.pointer + by, false) else { panic!() };
         let lens = lens(&session);
@@ -417,7 +384,7 @@ mod tests {
     #[test]
     fn with_ctrl_values_go_in_steps_and_never_leave_the_room() {
         let session = session();
-        let (grasp_x, _) = grasp(&session, HandleMode::Move, Handle::Axis(0));
+        let (grasp_x, _) = grasp(&session, HandleMode::Move, axis::SORT.handle(0));
         let is_step = |v: f32, step: f32| (v / step - (v / step).round()).abs() < 1e-3;
         let mut values = Vec::new();
         for k in -30..=30 {
@@ -433,7 +400,7 @@ mod tests {
             values.push(p.x);
         }
         assert!(values.windows(2).any(|v| v[0] != v[1]));
-        let (ring, placed) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
+        let (ring, placed) = grasp(&session, HandleMode::Turn, ring::SORT.handle(1));
         for point in placed.lines.iter().flatten() {
             let Dragged::Rotation(degrees, angle) = drag(&session, &ring, *point, true) else { panic!() };
             assert!(
@@ -441,7 +408,7 @@ mod tests {
                     && (rotation(degrees).y.abs() - (0.5 * angle).to_radians().sin().abs()).abs() < 1e-3
             );
         }
-        let (size, _) = grasp(&session, HandleMode::Size, Handle::Size);
+        let (size, _) = grasp(&session, HandleMode::Size, size::SORT.handle(0));
         for k in 0..20 {
             let to = size.pointer + vec2(7.0, -7.0) * (k as f32 - 10.0);
             let Dragged::Size(metres) = drag(&session, &size, to, true) else { panic!() };
@@ -454,7 +421,7 @@ mod tests {
         let session = session();
         let lens = lens(&session);
         for axis in 0..3 {
-            let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(axis));
+            let (grasp, _) = grasp(&session, HandleMode::Turn, ring::SORT.handle(axis));
             let way = Vec3::AXES[axis];
             let arm = on_plane(lens.ray(grasp.pointer), grasp.at, way).expect("met") - grasp.at;
             let after = Quat::from_axis_angle(way, 30f32.to_radians()) * arm;
@@ -470,7 +437,7 @@ mod tests {
         let mut session = session();
         session.facts.camera = Quat::IDENTITY;
         session.facts.eye = Vec3::new(5.0, 5.0, 9.0);
-        let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
+        let (grasp, _) = grasp(&session, HandleMode::Turn, ring::SORT.handle(1));
         let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(80.0, 0.0), false)
         else {
             panic!()
@@ -482,7 +449,7 @@ mod tests {
     #[test]
     fn the_size_follows_the_distance_from_the_middle() {
         let session = session();
-        let (grasp, placed) = grasp(&session, HandleMode::Size, Handle::Size);
+        let (grasp, placed) = grasp(&session, HandleMode::Size, size::SORT.handle(0));
         let middle = lens(&session).project(grasp.at).expect("seen");
         let to = middle + 1.5 * (grasp.pointer - middle);
         let before = session.document.objects[0].size;
@@ -495,7 +462,7 @@ mod tests {
     fn a_light_shines_to_where_its_handle_is_pulled() {
         let mut session = session();
         session.selection = Selection::Light(0);
-        let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Direction);
+        let (grasp, _) = grasp(&session, HandleMode::Move, direction::SORT.handle(0));
         let lens = lens(&session);
         let arm = (grasp.point - grasp.at).length();
         let wanted = Vec3::new(0.5, -0.8, -0.3).normalize();
@@ -514,7 +481,7 @@ mod tests {
     fn pulled_off_its_sphere_and_back_a_direction_is_on_the_other_side() {
         let mut session = session();
         session.selection = Selection::Light(0);
-        let (mut grasp, _) = grasp(&session, HandleMode::Move, Handle::Direction);
+        let (mut grasp, _) = grasp(&session, HandleMode::Move, direction::SORT.handle(0));
         let lens = lens(&session);
         let middle = lens.project(grasp.at).expect("seen");
         let out = grasp.pointer - middle;
@@ -540,7 +507,7 @@ mod tests {
     fn the_cone_opens_to_where_its_handle_is_pulled_and_stays_legal() {
         let mut session = session();
         session.selection = Selection::Light(0);
-        let (grasp, placed) = grasp(&session, HandleMode::Size, Handle::Cone);
+        let (grasp, placed) = grasp(&session, HandleMode::Size, cone::SORT.handle(0));
         let lens = lens(&session);
         let arm = placed.point - grasp.at;
         let side = arm.reject_from(grasp.direction).normalize();
@@ -561,17 +528,17 @@ mod tests {
         let session = session();
         let said = |mode, handle, dragged| grasp(&session, mode, handle).0.words(dragged, 0.02);
         let at = Dragged::Position(Vec3::new(3.25, 1.0, 2.0));
-        assert_eq!(said(HandleMode::Move, Handle::Axis(0), at), "x 3.25 m");
-        assert_eq!(said(HandleMode::Move, Handle::Plane, at), "x 3.25   y 1.00   z 2.00 m");
+        assert_eq!(said(HandleMode::Move, axis::SORT.handle(0), at), "x 3.25 m");
+        assert_eq!(said(HandleMode::Move, plane::SORT.handle(0), at), "x 3.25   y 1.00   z 2.00 m");
         let turned = Dragged::Rotation(Vec3::ZERO, -45.0);
-        assert_eq!(said(HandleMode::Turn, Handle::Ring(1), turned), "y −45°");
-        assert_eq!(said(HandleMode::Size, Handle::Size, Dragged::Size(2.5)), "size 2.50 m");
+        assert_eq!(said(HandleMode::Turn, ring::SORT.handle(1), turned), "y −45°");
+        assert_eq!(said(HandleMode::Size, size::SORT.handle(0), Dragged::Size(2.5)), "size 2.50 m");
     }
 
     #[test]
     fn a_handle_is_grasped_near_its_line_and_not_beside_it() {
         let session = session();
-        let (grasp, placed) = grasp(&session, HandleMode::Move, Handle::Axis(0));
+        let (grasp, placed) = grasp(&session, HandleMode::Move, axis::SORT.handle(0));
         let side = (placed.end - grasp.pointer).normalized().rot90();
         assert!(placed.distance(grasp.pointer + 5.0 * side).is_some());
         assert!(placed.distance(grasp.pointer + 9.0 * side).is_none());

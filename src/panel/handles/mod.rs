@@ -1,277 +1,136 @@
 //! The handles of the selection: arrows that move it, rings that turn it, and one for its size; for a light, handles
 //! for its direction, its cone, and the sizes and the roll that its type declares.
 //!
-//! Bevy's `TransformGizmo` is unsuitable here. It assumes that the cursor of the window refers to the target of its
-//! camera, but the cameras of the window draw into textures that are shown beside panels and beside each other. It also
-//! draws into the picture, where tone mapping and exposure would change it and a capture would show it. These handles
-//! are painted over the picture, as the [`marks`] are, and their changes are edits like those of any control.
+//! Bevy's `TransformGizmo` does not serve here. It takes the cursor of the window for one in the target of its camera,
+//! but the cameras of the window draw into textures that are shown beside panels and beside each other; and it draws
+//! into the picture, where tone mapping and exposure would change it and a capture would show it. These are painted over
+//! the picture, as the [`marks`](super::marks) are, and what they change is an edit as that of any knob.
 
-use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, WidgetType};
+use std::{
+    fmt,
+    hash::{Hash, Hasher},
+};
 
-use super::{
-    marks::{self, Lens},
-    notice,
-    state::{Action, HandleMode, Session},
-};
-use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
-    registry::Registry,
-    scene::rotation::rotation,
-};
-use grasp::{Dragged, Grasp};
-use paint::State;
-use shape::{Handle, Placed, Target, placed};
+use bevy_egui::egui::{Pos2, Ui};
+use glam::Vec3;
+
+use crate::{light::LightEntry, panel::marks::Lens, parameter::Parameter, scene::SceneSize};
+use grasp::{Dragged, Grasp, Pull};
+use paint::Brush;
+use shape::{Around, Body, Placed, Target};
+
+pub(super) use show::handles;
 
 mod grasp;
-mod lamp;
 mod paint;
 mod shape;
+mod show;
 
-/// Minimum picture size for handles, in points.
-const SMALLEST: f32 = 120.0;
-/// Time after which the pointer counts as resting, in seconds.
-const REST: f64 = 2.0;
-/// Duration of fading in and out, in seconds.
-const FADE: f32 = 0.15;
-/// Drag threshold, in points.
-const SLACK: f32 = 1.5;
+mod axis;
+mod cone;
+mod direction;
+mod extent;
+mod plane;
+mod ring;
+mod roll;
+mod size;
 
-/// The handle being dragged.
-#[derive(Clone, Debug)]
-struct Hold {
-    /// The view of the drag.
-    view: Id,
-    grasp: Grasp,
-    /// The original value, which Escape restores.
-    before: Edit,
-    /// True once the pointer has moved.
-    moved: bool,
+/// Every sort of handle, each declared in a file of its own; in the order in which they are painted.
+static SORTS: [&Sort; 8] = [
+    &axis::SORT,
+    &plane::SORT,
+    &ring::SORT,
+    &size::SORT,
+    &direction::SORT,
+    &cone::SORT,
+    &extent::SORT,
+    &roll::SORT,
+];
+
+/// A sort of handle. There may be several at once: functions are told which.
+struct Sort {
+    /// Tells it from the others.
+    id: &'static str,
+    /// The action of the handle in words, from the name of the selected part.
+    name: fn(&Target, usize, &str) -> String,
+    /// The handles that a target has.
+    placed: fn(&Around) -> Vec<Placed>,
+    /// The parameter of a light that it changes.
+    parameter: fn(&LightEntry, usize) -> Option<&'static Parameter>,
+    /// The value that the target has now.
+    value: fn(&Target, Handle) -> Option<Dragged>,
+    /// Takes further note of the target when it is grasped.
+    hold: fn(&mut Grasp, &Target, &Lens),
+    /// The value that a pull means; none where it means nothing.
+    drag: fn(&Grasp, &Pull) -> Option<Dragged>,
+    /// True if it is on a sphere: pulled off it and back, it is on the other side.
+    is_on_sphere: bool,
+    /// The value in words; the last function says a length in metres.
+    words: fn(&Grasp, Dragged, &dyn Fn(f32) -> String) -> String,
+    /// True if it is about the axis of the room that has the number.
+    has_axis: bool,
+    /// Paints its end.
+    end: fn(&mut Brush, &Placed),
+    /// Paints what helps while it is dragged: the middle of the handles, and where the pointer was and is.
+    guide: fn(&Ui, Lens, usize, Vec3, [Pos2; 2], SceneSize),
 }
 
-/// Key of the handle being dragged.
-fn held() -> Id {
-    Id::new("handle in the hand")
-}
-
-/// Shows the handles of the selection in a view. Returns the requested actions, and the rectangles that cover the
-/// picture.
-pub(super) fn handles(
-    ui: &Ui,
-    rect: Rect,
-    written: &[Rect],
-    session: &Session,
-    registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
-    let (mut actions, mut places) = (Vec::new(), Vec::new());
-    let view = ui.id().with("handles");
-    let hold: Option<Hold> = ui.data(|data| data.get_temp(held()));
-    let lens = Lens::of(session, rect);
-    let seen = || marks::places_shown(ui.ctx(), &session.document, registry, &lens, written);
-    let target = Target::of(session, registry, seen)
-        .filter(|_| session.view.show_handles && rect.size().min_elem() >= SMALLEST);
-    let Some(target) = target else {
-        release(ui);
-        return (actions, places);
+impl Sort {
+    /// The values that most handles share: a disc.
+    const PLAIN: Self = Self {
+        id: "",
+        name: |_, _, part| part.to_owned(),
+        placed: |_| Vec::new(),
+        parameter: |_, _| None,
+        value: |_, _| None,
+        hold: |_, _, _| (),
+        drag: |_, _| None,
+        is_on_sphere: false,
+        words: grasp::words,
+        has_axis: false,
+        end: paint::disc,
+        guide: |_, _, _, _, _, _| (),
     };
-    let hold = hold.filter(|hold| hold.grasp.part == target.part);
-    let mut all = placed(&target, session.view.handles, session, &lens);
-    all.extend(lamp::placed(&target, session.view.handles, &lens));
-    let under = free_pointer(ui, rect, written, session).and_then(|at| under(&all, at));
-    let mine = hold.as_ref().filter(|hold| hold.view == view);
-    let is_down = ui.input(|i| i.pointer.any_down());
-    let hot = match &hold {
-        Some(_) => mine.map(|hold| hold.grasp.handle),
-        None => under.filter(|_| !is_down || ui.input(|i| i.pointer.primary_pressed())).map(|p| p.handle),
+
+    /// The values that handles for parameters of lights share.
+    const OF_PARAMETER: Self = Self {
+        value: |target, handle| {
+            let Body::Light(light, _) = target.body else { return None };
+            Some(Dragged::Parameter(light.parameters.number(target.parameter(handle)?)))
+        },
+        ..Self::PLAIN
     };
-    let state = |handle: Handle| match hot {
-        Some(hot) if hot == handle => State::Hot,
-        _ if hold.is_some() => State::Dim,
-        _ => State::Free,
-    };
-    let in_use = hot.is_some() || hold.is_some();
-    let opacity = opacity(ui, view, rect, (target.part, session.view.handles), in_use);
-    if opacity > 0.0 {
-        paint::handles(ui, lens, &all, opacity, state);
-    }
-    nodes(ui, view, rect, &all, &target, &session.name_of(target.part, registry));
-    places.extend(all.iter().flat_map(|placed| {
-        let side = Vec2::splat(2.0 * placed.half());
-        placed.points().filter(|p| rect.contains(*p)).map(move |p| Rect::from_center_size(p, side))
-    }));
-    if hot.is_some() {
-        ui.ctx().set_cursor_icon(if hold.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
-    }
-    if let Some(mine) = mine {
-        actions.extend(drag(ui, &lens, mine.clone(), &target, session, registry));
-    } else if hold.is_none()
-        && let Some(placed) = under
-        && ui.input(|i| i.pointer.primary_pressed())
-        && let Some(pointer) = ui.input(|i| i.pointer.press_origin())
-    {
-        let grasp = Grasp::of(placed, &target, &lens, pointer);
-        if let Some(before) = value(&grasp, &target).and_then(|value| grasp.edit(value)) {
-            if let Selection::Light(i) = target.part {
-                marks::hold(ui.ctx(), Some((i, target.at)));
-            }
-            ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
-            ui.ctx().set_dragged_id(view.with(placed.handle));
-            actions.push(Action::BeginDrag);
-        }
-    }
-    (actions, places)
-}
 
-/// The latest reason to show the handles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Woken {
-    /// The selection, and the kind of handles.
-    what: (Selection, HandleMode),
-    /// Time of the reason, in seconds.
-    at: f64,
-    /// True if another part or another kind of handles was chosen, which shows them wherever the pointer is.
-    chosen: bool,
-    /// Time at which the window is woken to let them fade, in seconds.
-    wakes: f64,
-}
-
-/// Opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that nothing covers it.
-fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use: bool) -> f32 {
-    let (now, over, moved) = ui.input(|i| {
-        let over = i.pointer.latest_pos().is_some_and(|at| rect.contains(at));
-        (i.time, over, i.pointer.delta() != Vec2::ZERO || i.pointer.any_pressed())
-    });
-    let key = view.with("woken");
-    let known: Option<Woken> = ui.data(|data| data.get_temp(key));
-    // A newly opened window shows the picture without handles.
-    let mut woken = known.unwrap_or(Woken { what, at: f64::NEG_INFINITY, chosen: false, wakes: 0.0 });
-    if woken.what != what {
-        woken = Woken { what, at: now, chosen: true, ..woken };
-    } else if over && moved || in_use {
-        woken = Woken { what, at: now, chosen: false, ..woken };
-    }
-    let left = woken.at + REST - now;
-    let shown = in_use || (left > 0.0 && (over || woken.chosen));
-    if shown && !in_use && woken.wakes <= now {
-        notice::wake(ui.ctx(), left + 0.05);
-        woken.wakes = now + left + 0.05;
-    }
-    if known != Some(woken) {
-        ui.data_mut(|data| data.insert_temp(key, woken));
-    }
-    ui.ctx().animate_bool_with_time(view.with("opacity"), shown, FADE)
-}
-
-/// Ends the drag once the button is up.
-fn release(ui: &Ui) {
-    if !ui.input(|i| i.pointer.primary_down()) {
-        ui.data_mut(|data| data.remove::<Hold>(held()));
-        marks::hold(ui.ctx(), None);
+    /// A handle of this sort.
+    const fn handle(&'static self, which: usize) -> Handle {
+        Handle { sort: self, which }
     }
 }
 
-/// Position of the pointer, if the picture is uncovered there and nothing else uses the pointer.
-fn free_pointer(ui: &Ui, rect: Rect, written: &[Rect], session: &Session) -> Option<Pos2> {
-    let ctx = ui.ctx();
-    let busy = session.questions.open.is_some()
-        || bevy_egui::egui::Popup::is_any_open(ctx)
-        || session.view.chooser_open
-        || ctx.egui_is_using_pointer();
-    let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.latest_pos()))?;
-    let open = ctx.layer_id_at(at).is_none_or(|layer| layer.order == Order::Background);
-    let covered = written.iter().any(|place| place.contains(at));
-    (!busy && open && !covered && rect.contains(at)).then_some(at)
-}
-
-/// The handle at a position.
-fn under(all: &[Placed], at: Pos2) -> Option<&Placed> {
-    let near = all.iter().filter_map(|placed| Some((placed.distance(at)?, placed)));
-    // The handle painted last is on top.
-    near.rev().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, placed)| placed)
-}
-
-/// Describes the handles for screen readers.
-fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], target: &Target, part: &str) {
-    for placed in all {
-        let place = Rect::from_center_size(placed.end, Vec2::splat(2.0 * placed.radius)).intersect(rect);
-        let response = ui.interact(place, view.with(placed.handle), Sense::hover());
-        let name = target.name(placed.handle, part);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &name));
+impl fmt::Debug for Sort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id)
     }
 }
 
-/// The current value of a part, of the kind that a handle sets.
-fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
-    let now = match (&target.body, grasp.handle) {
-        (shape::Body::Object(object, _), Handle::Axis(_) | Handle::Plane) => {
-            Dragged::Position(object.position)
-        }
-        (shape::Body::Object(object, _), Handle::Ring(_)) => Dragged::Rotation(object.rotation, 0.0),
-        (shape::Body::Object(object, _), Handle::Size) => Dragged::Size(object.size),
-        (shape::Body::Light(light, _), Handle::Axis(_) | Handle::Plane) => Dragged::Position(light.position?),
-        (shape::Body::Light(light, _), Handle::Direction) => Dragged::Direction(light.direction?),
-        (shape::Body::Light(light, _), handle) => {
-            Dragged::Parameter(light.parameters.number(target.parameter(handle)?))
-        }
-        _ => return None,
-    };
-    Some(now)
-}
-
-/// True if an edit leaves the scene as it is.
-fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
-    match (edit, now) {
-        // Different angles can describe the same rotation.
-        (Edit::Object(_, ObjectField::Rotation(a)), Some(Edit::Object(_, ObjectField::Rotation(b)))) => {
-            rotation(*a).angle_between(rotation(b)) < 1e-4
-        }
-        (Edit::Light(_, LightField::Direction(a)), Some(Edit::Light(_, LightField::Direction(b)))) => {
-            a.normalize_or_zero() == b.normalize_or_zero()
-        }
-        (edit, now) => now.as_ref() == Some(edit),
+impl PartialEq for Sort {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
     }
 }
 
-/// Continues a drag, and paints its numbers.
-fn drag(
-    ui: &Ui,
-    lens: &Lens,
-    mut hold: Hold,
-    target: &Target,
-    session: &Session,
-    registry: &Registry,
-) -> Option<Action> {
-    let (pointer, snap) = ui.input(|i| (i.pointer.latest_pos(), i.modifiers.command));
-    let now = value(&hold.grasp, target);
-    if ui.input(|i| i.key_pressed(Key::Escape)) {
-        let undone = (now.and_then(|now| hold.grasp.edit(now)).as_ref() != Some(&hold.before))
-            .then(|| Action::Edit(hold.before.clone()));
-        ui.data_mut(|data| data.remove::<Hold>(held()));
-        marks::hold(ui.ctx(), None);
-        return undone;
+impl Eq for Sort {}
+
+impl Hash for Sort {
+    fn hash<H: Hasher>(&self, to: &mut H) {
+        self.id.hash(to);
     }
-    let pointer = pointer?;
-    hold.moved |= pointer.distance(hold.grasp.pointer) >= SLACK;
-    hold.grasp.follow(lens, pointer);
-    let grasp = &hold.grasp;
-    let room = session.document.scene_size;
-    let wanted = grasp.drag(lens, pointer, snap, room).filter(|_| hold.moved);
-    let edit = wanted.and_then(|wanted| grasp.edit(wanted));
-    // Where another part is in the way, keep the last valid value.
-    let legal = edit.filter(|edit| session.document.allows(edit, registry));
-    if hold.moved {
-        let shown = wanted.filter(|_| legal.is_some()).or(now);
-        if let Handle::Axis(axis) = grasp.handle {
-            paint::guide(ui, *lens, target.at, axis, room);
-        }
-        if let Handle::Ring(_) | Handle::Roll = grasp.handle {
-            paint::angle(ui, *lens, target.at, [grasp.pointer, pointer]);
-        }
-        if let Some(shown) = shown {
-            paint::plate(ui, lens.rect(), pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
-        }
-    }
-    let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));
-    ui.data_mut(|data| data.insert_temp(held(), hold));
-    release(ui);
-    changed.map(Action::Edit)
+}
+
+/// A handle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Handle {
+    sort: &'static Sort,
+    /// Which of its sort.
+    which: usize,
 }

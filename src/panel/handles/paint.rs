@@ -3,7 +3,10 @@
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, TextStyle, Ui, pos2, vec2};
 use glam::Vec3;
 
-use super::shape::{DISC, Handle, LETTERS, Placed};
+use super::{
+    Handle,
+    shape::{DISC, LETTERS, Placed},
+};
 use crate::{
     panel::{
         marks::{Ink, Lens, OUTLINE},
@@ -37,10 +40,7 @@ pub(super) enum State {
 }
 
 fn colour_of(handle: Handle, state: State) -> Color32 {
-    let colour = match handle {
-        Handle::Axis(axis) | Handle::Ring(axis) => AXES[axis],
-        _ => WHITE,
-    };
+    let colour = if handle.sort.has_axis { AXES[handle.which] } else { WHITE };
     match state {
         State::Free => colour,
         State::Hot => colour.lerp_to_gamma(Color32::WHITE, 0.45),
@@ -53,7 +53,7 @@ pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: 
     let painter = ui.painter_at(lens.rect());
     for hot in [false, true] {
         let mut ink = Ink::new(lens);
-        let mut letters: Vec<(Pos2, &str, Color32)> = Vec::new();
+        let mut letters: Vec<(Pos2, &'static str, Color32)> = Vec::new();
         for placed in all.iter().filter(|p| (state(p.handle) == State::Hot) == hot) {
             let colour = colour_of(placed.handle, state(placed.handle)).gamma_multiply(opacity);
             let width = if hot { HOT } else { LINE };
@@ -63,31 +63,8 @@ pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: 
             for line in &placed.lines {
                 ink.stroke(line.clone(), width, colour);
             }
-            let end = placed.end;
-            match placed.handle {
-                Handle::Axis(axis) => {
-                    if let Some([.., from, tip]) = placed.lines.first().map(Vec::as_slice) {
-                        let ahead = (*tip - *from).normalized() * (2.0 + 1.5 * width);
-                        let side = ahead.rot90() * 0.62;
-                        let back = *tip - 1.2 * ahead;
-                        ink.fill(vec![*tip + ahead, back + side, back - side], colour);
-                    }
-                    letters.push((end + (end - middle(placed)).normalized() * 4.0, LETTERS[axis], colour));
-                }
-                Handle::Ring(axis) => letters.push((end, LETTERS[axis], colour)),
-                Handle::Plane => {
-                    ink.disc(end, DISC, colour);
-                    ink.disc(end, DISC - 4.5, OUTLINE.gamma_multiply(f32::from(colour.a()) / 255.0));
-                }
-                Handle::Size | Handle::Extent(..) => {
-                    let r = if hot { 7.0 } else { 5.5 };
-                    let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
-                    ink.fill(corners.map(|(x, y)| end + vec2(x, y)).to_vec(), colour);
-                }
-                Handle::Direction | Handle::Cone | Handle::Roll => {
-                    ink.disc(end, if hot { DISC + 1.0 } else { DISC - 0.5 }, colour);
-                }
-            }
+            let mut brush = Brush { ink: &mut ink, letters: &mut letters, colour, width, hot };
+            (placed.handle.sort.end)(&mut brush, placed);
         }
         ink.paint(&painter);
         for (at, letter, colour) in letters {
@@ -96,6 +73,53 @@ pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: 
             painter.text(at - vec2(0.0, 1.0), Align2::CENTER_CENTER, letter, font, colour);
         }
     }
+}
+
+/// The tools and colours that paint the end of a handle.
+pub(super) struct Brush<'a> {
+    ink: &'a mut Ink,
+    /// Letters are painted over everything.
+    letters: &'a mut Vec<(Pos2, &'static str, Color32)>,
+    colour: Color32,
+    width: f32,
+    /// The handle is under the pointer.
+    hot: bool,
+}
+
+/// The tip of an arrow, with the letter of its axis.
+pub(super) fn arrow(brush: &mut Brush, placed: &Placed) {
+    if let Some([.., from, tip]) = placed.lines.first().map(Vec::as_slice) {
+        let ahead = (*tip - *from).normalized() * (2.0 + 1.5 * brush.width);
+        let side = ahead.rot90() * 0.62;
+        let back = *tip - 1.2 * ahead;
+        brush.ink.fill(vec![*tip + ahead, back + side, back - side], brush.colour);
+    }
+    let at = placed.end + (placed.end - middle(placed)).normalized() * 4.0;
+    brush.letters.push((at, LETTERS[placed.handle.which], brush.colour));
+}
+
+/// The letter of its axis.
+pub(super) fn letter(brush: &mut Brush, placed: &Placed) {
+    brush.letters.push((placed.end, LETTERS[placed.handle.which], brush.colour));
+}
+
+/// A disc.
+pub(super) fn disc(brush: &mut Brush, placed: &Placed) {
+    brush.ink.disc(placed.end, if brush.hot { DISC + 1.0 } else { DISC - 0.5 }, brush.colour);
+}
+
+/// A disc with a dark middle.
+pub(super) fn eye(brush: &mut Brush, placed: &Placed) {
+    brush.ink.disc(placed.end, DISC, brush.colour);
+    let opacity = f32::from(brush.colour.a()) / 255.0;
+    brush.ink.disc(placed.end, DISC - 4.5, OUTLINE.gamma_multiply(opacity));
+}
+
+/// A square.
+pub(super) fn square(brush: &mut Brush, placed: &Placed) {
+    let r = if brush.hot { 7.0 } else { 5.5 };
+    let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
+    brush.ink.fill(corners.map(|(x, y)| placed.end + vec2(x, y)).to_vec(), brush.colour);
 }
 
 /// The start of the first line.

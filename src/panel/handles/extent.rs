@@ -1,9 +1,14 @@
-//! Handles that a light type declares: at the ends of its sizes, and one for its roll.
+//! The handles at the ends of the sizes that a light type declares.
 
 use bevy_egui::egui::Pos2;
 use glam::Vec3;
 
-use super::shape::{Body, DISC, End, Handle, Placed, RING, Target, circle, part_of};
+use super::{
+    Handle, Sort,
+    grasp::{Dragged, snapped},
+    paint,
+    shape::{Body, DISC, Placed, Target},
+};
 use crate::{
     light::{LightEntry, Size},
     panel::{marks::Lens, state::HandleMode},
@@ -18,8 +23,59 @@ const INSET: f32 = 14.0;
 /// dragged along.
 const FLAT: f32 = 0.2;
 
+/// An end of a size of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// The end in the direction of the size's axis.
+    First,
+    /// The opposite end.
+    Second,
+}
+
+/// The size that a handle changes, by its place among those that the type declares, and at which of its ends.
+fn parts(which: usize) -> (usize, End) {
+    (which / 2, if which.is_multiple_of(2) { End::First } else { End::Second })
+}
+
+pub(super) static SORT: Sort = Sort {
+    id: "extent",
+    name: |target, which, part| {
+        let label = target.parameter(SORT.handle(which)).map_or("size", |p| p.label);
+        match parts(which).1 {
+            End::First => format!("{label} of {part}"),
+            End::Second => format!("{label} of {part}, at the other end"),
+        }
+    },
+    placed: |around| match (&around.target.body, around.mode) {
+        (Body::Light(light, entry), HandleMode::Size) => {
+            sizes(around.target, light, entry, around.middle, around.lens)
+        }
+        _ => Vec::new(),
+    },
+    parameter: |entry, which| entry.parameter(entry.declaration.sizes.get(parts(which).0)?.parameter()),
+    hold: |grasp, target, lens| {
+        let (i, end) = parts(grasp.handle.which);
+        if let Body::Light(light, entry) = target.body
+            && let Some(size) = entry.declaration.sizes.get(i)
+        {
+            grasp.end = Some((way(light, entry, *size, end, target.at, lens), size.part()));
+        }
+    },
+    drag: |grasp, pull| {
+        let ((_, before), (way, part)) = grasp.parameter.zip(grasp.end)?;
+        let by = grasp.moved_along(pull.lens, pull.pointer, grasp.point, way)?;
+        grasp.nearest(snapped(before + by / part, pull.step).max(pull.step))
+    },
+    words: |grasp, dragged, metres| match dragged {
+        Dragged::Parameter(value) => format!("{} {} m", grasp.label(), metres(value)),
+        other => super::grasp::words(grasp, other, metres),
+    },
+    end: paint::square,
+    ..Sort::OF_PARAMETER
+};
+
 /// The direction from the centre of a light to the handle of a size.
-pub(super) fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: Vec3, lens: &Lens) -> Vec3 {
+fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: Vec3, lens: &Lens) -> Vec3 {
     let [right, up, _] = lens.axes();
     let direction = light.direction.and_then(Vec3::try_normalize);
     let [x, y] = entry.sides(&light.parameters, direction.unwrap_or(Vec3::NEG_Y));
@@ -37,26 +93,12 @@ pub(super) fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: V
     if end == End::First { way } else { -way }
 }
 
-/// The handles for the sizes and the roll of a light.
-pub(super) fn placed(target: &Target, mode: HandleMode, lens: &Lens) -> Vec<Placed> {
-    let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
-        return Vec::new();
-    };
-    match (&target.body, mode) {
-        (Body::Light(light, entry), HandleMode::Size) => sizes(target, light, entry, middle, lens),
-        (Body::Light(light, entry), HandleMode::Turn) => {
-            roll(target, light, entry, lens).into_iter().collect()
-        }
-        _ => Vec::new(),
-    }
-}
-
 fn sizes(target: &Target, light: &Light, entry: &LightEntry, middle: Pos2, lens: &Lens) -> Vec<Placed> {
     let mut all = Vec::new();
     for (i, size) in entry.declaration.sizes.iter().enumerate() {
         let ends: &[End] = if size.needs_direction() { &[End::First, End::Second] } else { &[End::First] };
         for end in ends {
-            let handle = Handle::Extent(i, *end);
+            let handle = SORT.handle(2 * i + usize::from(*end == End::Second));
             let metres = target.parameter(handle).map(|p| size.part() * light.parameters.number(p));
             let way = way(light, entry, *size, *end, target.at, lens);
             all.extend(metres.and_then(|metres| at_end(handle, target.at, middle, metres * way, way, lens)));
@@ -89,15 +131,4 @@ fn at_end(handle: Handle, at: Vec3, middle: Pos2, arm: Vec3, way: Vec3, lens: &L
     let stem = (apart > points + DISC).then(|| vec![middle + points * seen, end]);
     let lines = stem.into_iter().collect();
     Some(Placed { handle, lines, far: Vec::new(), end, radius: DISC + 2.0, point })
-}
-
-/// The ring that turns a light about its direction, with a knob at the top of the light.
-fn roll(target: &Target, light: &Light, entry: &LightEntry, lens: &Lens) -> Option<Placed> {
-    entry.roll_parameter()?;
-    let direction = light.direction.and_then(Vec3::try_normalize)?;
-    let [x, y] = entry.sides(&light.parameters, direction);
-    let length = lens.metres(target.at, part_of(lens) * RING);
-    let point = target.at + length * y;
-    let [lines, far] = circle(target.at, [x, y], length, lens);
-    Some(Placed { handle: Handle::Roll, lines, far, end: lens.project(point)?, radius: DISC, point })
 }

@@ -1,0 +1,130 @@
+//! The arrows along the axes of the room, which move what is selected.
+
+use bevy_egui::egui::Pos2;
+use glam::Vec3;
+
+use super::{
+    Sort,
+    grasp::{Dragged, snapped},
+    paint, plane,
+    shape::{ARM, Around, Body, Extent, GAP, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
+};
+use crate::panel::{marks::Lens, state::HandleMode};
+
+/// Minimum projected length of an arrow, in points: an axis seen end on cannot be dragged along.
+const SHORTEST: f32 = 30.0;
+/// Maximum length of an arrow, relative to [`ARM`].
+const LONGEST: f32 = 1.2;
+
+pub(super) static SORT: Sort = Sort {
+    id: "axis",
+    name: |_, axis, part| format!("move {part} along {}", LETTERS[axis]),
+    placed: |around| {
+        let Around { target, lens, middle, part, extent, .. } = around;
+        let clear = extent.filter(|extent| extent.leaves_room(*part, lens));
+        match (&target.body, around.mode) {
+            (Body::Object(..), HandleMode::Move) if clear.is_none() => {
+                arrows_at_edge(target.at, *middle, STUB * part * ARM, *extent, lens)
+            }
+            (Body::Object(..), HandleMode::Move) => arrows(target.at, [*middle; 2], part * ARM, clear, lens),
+            (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
+                arrows(target.at, [*middle; 2], part * ARM, None, lens)
+            }
+            _ => Vec::new(),
+        }
+    },
+    value: plane::SORT.value,
+    drag: |grasp, pull| {
+        let axis = grasp.handle.which;
+        let by = grasp.moved_along(pull.lens, pull.pointer, grasp.at, Vec3::AXES[axis])?;
+        let to = snapped(grasp.at[axis] + by, pull.step);
+        let mut place = grasp.at;
+        place[axis] = pull.room.nearest(Vec3::splat(to))[axis];
+        Some(Dragged::Position(place))
+    },
+    words: |grasp, dragged, metres| match dragged {
+        Dragged::Position(p) => {
+            let axis = grasp.handle.which;
+            format!("{} {} m", LETTERS[axis], metres(p[axis]))
+        }
+        other => super::grasp::words(grasp, other, metres),
+    },
+    has_axis: true,
+    end: paint::arrow,
+    guide: |ui, lens, axis, at, _, room| paint::guide(ui, lens, at, axis, room),
+    ..Sort::PLAIN
+};
+
+/// Arrows for an object that leaves no room around it, at an edge of the view where they cover the object least. They
+/// are dragged like any others: only the motion of the pointer counts.
+fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens: &Lens) -> Vec<Placed> {
+    let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect().size().min_elem());
+    let inside = lens.rect().shrink(inset);
+    // Bottom corners first: badges and captions tend to be at the top.
+    let places = [
+        inside.left_bottom(),
+        inside.right_bottom(),
+        inside.right_top(),
+        inside.left_top(),
+        inside.center_bottom(),
+        inside.center_top(),
+        inside.left_center(),
+        inside.right_center(),
+    ];
+    let mut best: Option<(f32, Vec<Placed>)> = None;
+    for origin in places {
+        let all = arrows(at, [origin, middle], arm, None, lens);
+        let gap = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
+        let free = all.iter().flat_map(Placed::points).map(gap).fold(f32::INFINITY, f32::min);
+        if free >= 0.0 {
+            return all;
+        }
+        if best.as_ref().is_none_or(|(most, _)| free > *most) {
+            best = Some((free, all));
+        }
+    }
+    best.map(|(_, all)| all).unwrap_or_default()
+}
+
+/// Arrows along the world axes, and the disc that moves in the picture plane, around `origin`; `middle` is the centre
+/// of the moved part.
+fn arrows(
+    at: Vec3,
+    [origin, middle]: [Pos2; 2],
+    arm: f32,
+    clear: Option<Extent>,
+    lens: &Lens,
+) -> Vec<Placed> {
+    let length = lens.metres(at, arm);
+    let mut all = Vec::new();
+    for (axis, way) in Vec3::AXES.into_iter().enumerate() {
+        let point = at + length * way;
+        let Some(tip) = lens.project(point) else { continue };
+        let along = tip - middle;
+        if along.length() < SHORTEST.min(0.5 * arm) {
+            continue;
+        }
+        let way = along.normalized();
+        let arrow = |clear: Option<f32>| {
+            let from = GAP.min(0.3 * arm).max(clear.unwrap_or_default());
+            // An arrow that points at the camera would grow without bound.
+            let to = along.length().min(LONGEST * arm).max(clear.map_or(0.0, |clear| clear + STUB * arm));
+            (vec![origin + from * way, origin + to * way], origin + (to + LETTER) * way)
+        };
+        // A letter outside the view could not be grabbed.
+        let inside = lens.rect().shrink(LETTER);
+        let beyond =
+            Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
+        let (line, end) = beyond.unwrap_or_else(|| arrow(None));
+        all.push(Placed {
+            handle: SORT.handle(axis),
+            lines: vec![line],
+            far: Vec::new(),
+            end,
+            radius: LETTER_RADIUS,
+            point,
+        });
+    }
+    all.push(plane::disc(at, origin, arm, clear, &all));
+    all
+}

@@ -1,0 +1,251 @@
+//! The handles in a view: which are shown, which is grasped, and what a drag asks for.
+
+use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, WidgetType};
+
+use super::{
+    Handle,
+    grasp::{Dragged, Grasp},
+    paint::{self, State},
+    shape::{Placed, Target, placed},
+};
+use crate::{
+    document::{Edit, LightField, ObjectField, Selection},
+    panel::{
+        marks::{self, Lens},
+        notice,
+        state::{Action, HandleMode, Session},
+    },
+    registry::Registry,
+    scene::rotation::rotation,
+};
+
+/// Minimum picture size for handles, in points.
+const SMALLEST: f32 = 120.0;
+/// Time after which the pointer counts as resting, in seconds.
+const REST: f64 = 2.0;
+/// Duration of fading in and out, in seconds.
+const FADE: f32 = 0.15;
+/// Drag threshold, in points.
+const SLACK: f32 = 1.5;
+
+/// The handle being dragged.
+#[derive(Clone, Debug)]
+struct Hold {
+    /// The view of the drag.
+    view: Id,
+    grasp: Grasp,
+    /// The original value, which Escape restores.
+    before: Edit,
+    /// True once the pointer has moved.
+    moved: bool,
+}
+
+/// Key of the handle being dragged.
+fn held() -> Id {
+    Id::new("handle in the hand")
+}
+
+/// Shows the handles of the selection in a view. Returns the requested actions, and the rectangles that cover the
+/// picture.
+pub(in crate::panel) fn handles(
+    ui: &Ui,
+    rect: Rect,
+    written: &[Rect],
+    session: &Session,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
+    let (mut actions, mut places) = (Vec::new(), Vec::new());
+    let view = ui.id().with("handles");
+    let hold: Option<Hold> = ui.data(|data| data.get_temp(held()));
+    let lens = Lens::of(session, rect);
+    let seen = || marks::places_shown(ui.ctx(), &session.document, registry, &lens, written);
+    let target = Target::of(session, registry, seen)
+        .filter(|_| session.view.show_handles && rect.size().min_elem() >= SMALLEST);
+    let Some(target) = target else {
+        release(ui);
+        return (actions, places);
+    };
+    let hold = hold.filter(|hold| hold.grasp.part == target.part);
+    let all = placed(&target, session.view.handles, session, &lens);
+    let under = free_pointer(ui, rect, written, session).and_then(|at| under(&all, at));
+    let mine = hold.as_ref().filter(|hold| hold.view == view);
+    let is_down = ui.input(|i| i.pointer.any_down());
+    let hot = match &hold {
+        Some(_) => mine.map(|hold| hold.grasp.handle),
+        None => under.filter(|_| !is_down || ui.input(|i| i.pointer.primary_pressed())).map(|p| p.handle),
+    };
+    let state = |handle: Handle| match hot {
+        Some(hot) if hot == handle => State::Hot,
+        _ if hold.is_some() => State::Dim,
+        _ => State::Free,
+    };
+    let in_use = hot.is_some() || hold.is_some();
+    let opacity = opacity(ui, view, rect, (target.part, session.view.handles), in_use);
+    if opacity > 0.0 {
+        paint::handles(ui, lens, &all, opacity, state);
+    }
+    nodes(ui, view, rect, &all, &target, &session.name_of(target.part, registry));
+    places.extend(all.iter().flat_map(|placed| {
+        let side = Vec2::splat(2.0 * placed.half());
+        placed.points().filter(|p| rect.contains(*p)).map(move |p| Rect::from_center_size(p, side))
+    }));
+    if hot.is_some() {
+        ui.ctx().set_cursor_icon(if hold.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+    }
+    if let Some(mine) = mine {
+        actions.extend(drag(ui, &lens, mine.clone(), &target, session, registry));
+    } else if hold.is_none()
+        && let Some(placed) = under
+        && ui.input(|i| i.pointer.primary_pressed())
+        && let Some(pointer) = ui.input(|i| i.pointer.press_origin())
+    {
+        let grasp = Grasp::of(placed, &target, &lens, pointer);
+        if let Some(before) = value(&grasp, &target).and_then(|value| grasp.edit(value)) {
+            if let Selection::Light(i) = target.part {
+                marks::hold(ui.ctx(), Some((i, target.at)));
+            }
+            ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
+            ui.ctx().set_dragged_id(view.with(placed.handle));
+            actions.push(Action::BeginDrag);
+        }
+    }
+    (actions, places)
+}
+
+/// The latest reason to show the handles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Woken {
+    /// The selection, and the kind of handles.
+    what: (Selection, HandleMode),
+    /// Time of the reason, in seconds.
+    at: f64,
+    /// True if another part or another kind of handles was chosen, which shows them wherever the pointer is.
+    chosen: bool,
+    /// Time at which the window is woken to let them fade, in seconds.
+    wakes: f64,
+}
+
+/// Opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that nothing covers it.
+fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use: bool) -> f32 {
+    let (now, over, moved) = ui.input(|i| {
+        let over = i.pointer.latest_pos().is_some_and(|at| rect.contains(at));
+        (i.time, over, i.pointer.delta() != Vec2::ZERO || i.pointer.any_pressed())
+    });
+    let key = view.with("woken");
+    let known: Option<Woken> = ui.data(|data| data.get_temp(key));
+    // A newly opened window shows the picture without handles.
+    let mut woken = known.unwrap_or(Woken { what, at: f64::NEG_INFINITY, chosen: false, wakes: 0.0 });
+    if woken.what != what {
+        woken = Woken { what, at: now, chosen: true, ..woken };
+    } else if over && moved || in_use {
+        woken = Woken { what, at: now, chosen: false, ..woken };
+    }
+    let left = woken.at + REST - now;
+    let shown = in_use || (left > 0.0 && (over || woken.chosen));
+    if shown && !in_use && woken.wakes <= now {
+        notice::wake(ui.ctx(), left + 0.05);
+        woken.wakes = now + left + 0.05;
+    }
+    if known != Some(woken) {
+        ui.data_mut(|data| data.insert_temp(key, woken));
+    }
+    ui.ctx().animate_bool_with_time(view.with("opacity"), shown, FADE)
+}
+
+/// Ends the drag once the button is up.
+fn release(ui: &Ui) {
+    if !ui.input(|i| i.pointer.primary_down()) {
+        ui.data_mut(|data| data.remove::<Hold>(held()));
+        marks::hold(ui.ctx(), None);
+    }
+}
+
+/// Position of the pointer, if the picture is uncovered there and nothing else uses the pointer.
+fn free_pointer(ui: &Ui, rect: Rect, written: &[Rect], session: &Session) -> Option<Pos2> {
+    let ctx = ui.ctx();
+    let busy = session.questions.open.is_some()
+        || bevy_egui::egui::Popup::is_any_open(ctx)
+        || session.view.chooser_open
+        || ctx.egui_is_using_pointer();
+    let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.latest_pos()))?;
+    let open = ctx.layer_id_at(at).is_none_or(|layer| layer.order == Order::Background);
+    let covered = written.iter().any(|place| place.contains(at));
+    (!busy && open && !covered && rect.contains(at)).then_some(at)
+}
+
+/// The handle at a position.
+fn under(all: &[Placed], at: Pos2) -> Option<&Placed> {
+    let near = all.iter().filter_map(|placed| Some((placed.distance(at)?, placed)));
+    // The handle painted last is on top.
+    near.rev().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, placed)| placed)
+}
+
+/// Describes the handles for screen readers.
+fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], target: &Target, part: &str) {
+    for placed in all {
+        let place = Rect::from_center_size(placed.end, Vec2::splat(2.0 * placed.radius)).intersect(rect);
+        let response = ui.interact(place, view.with(placed.handle), Sense::hover());
+        let name = target.name(placed.handle, part);
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &name));
+    }
+}
+
+/// The current value of a part, of the kind that a handle sets.
+fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
+    (grasp.handle.sort.value)(target, grasp.handle)
+}
+
+/// True if an edit leaves the scene as it is.
+fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
+    match (edit, now) {
+        // Different angles can describe the same rotation.
+        (Edit::Object(_, ObjectField::Rotation(a)), Some(Edit::Object(_, ObjectField::Rotation(b)))) => {
+            rotation(*a).angle_between(rotation(b)) < 1e-4
+        }
+        (Edit::Light(_, LightField::Direction(a)), Some(Edit::Light(_, LightField::Direction(b)))) => {
+            a.normalize_or_zero() == b.normalize_or_zero()
+        }
+        (edit, now) => now.as_ref() == Some(edit),
+    }
+}
+
+/// Continues a drag, and paints its numbers.
+fn drag(
+    ui: &Ui,
+    lens: &Lens,
+    mut hold: Hold,
+    target: &Target,
+    session: &Session,
+    registry: &Registry,
+) -> Option<Action> {
+    let (pointer, snap) = ui.input(|i| (i.pointer.latest_pos(), i.modifiers.command));
+    let now = value(&hold.grasp, target);
+    if ui.input(|i| i.key_pressed(Key::Escape)) {
+        let undone = (now.and_then(|now| hold.grasp.edit(now)).as_ref() != Some(&hold.before))
+            .then(|| Action::Edit(hold.before.clone()));
+        ui.data_mut(|data| data.remove::<Hold>(held()));
+        marks::hold(ui.ctx(), None);
+        return undone;
+    }
+    let pointer = pointer?;
+    hold.moved |= pointer.distance(hold.grasp.pointer) >= SLACK;
+    hold.grasp.follow(lens, pointer);
+    let grasp = &hold.grasp;
+    let room = session.document.scene_size;
+    let wanted = grasp.drag(lens, pointer, snap, room).filter(|_| hold.moved);
+    let edit = wanted.and_then(|wanted| grasp.edit(wanted));
+    // Where another part is in the way, keep the last valid value.
+    let legal = edit.filter(|edit| session.document.allows(edit, registry));
+    if hold.moved {
+        let shown = wanted.filter(|_| legal.is_some()).or(now);
+        let Handle { sort, which } = grasp.handle;
+        (sort.guide)(ui, *lens, which, target.at, [grasp.pointer, pointer], room);
+        if let Some(shown) = shown {
+            paint::plate(ui, lens.rect(), pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
+        }
+    }
+    let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));
+    ui.data_mut(|data| data.insert_temp(held(), hold));
+    release(ui);
+    changed.map(Action::Edit)
+}
