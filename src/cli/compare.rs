@@ -27,7 +27,7 @@ use crate::{
     reference::{self, Reached, Settings},
     registry::Registry,
     render::capture::png::About,
-    scene::{Comparison, Scene, comparison::{Compared, Layout}, variant::LETTERS},
+    scene::{Comparison, Scene, comparison::Compared, variant::LETTERS},
     text::{listed, nearest},
 };
 
@@ -318,7 +318,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let size = size(arguments.size, &read)?;
     views.iter().try_for_each(|view| view.check(registry))?;
     let [a, b] = [views[0], other(&comparison, &views)];
-    let beside = arguments.output.is_some() && comparison.layout == Layout::SideBySide;
+    let beside = arguments.output.is_some() && comparison.layout.is_beside();
     let drawing = Drawing {
         samples: arguments.samples,
         sampling: arguments.sampling,
@@ -348,7 +348,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         remark.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", view.input.name())));
     }
     let mut shown = [shown_a, shown_b];
-    if arguments.output.is_some() && comparison.layout == Layout::Difference {
+    if arguments.output.is_some() && comparison.layout.is_map() {
         let [shown_a, shown_b] = shown;
         shown = [a.outlined(shown_a, registry), b.outlined(shown_b, registry)];
     }

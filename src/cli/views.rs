@@ -154,7 +154,7 @@ impl Plan {
             Some(Part { cell, scene, terms: if terms == TermSelection::All { own } else { terms } })
         };
         // The picture of a blink is that of view A.
-        let count = if comparison.layout == Layout::Blink { 1 } else { cells.len() };
+        let count = if comparison.layout.is_in_turn() { 1 } else { cells.len() };
         Ok(Self { comparison, parts: cells.into_iter().take(count).filter_map(part).collect() })
     }
 
@@ -180,6 +180,6 @@ impl Plan {
 
     /// True if the picture is a map of differences.
     pub(super) fn is_map(&self) -> bool {
-        self.comparison.layout == Layout::Difference && self.parts.len() > 1
+        self.comparison.layout.is_map() && self.parts.len() > 1
     }
 }

@@ -1,13 +1,23 @@
 //! The views of a comparison in the picture: their arrangement, headers, and the edge of a wipe.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Button, CursorIcon, Id, Key, Layout as Direction, Pos2, Rect, RichText, Sense,
-    Stroke, StrokeKind, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, vec2,
+    self, Align, Align2, Button, Id, Key, Layout as Direction, Rect, RichText, Sense, Stroke, StrokeKind,
+    TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 mod bar;
+mod place;
+
+mod blink;
+mod difference;
+mod side_by_side;
+mod single;
+mod wipe;
 
 use bar::{NARROW, ROW, bar};
+use place::{Arranging, Frame, HEADER};
+
+pub use place::Arrangement;
 
 use super::{
     caption::Lines,
@@ -21,56 +31,19 @@ use crate::{
     caption::{Part, line, view_parts},
     registry::Registry,
     scene::{
-        Comparison,
-        comparison::{Edge, Layout},
+        comparison::Layout,
         variant::{LETTERS, MAX_VARIANTS},
     },
 };
 
-/// Height of a header, in points.
-const HEADER: f32 = 28.0;
-/// Gap between views, in points.
-const GAP: f32 = 2.0;
-/// Width of the grab area of a wipe's edge, in points.
-const GRASP: f32 = 14.0;
-/// Step of the edge per key press, as a fraction of the picture.
-const STEP: f32 = 0.02;
-
-/// Arrangement of everything that belongs to a comparison.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Arrangement {
-    /// The views, all of the same size.
-    pub cells: Vec<Cell>,
-    /// The headers, by view.
-    headers: Vec<(usize, Rect)>,
-    /// The bar below.
-    bar: Option<Rect>,
-    /// The picture without headers and bar.
-    pub picture: Rect,
-    /// The difference map.
-    pub map: Option<Rect>,
-    /// Space of the missing fourth view when there are three.
-    vacant: Option<Rect>,
-}
-
-impl Default for Arrangement {
-    fn default() -> Self {
-        Self {
-            cells: Vec::new(),
-            headers: Vec::new(),
-            bar: None,
-            picture: Rect::NOTHING,
-            map: None,
-            vacant: None,
-        }
-    }
-}
-
-impl Arrangement {
-    /// True if the scene has no variants and the picture stands alone.
-    #[must_use]
-    pub fn is_single(&self) -> bool {
-        self.headers.is_empty()
+/// A layout in the window.
+fn arranging(layout: Layout) -> &'static Arranging {
+    match layout {
+        Layout::Single => &single::ARRANGING,
+        Layout::SideBySide => &side_by_side::ARRANGING,
+        Layout::Wipe => &wipe::ARRANGING,
+        Layout::Difference => &difference::ARRANGING,
+        Layout::Blink => &blink::ARRANGING,
     }
 }
 
@@ -84,94 +57,22 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
         return Arrangement { cells, picture: whole, ..Arrangement::default() };
     }
     let comparison = &session.document.comparison;
-    let rows = match comparison.layout {
+    let arranging = arranging(comparison.layout);
+    let rows = match whole.width() < NARROW {
         _ if session.view.presenting => 0.0,
-        _ if whole.width() < NARROW => match comparison.layout {
-            Layout::Difference => 4.0,
-            Layout::Wipe => 3.0,
-            _ => 2.0,
-        },
-        Layout::Wipe | Layout::Difference => 2.0,
-        _ => 1.0,
+        // The numbers have a row of their own.
+        true => 2.0 + arranging.rows[1] as f32,
+        false => 1.0 + arranging.rows[0] as f32,
     };
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
     // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
-    let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, high), rect.max);
-    let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), high));
-    let halves = |rect: Rect| {
-        let middle = rect.center().x;
-        [rect.with_max_x(middle - 0.5 * GAP), rect.with_min_x(middle + 0.5 * GAP)]
-    };
     let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::default() };
-    let views = comparison.views(variants);
-    match comparison.layout {
-        Layout::SideBySide => {
-            let lines = if views.len() > 2 { 2 } else { 1 };
-            let height = (picture.height() - (lines - 1) as f32 * GAP) / lines as f32;
-            let shown: Vec<_> = views.into_iter().map(Some).chain([None]).collect();
-            for (i, view) in shown.into_iter().enumerate().take(2 * lines) {
-                let top = picture.top() + (i / 2) as f32 * (height + GAP);
-                let line = Rect::from_min_size(pos2(picture.left(), top), vec2(picture.width(), height));
-                let place = halves(line)[i % 2];
-                let rect = below_header(place);
-                match view {
-                    Some(view) => {
-                        all.headers.push((view, header(place)));
-                        all.cells.push(Cell { view, rect, part: rect });
-                    }
-                    None => all.vacant = Some(place),
-                }
-            }
-        }
-        Layout::Single => {
-            let rect = below_header(picture);
-            let view = match session.active() {
-                0 if session.view.blinking => comparison.with.min(variants),
-                _ if session.view.blinking => 0,
-                active => active,
-            };
-            all.headers.push((view, header(picture)));
-            all.cells.push(Cell { view, rect, part: rect });
-        }
-        Layout::Wipe | Layout::Difference | Layout::Blink => {
-            let rect = below_header(picture);
-            for (view, place) in views.iter().zip(halves(header(picture))) {
-                all.headers.push((*view, place));
-            }
-            let parts = match comparison.layout {
-                Layout::Wipe => parts(rect, comparison),
-                Layout::Difference => {
-                    all.map = Some(rect);
-                    [Rect::NOTHING; 2]
-                }
-                _ if session.view.blinking => [Rect::NOTHING, rect],
-                _ => [rect, Rect::NOTHING],
-            };
-            all.cells.extend(views.iter().zip(parts).map(|(view, part)| Cell { view: *view, rect, part }));
-        }
-    }
+    (arranging.arrange)(&mut all, &Frame { session, picture, views: comparison.views(variants), high });
     let first = all.cells.iter().map(|cell| cell.rect);
     all.picture = first.reduce(Rect::union).unwrap_or(picture);
     all
-}
-
-/// Parts of a rectangle on both sides of the edge of a wipe.
-fn parts(rect: Rect, comparison: &Comparison) -> [Rect; 2] {
-    let edge = edge_of(rect, comparison);
-    match comparison.edge {
-        Edge::Vertical => [rect.with_max_x(edge.x), rect.with_min_x(edge.x)],
-        Edge::Horizontal => [rect.with_max_y(edge.y), rect.with_min_y(edge.y)],
-    }
-}
-
-/// Midpoint of the edge of a wipe.
-fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
-    match comparison.edge {
-        Edge::Vertical => pos2(rect.left() + comparison.split * rect.width(), rect.center().y),
-        Edge::Horizontal => pos2(rect.center().x, rect.top() + comparison.split * rect.height()),
-    }
 }
 
 /// Adds the menu entries: the layouts, and another view.
@@ -213,7 +114,7 @@ pub fn show(
         header(ui, *view, *rect, several, session, registry, &mut actions);
     }
     let comparison = &session.document.comparison;
-    if several && comparison.layout == Layout::SideBySide {
+    if several && comparison.layout.is_beside() {
         for cell in arrangement.cells.iter().filter(|cell| cell.view == session.active()) {
             let stroke = Stroke::new(1.5, palette.accent);
             ui.painter().rect_stroke(cell.rect, 0.0, stroke, StrokeKind::Inside);
@@ -225,12 +126,13 @@ pub fn show(
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Ctrl+B adds a view", font, palette.weak);
         places.push(rect);
     }
-    if comparison.layout == Layout::Wipe && several && !session.view.presenting {
-        places.push(wipe(ui, arrangement.picture, comparison, &mut actions));
+    if several && !session.view.presenting {
+        let over = arranging(comparison.layout).over;
+        places.extend(over(ui, arrangement.picture, comparison, &mut actions));
     }
     if let Some(rect) = arrangement.bar {
         places.push(rect);
-        bar(ui, rect, session, &mut actions);
+        bar(ui, rect, session, arranging, &mut actions);
     }
     (actions, places)
 }
@@ -259,9 +161,9 @@ fn header(
     let text = line(&parts);
     let comparison = &session.document.comparison;
     // When views alternate, the visible one stands out.
-    let hidden =
-        comparison.layout == Layout::Blink && view != if session.view.blinking { comparison.with } else { 0 };
-    let lit = if comparison.layout == Layout::Blink { !hidden } else { active };
+    let in_turn = comparison.layout.is_in_turn();
+    let hidden = in_turn && view != if session.view.blinking { comparison.with } else { 0 };
+    let lit = if in_turn { !hidden } else { active };
     let ink = if hidden { palette.weak } else { palette.text };
     let scale = rect.height() / HEADER;
     let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
@@ -278,7 +180,7 @@ fn header(
             if !session.view.presenting {
                 menu(ui, view, session, actions);
             }
-            if !several && session.document.comparison.layout == Layout::Single {
+            if !several {
                 for other in (0..=session.document.variants.len()).rev() {
                     let name = LETTERS[other];
                     let on = other == view;
@@ -388,70 +290,4 @@ fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) 
         chosen
     });
     actions.extend(chosen.map(Action::Compare));
-}
-
-/// The edge of a wipe, with a handle. Returns the rectangle that it takes from the picture.
-fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
-    let at = edge_of(rect, comparison);
-    let upright = comparison.edge == Edge::Vertical;
-    let (place, cursor) = if upright {
-        (Rect::from_center_size(at, vec2(GRASP, rect.height())), CursorIcon::ResizeHorizontal)
-    } else {
-        (Rect::from_center_size(at, vec2(rect.width(), GRASP)), CursorIcon::ResizeVertical)
-    };
-    let response = ui.interact(place, Id::new("edge of the wipe"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::slider(true, f64::from(comparison.split), "Edge between the views"));
-    let painter = ui.painter_at(rect);
-    let ends = if upright {
-        [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
-    } else {
-        [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
-    };
-    let on = response.hovered() || response.dragged() || response.has_focus();
-    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
-    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
-    painter.line_segment(ends, Stroke::new(1.5, core));
-    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
-    let along = if upright { vec2(4.0, 0.0) } else { vec2(0.0, 4.0) };
-    let across = if upright { vec2(0.0, 3.0) } else { vec2(3.0, 0.0) };
-    for side in [-1.0, 1.0] {
-        let tip = at + side * 1.5 * along;
-        let back = at + side * 0.6 * along;
-        painter.line(vec![back + across, tip, back - across], Stroke::new(1.5, core));
-    }
-    let mut split = comparison.split;
-    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        split = if upright {
-            (pointer.x - rect.left()) / rect.width()
-        } else {
-            (pointer.y - rect.top()) / rect.height()
-        };
-    }
-    if response.double_clicked() {
-        split = 0.5;
-    }
-    if response.has_focus() {
-        let keys = if upright { [Key::ArrowLeft, Key::ArrowRight] } else { [Key::ArrowUp, Key::ArrowDown] };
-        ui.memory_mut(|m| {
-            let filter = egui::EventFilter {
-                horizontal_arrows: upright,
-                vertical_arrows: !upright,
-                ..Default::default()
-            };
-            m.set_focus_lock_filter(response.id, filter);
-        });
-        for (key, step) in keys.into_iter().zip([-STEP, STEP]) {
-            if ui.input(|i| i.key_pressed(key)) {
-                split += step;
-            }
-        }
-    }
-    if split != comparison.split {
-        let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
-        actions.push(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
-    }
-    response.on_hover_cursor(cursor).on_hover_text(
-        "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",
-    );
-    place
 }

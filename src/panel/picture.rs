@@ -25,7 +25,7 @@ use crate::{
     reflection::Term,
     registry::Registry,
     scene::{
-        comparison::{Edge, Layout},
+        comparison::Edge,
         variant::{LETTERS, MAX_VARIANTS},
     },
     text::plural,
@@ -146,9 +146,9 @@ pub fn views(
     let shown = arrangement.cells.iter().filter(|cell| cell.part.is_positive());
     // Stacked views share their marks.
     let layout = session.document.comparison.layout;
-    let apart = layout == Layout::SideBySide;
+    let apart = layout.is_beside();
     // A difference has no wireframe.
-    for cell in arrangement.cells.iter().filter(|_| layout != Layout::Difference) {
+    for cell in arrangement.cells.iter().filter(|_| !layout.is_map()) {
         wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
         let painter = ui.painter_at(cell.part);
         clipping::paint(&painter, cell.rect, cell.view, session, ui.pixels_per_point());
@@ -185,13 +185,13 @@ pub fn views(
             ui.style_mut().text_styles.insert(TextStyle::Body, body);
         }
         // The badges of a difference are those of both views.
-        let is_shown = |cell: &&Cell| cell.part.is_positive() || layout == Layout::Difference;
+        let is_shown = |cell: &&Cell| cell.part.is_positive() || layout.is_map();
         let mut next = None;
         let mut disk = of_disk(session);
         for cell in arrangement.cells.iter().filter(is_shown) {
             let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
-            let is_second = layout == Layout::Wipe && cell.part.min != cell.rect.min;
+            let is_second = cell.part.is_positive() && cell.part.min != cell.rect.min;
             // Below the legend of a lobe, if there is one, and in a narrow picture below the badges at the left.
             let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * theme::scale_here(ui);
             let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
@@ -208,7 +208,7 @@ pub fn views(
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
             // Keeps badges on their own side of the edge of a wipe, if there is room.
-            let beside = layout == Layout::Wipe && cell.part.width() >= NARROWEST * theme::scale_here(ui);
+            let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * theme::scale_here(ui);
             let room = if beside { cell.part } else { cell.rect };
             next = Some(badges(ui, room, (from.0, top), signs, &mut all));
         }

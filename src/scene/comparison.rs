@@ -96,11 +96,56 @@ choice! {
     }
 }
 
+/// The views of a layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Views {
+    /// One.
+    One,
+    /// All, beside each other.
+    All,
+    /// View A and another, in one place.
+    Two,
+    /// The difference between these two.
+    Difference,
+    /// These two, one after the other.
+    InTurn,
+}
+
 impl Layout {
-    /// True if the layout shows view A and one other.
+    /// The views that it shows.
+    #[must_use]
+    pub const fn shows(self) -> Views {
+        match self {
+            Self::Single => Views::One,
+            Self::SideBySide => Views::All,
+            Self::Wipe => Views::Two,
+            Self::Difference => Views::Difference,
+            Self::Blink => Views::InTurn,
+        }
+    }
+
+    /// True if it shows view A and one other.
     #[must_use]
     pub const fn shows_two(self) -> bool {
-        matches!(self, Self::Wipe | Self::Difference | Self::Blink)
+        matches!(self.shows(), Views::Two | Views::Difference | Views::InTurn)
+    }
+
+    /// True if views stand beside each other.
+    #[must_use]
+    pub const fn is_beside(self) -> bool {
+        matches!(self.shows(), Views::All)
+    }
+
+    /// True if it is a map of differences.
+    #[must_use]
+    pub const fn is_map(self) -> bool {
+        matches!(self.shows(), Views::Difference)
+    }
+
+    /// True if it shows two views one after the other.
+    #[must_use]
+    pub const fn is_in_turn(self) -> bool {
+        matches!(self.shows(), Views::InTurn)
     }
 }
 
@@ -150,10 +195,10 @@ impl Comparison {
         if count == 0 {
             return vec![0];
         }
-        match self.layout {
-            Layout::Single => vec![0],
-            Layout::SideBySide => (0..=count).collect(),
-            Layout::Wipe | Layout::Difference | Layout::Blink => vec![0, self.with.clamp(1, count)],
+        match self.layout.shows() {
+            Views::One => vec![0],
+            Views::All => (0..=count).collect(),
+            Views::Two | Views::Difference | Views::InTurn => vec![0, self.with.clamp(1, count)],
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Observer, Scene, comparison::Layout};
+use super::{Observer, Scene};
 
 /// The distance of the near plane from the eye, metres. Anything nearer is clipped.
 pub const NEAR: f32 = 0.01;
@@ -84,7 +84,7 @@ impl Scene {
     /// their size.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
-        let beside = self.comparison.layout == Layout::SideBySide && !self.variants.is_empty();
+        let beside = self.comparison.layout.is_beside() && !self.variants.is_empty();
         ViewAngle { degrees: self.observer.field_of_view, keeps: if beside { 1.0 } else { WIDE } }
     }
 }
@@ -101,6 +101,7 @@ impl Observer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::comparison::Layout;
 
     #[test]
     fn what_the_observer_looks_at_is_in_the_middle_and_up_is_up() {

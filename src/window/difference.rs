@@ -31,7 +31,7 @@ use crate::{
     reference::{self, Picture, Settings},
     registry::Registry,
     render::view::ViewSystems,
-    scene::{Comparison, Observer, Scene, comparison::{Compared, Layout}, variant::LETTERS},
+    scene::{Comparison, Observer, Scene, comparison::Compared, variant::LETTERS},
 };
 
 /// Compares the views of a comparison.
@@ -193,7 +193,7 @@ impl Job {
             .collect();
         let nothing = Answer { measured: None, largest: None, map: None };
         let Ok([a, b]) = <[Shown; 2]>::try_from(shown) else { return nothing };
-        let is_map = self.question.comparison.layout == Layout::Difference;
+        let is_map = self.question.comparison.layout.is_map();
         let a = if is_map { self.outlined(a) } else { a };
         let comparison = Comparison { with: self.question.with, ..self.question.comparison };
         let Ok(pair) = Pair::new(&a, &b) else { return nothing };

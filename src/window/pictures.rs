@@ -144,7 +144,7 @@ fn take(
 
 /// The views of the picture, in the order of the layout: those on screen; of alternating views, only the visible one.
 fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usize> {
-    let blinks = session.document.comparison.layout == Layout::Blink;
+    let blinks = session.document.comparison.layout.is_in_turn();
     match (alone, cells.as_slice()) {
         (Some(view), _) => vec![view],
         (None, []) => vec![0],
@@ -219,7 +219,7 @@ impl Job {
             comparison.layout = Layout::Single;
         }
         let observer = self.camera.fitting(self.size.to_array(), self.scene.view_angle());
-        let is_map = comparison.layout == Layout::Difference;
+        let is_map = comparison.layout.is_map();
         let needs_light = is_map && comparison.values == Compared::Light;
         let mut scenes = Vec::new();
         let mut pictures = Vec::new();

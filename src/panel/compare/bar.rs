@@ -1,21 +1,18 @@
 //! The bar below the views of a comparison: the layout, its options, and the statistics.
 
 use bevy_egui::egui::{
-    self, Align, Button, Layout as Direction, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, WidgetInfo,
-    WidgetType, vec2,
+    self, Align, Layout as Direction, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType,
+    vec2,
 };
 
+use super::place::Arranging;
 use crate::{
-    compare::fitting_amplification,
     panel::{
         segmented::{segment_width, segmented},
         state::{Action, CompareCommand, LARGEST, Session},
         theme::{self, Palette},
     },
-    scene::{
-        Comparison,
-        comparison::{AMPLIFICATIONS, Channel, Compared, Edge, Layout, Sign},
-    },
+    scene::comparison::Layout,
 };
 
 /// Height of a row of the bar, in points.
@@ -24,16 +21,23 @@ pub(super) const ROW: f32 = 34.0;
 pub(super) const NARROW: f32 = 560.0;
 
 /// Shows the layout, its options, and the statistics.
-pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
+pub(super) fn bar(
+    ui: &mut Ui,
+    rect: Rect,
+    session: &Session,
+    arranging: fn(Layout) -> &'static Arranging,
+    actions: &mut Vec<Action>,
+) {
     let palette = Palette::here(ui);
     ui.painter().rect_filled(rect, 0.0, palette.panel);
     ui.painter().hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
     let comparison = session.document.comparison;
+    let hint = |layout: Layout| arranging(layout).hint;
+    let (arranging, wide) = (arranging(comparison.layout), rect.width() >= NARROW);
     let row = |i: f32| {
         Rect::from_min_size(rect.min + vec2(0.0, i * ROW), vec2(rect.width(), ROW)).shrink2(vec2(6.0, 2.0))
     };
-    // The largest difference has room in the second row.
-    let first = |name: &str| comparison.layout != Layout::Difference || name != LARGEST;
+    let first = |name: &str| !arranging.largest_apart || name != LARGEST;
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
     ui.scope_builder(left(row(0.0)), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
@@ -42,8 +46,9 @@ pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<
         let tip = |ui: &mut Ui, i: usize| {
             ui.set_max_width(280.0);
             ui.label(Layout::ALL[i].summary());
-            if Layout::ALL[i] == Layout::Blink {
-                ui.label(theme::small(ui, "Hold Space to see the other view."));
+            let hint = hint(Layout::ALL[i]);
+            if !hint.is_empty() {
+                ui.label(theme::small(ui, hint));
             }
         };
         let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
@@ -56,93 +61,39 @@ pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<
         if layout != comparison.layout {
             actions.push(Action::Compare(CompareCommand::Layout(layout)));
         }
-        if rect.width() >= NARROW {
+        if wide {
             let room = rect.width() - width - 28.0;
             ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room, first));
         }
     });
-    if rect.width() < NARROW {
+    if !wide {
         let last = row((rect.height() / ROW).round() - 1.0);
         let right = UiBuilder::new().max_rect(last).layout(Direction::right_to_left(Align::Center));
         ui.scope_builder(right, |ui| numbers(ui, session, last.width(), |_| true));
     }
-    if !matches!(comparison.layout, Layout::Wipe | Layout::Difference) {
-        return;
-    }
-    ui.scope_builder(left(row(1.0)), |ui| {
-        ui.set_clip_rect(ui.clip_rect().intersect(rect));
-        ui.spacing_mut().item_spacing.x = 8.0;
+    for i in 0..arranging.rows[usize::from(!wide)] {
         let mut now = comparison;
-        if comparison.layout == Layout::Wipe {
-            let names: Vec<_> = Edge::ALL.iter().map(|edge| edge.name()).collect();
-            let at = Edge::ALL.iter().position(|edge| *edge == comparison.edge);
-            let tip = |ui: &mut Ui, i: usize| _ = ui.label(Edge::ALL[i].summary());
-            ui.label(theme::small(ui, "edge"));
-            if let Some(i) = segmented(ui, "Edge", &names, at, tip) {
-                now.edge = Edge::ALL[i];
+        ui.scope_builder(left(row(1.0 + i as f32)), |ui| {
+            if i == 0 {
+                ui.set_clip_rect(ui.clip_rect().intersect(rect));
+                ui.spacing_mut().item_spacing.x = 8.0;
             }
-        } else {
-            let names: Vec<_> = Sign::ALL.iter().map(|sign| sign.name()).collect();
-            let at = Sign::ALL.iter().position(|sign| *sign == comparison.sign);
-            let tip = |ui: &mut Ui, i: usize| _ = ui.label(Sign::ALL[i].summary());
-            if let Some(i) = segmented(ui, "Sign", &names, at, tip) {
-                now.sign = Sign::ALL[i];
+            (arranging.choices)(ui, session, &mut now, i, wide);
+            if arranging.largest_apart && wide {
+                let room = ui.available_width();
+                let largest = |name: &str| name == LARGEST;
+                let right = Direction::right_to_left(Align::Center);
+                ui.with_layout(right, |ui| numbers(ui, session, room, largest));
             }
-            if rect.width() >= NARROW {
-                chosen_values(ui, &mut now);
-            }
-            amplification(ui, session, &mut now);
-        }
-        if comparison.layout == Layout::Difference && rect.width() >= NARROW {
-            let room = ui.available_width();
-            let largest = |name: &str| name == LARGEST;
-            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room, largest));
-        }
+        });
         if now != comparison {
             actions.push(Action::Compare(CompareCommand::Set(now)));
         }
-    });
-    if comparison.layout == Layout::Difference && rect.width() < NARROW {
-        let mut now = comparison;
-        ui.scope_builder(left(row(2.0)), |ui| chosen_values(ui, &mut now));
-        if now != comparison {
-            actions.push(Action::Compare(CompareCommand::Set(now)));
-        }
-    }
-}
-
-/// Selects the values to compare.
-fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
-    choose(ui, "channel", Channel::ALL, &mut now.channel, Channel::name, Channel::summary);
-    choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
-}
-
-/// The amplification: a number, or automatic to fit the largest difference.
-fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
-    let help = "Differences are multiplied by this before they become colours, 1 to 100.";
-    ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
-    // Equal views have no largest difference.
-    let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
-    let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
-    let mut factor = used.unwrap_or(*AMPLIFICATIONS.start());
-    let mut field = egui::DragValue::new(&mut factor).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
-    if used.is_none() {
-        field = field.custom_formatter(|_, _| "…".to_owned());
-    }
-    if ui.add(field).on_hover_text(help).changed() {
-        now.amplification = Some(factor);
-    }
-    let fits = now.amplification.is_none();
-    let fit = ui.add(Button::new("auto").small().selected(fits));
-    fit.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, fits, "Amplify automatically"));
-    let fit = fit.on_hover_text("Amplify so that the largest difference has nearly the last colour.");
-    if fit.clicked() {
-        now.amplification = if fits { used } else { None };
     }
 }
 
 /// A drop-down list of options.
-fn choose<T: Copy + PartialEq>(
+pub(super) fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
     label: &str,
     all: &[T],

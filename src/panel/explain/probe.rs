@@ -23,7 +23,7 @@ use crate::{
     },
     reference::{Settings, ignored_edits},
     registry::Registry,
-    scene::{Observer, Scene, comparison::Layout, observer::ViewAngle},
+    scene::{Observer, Scene, observer::ViewAngle},
 };
 
 /// Tolerance for the centre of the pinned pixel to show the held point, in metres.
@@ -444,7 +444,7 @@ pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Reg
     };
     probe.pin = Some(pin);
     let mut views = vec![own];
-    if session.view.pinned.is_some() && session.document.comparison.layout == Layout::SideBySide {
+    if session.view.pinned.is_some() && session.document.comparison.layout.is_beside() {
         let others = area.cells.iter().map(|cell| cell.view).filter(|view| *view != pin.view);
         views.extend(others.filter_map(shown));
     }

@@ -35,7 +35,7 @@ pub enum CompareCommand {
     NextLayout,
     /// Change other options of the comparison.
     Set(Comparison),
-    /// Show the other view while the key is held, in the layout [`Layout::Blink`].
+    /// Show the other view while the key is held, where views are shown [in turn](Layout::is_in_turn).
     Blink(bool),
     /// Remove one override of a view: the field is `None`.
     Reset(usize, VariantField),
@@ -68,8 +68,8 @@ impl Session {
     /// The view compared with view A: side by side, the active one.
     #[must_use]
     pub fn compared_with(&self) -> usize {
-        match (self.document.comparison.layout, self.active()) {
-            (Layout::SideBySide, view @ 1..) => view,
+        match self.active() {
+            view @ 1.. if self.document.comparison.layout.is_beside() => view,
             _ => self.document.comparison.with,
         }
     }

@@ -1,0 +1,119 @@
+//! Two views over each other, and the edge between them.
+
+use bevy_egui::egui::{self, CursorIcon, Id, Key, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use super::place::{Arranging, over_each_other};
+use crate::{
+    panel::{
+        segmented::segmented,
+        state::{Action, CompareCommand},
+        theme,
+    },
+    scene::{Comparison, comparison::Edge},
+};
+
+/// Width of the grab area of a wipe's edge, in points.
+const GRASP: f32 = 14.0;
+/// Step of the edge per key press, as a fraction of the picture.
+const STEP: f32 = 0.02;
+
+pub(super) static ARRANGING: Arranging = Arranging {
+    arrange: |all, frame| {
+        over_each_other(all, frame, parts(frame.below_header(frame.picture), frame.comparison()));
+    },
+    rows: [1, 1],
+    choices: |ui, _, now, _, _| {
+        let names: Vec<_> = Edge::ALL.iter().map(|edge| edge.name()).collect();
+        let at = Edge::ALL.iter().position(|edge| *edge == now.edge);
+        let tip = |ui: &mut Ui, i: usize| _ = ui.label(Edge::ALL[i].summary());
+        ui.label(theme::small(ui, "edge"));
+        if let Some(i) = segmented(ui, "Edge", &names, at, tip) {
+            now.edge = Edge::ALL[i];
+        }
+    },
+    over: |ui, rect, comparison, actions| Some(wipe(ui, rect, comparison, actions)),
+    ..Arranging::PLAIN
+};
+
+/// Parts of a rectangle on both sides of the edge of a wipe.
+fn parts(rect: Rect, comparison: &Comparison) -> [Rect; 2] {
+    let edge = edge_of(rect, comparison);
+    match comparison.edge {
+        Edge::Vertical => [rect.with_max_x(edge.x), rect.with_min_x(edge.x)],
+        Edge::Horizontal => [rect.with_max_y(edge.y), rect.with_min_y(edge.y)],
+    }
+}
+
+/// Midpoint of the edge of a wipe.
+fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
+    match comparison.edge {
+        Edge::Vertical => pos2(rect.left() + comparison.split * rect.width(), rect.center().y),
+        Edge::Horizontal => pos2(rect.center().x, rect.top() + comparison.split * rect.height()),
+    }
+}
+
+/// The edge of a wipe, with a handle. Returns the rectangle that it takes from the picture.
+fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
+    let at = edge_of(rect, comparison);
+    let upright = comparison.edge == Edge::Vertical;
+    let (place, cursor) = if upright {
+        (Rect::from_center_size(at, vec2(GRASP, rect.height())), CursorIcon::ResizeHorizontal)
+    } else {
+        (Rect::from_center_size(at, vec2(rect.width(), GRASP)), CursorIcon::ResizeVertical)
+    };
+    let response = ui.interact(place, Id::new("edge of the wipe"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(true, f64::from(comparison.split), "Edge between the views"));
+    let painter = ui.painter_at(rect);
+    let ends = if upright {
+        [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
+    } else {
+        [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
+    };
+    let on = response.hovered() || response.dragged() || response.has_focus();
+    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
+    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
+    painter.line_segment(ends, Stroke::new(1.5, core));
+    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
+    let along = if upright { vec2(4.0, 0.0) } else { vec2(0.0, 4.0) };
+    let across = if upright { vec2(0.0, 3.0) } else { vec2(3.0, 0.0) };
+    for side in [-1.0, 1.0] {
+        let tip = at + side * 1.5 * along;
+        let back = at + side * 0.6 * along;
+        painter.line(vec![back + across, tip, back - across], Stroke::new(1.5, core));
+    }
+    let mut split = comparison.split;
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        split = if upright {
+            (pointer.x - rect.left()) / rect.width()
+        } else {
+            (pointer.y - rect.top()) / rect.height()
+        };
+    }
+    if response.double_clicked() {
+        split = 0.5;
+    }
+    if response.has_focus() {
+        let keys = if upright { [Key::ArrowLeft, Key::ArrowRight] } else { [Key::ArrowUp, Key::ArrowDown] };
+        ui.memory_mut(|m| {
+            let filter = egui::EventFilter {
+                horizontal_arrows: upright,
+                vertical_arrows: !upright,
+                ..Default::default()
+            };
+            m.set_focus_lock_filter(response.id, filter);
+        });
+        for (key, step) in keys.into_iter().zip([-STEP, STEP]) {
+            if ui.input(|i| i.key_pressed(key)) {
+                split += step;
+            }
+        }
+    }
+    if split != comparison.split {
+        let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
+        actions.push(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
+    }
+    response.on_hover_cursor(cursor).on_hover_text(
+        "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",
+    );
+    place
+}
