@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
-/// The pages with their ids, which are the file names.
-pub const PAGES: [(&str, &str); 15] = [
+/// The pages with their ids, which are the paths of the files.
+pub const PAGES: [(&str, &str); 29] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
     ("scenes", include_str!("../../docs/scenes.md")),
@@ -21,6 +21,20 @@ pub const PAGES: [(&str, &str); 15] = [
     ("performance", include_str!("../../docs/performance.md")),
     ("custom-models", include_str!("../../docs/custom-models.md")),
     ("extending", include_str!("../../docs/extending.md")),
+    ("extending/reflection-model", include_str!("../../docs/extending/reflection-model.md")),
+    ("extending/light-type", include_str!("../../docs/extending/light-type.md")),
+    ("extending/object-type", include_str!("../../docs/extending/object-type.md")),
+    ("extending/shading-model", include_str!("../../docs/extending/shading-model.md")),
+    ("extending/parameters", include_str!("../../docs/extending/parameters.md")),
+    ("extending/panel", include_str!("../../docs/extending/panel.md")),
+    ("extending/systems", include_str!("../../docs/extending/systems.md")),
+    ("extending/scene-format", include_str!("../../docs/extending/scene-format.md")),
+    ("extending/metric", include_str!("../../docs/extending/metric.md")),
+    ("extending/channel", include_str!("../../docs/extending/channel.md")),
+    ("extending/plot-kind", include_str!("../../docs/extending/plot-kind.md")),
+    ("extending/handle", include_str!("../../docs/extending/handle.md")),
+    ("extending/layout", include_str!("../../docs/extending/layout.md")),
+    ("extending/another-crate", include_str!("../../docs/extending/another-crate.md")),
     ("architecture", include_str!("../../docs/architecture.md")),
 ];
 
@@ -111,10 +125,13 @@ fn target(page: &str, to: &str) -> Option<String> {
         return Some(to.to_owned());
     }
     let (file, place) = to.split_once('#').unwrap_or((to, ""));
-    let named = match file {
-        "" => page,
-        file => file.strip_suffix(".md").filter(|name| PAGES.iter().any(|(id, _)| id == name))?,
+    let folder = page.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let path = match file.strip_prefix("../") {
+        _ if file.is_empty() => format!("{page}.md"),
+        Some(above) if !folder.is_empty() => above.to_owned(),
+        _ => format!("{folder}/{file}").trim_start_matches('/').to_owned(),
     };
+    let named = path.strip_suffix(".md").filter(|name| PAGES.iter().any(|(id, _)| id == name))?;
     Some(if place.is_empty() { format!("#{named}") } else { format!("#{named}--{place}") })
 }
 
@@ -164,6 +181,11 @@ mod tests {
         assert_eq!(target("window", "#camera").as_deref(), Some("#window--camera"));
         assert_eq!(target("window", "scenes.md").as_deref(), Some("#scenes"));
         assert_eq!(target("window", "https://bevy.org").as_deref(), Some("https://bevy.org"));
+        let from = |to: &str| target("extending/panel", to);
+        assert_eq!(from("../window.md#camera").as_deref(), Some("#window--camera"));
+        assert_eq!(from("systems.md").as_deref(), Some("#extending/systems"));
+        assert_eq!(from("#a").as_deref(), Some("#extending/panel--a"));
+        assert_eq!(from("window.md").or(from("../../window.md")), None, "in another folder");
         for elsewhere in ["../src/lib.rs", "other.md", "javascript:alert(1)", "file:///etc/passwd"] {
             assert_eq!(target("window", elsewhere), None, "{elsewhere}");
         }

@@ -16,11 +16,13 @@ use crate::{helpers::support::root, window::panels::Bench};
 #[test]
 fn the_manual_has_every_document_and_no_dead_link() {
     let page = page();
-    for file in fs::read_dir(root().join("docs")).expect("a folder").flatten() {
-        let name = file.file_name().to_string_lossy().into_owned();
-        let Some(id) = name.strip_suffix(".md").filter(|id| *id != "SUMMARY") else { continue };
-        assert!(PAGES.iter().any(|(known, _)| *known == id), "{name} is not in the manual");
-        assert!(page.contains(&format!("<section id=\"{id}\">")), "{name}");
+    for folder in ["", "extending/"] {
+        for file in fs::read_dir(root().join("docs").join(folder)).expect("a folder").flatten() {
+            let name = format!("{folder}{}", file.file_name().to_string_lossy());
+            let Some(id) = name.strip_suffix(".md").filter(|id| *id != "SUMMARY") else { continue };
+            assert!(PAGES.iter().any(|(known, _)| *known == id), "{name} is not in the manual");
+            assert!(page.contains(&format!("<section id=\"{id}\">")), "{name}");
+        }
     }
     assert_eq!(dead_links(&page), Default::default());
     assert!(page.len() > 150_000 && page.contains("<table>") && page.starts_with("<!DOCTYPE html>"));

@@ -7,6 +7,8 @@ use glam::Vec3;
 use lights_camera_models::{
     caption::{self, Sampled},
     channel::DebugChannel,
+    compare::metric::{self, Metric},
+    curves::Kind,
     explain, lesson,
     light::{MAX_LIGHTS, ies, panorama},
     matching::What,
@@ -122,9 +124,17 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/window.md", vec![("channels", channels())]),
         (
             "docs/comparing.md",
-            vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
+            vec![
+                ("layouts", layouts()),
+                ("differences", differences()),
+                ("metrics", metrics()),
+                ("match", matches()),
+            ],
         ),
-        ("docs/command-line.md", vec![("noise", noise()), ("explain", explained())]),
+        (
+            "docs/command-line.md",
+            vec![("noise", noise()), ("explain", explained()), ("kinds of plots", kinds_of_plots())],
+        ),
         ("docs/worked-examples.md", worked_examples(&registry)),
         (
             "docs/lessons.md",
@@ -141,30 +151,48 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ),
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
-            "docs/extending.md",
+            "docs/extending/reflection-model.md",
+            vec![("toon.wgsl", example("toon.wgsl", "wgsl")), ("toon.rs", example("toon.rs", "rust"))],
+        ),
+        (
+            "docs/extending/light-type.md",
             vec![
-                ("toon.wgsl", example("toon.wgsl", "wgsl")),
-                ("toon.rs", example("toon.rs", "rust")),
                 ("light.rs", example("light.rs", "rust")),
                 ("light.wgsl", example("light.wgsl", "wgsl")),
                 ("lamp.rs", example("lamp.rs", "rust")),
                 ("lamp.wgsl", example("lamp.wgsl", "wgsl")),
-                ("shape.rs", example("shape.rs", "rust")),
+            ],
+        ),
+        ("docs/extending/object-type.md", vec![("shape.rs", example("shape.rs", "rust"))]),
+        (
+            "docs/extending/shading-model.md",
+            vec![
                 ("shading_model.rs", example("shading_model.rs", "rust")),
                 ("shading_model.wgsl", example("shading_model.wgsl", "wgsl")),
-                ("panel.rs", example("panel.rs", "rust")),
-                ("animate.rs", example("animate.rs", "rust")),
+            ],
+        ),
+        ("docs/extending/panel.md", vec![("panel.rs", example("panel.rs", "rust"))]),
+        ("docs/extending/systems.md", vec![("animate.rs", example("animate.rs", "rust")), ("sets", sets())]),
+        ("docs/extending/scene-format.md", vec![("format.rs", example("format.rs", "rust"))]),
+        ("docs/extending/metric.md", vec![("metric.rs", example("metric.rs", "rust"))]),
+        (
+            "docs/extending/another-crate.md",
+            vec![
                 ("extension", extension()),
                 ("extension/src/main.rs", example("extension/src/main.rs", "rust")),
-                ("format.rs", example("format.rs", "rust")),
                 ("parts", parts()),
-                ("sets", sets()),
             ],
         ),
         ("README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The quantities of plots.
+fn kinds_of_plots() -> String {
+    let row = |kind: Kind| vec![code(kind.id()), kind.declaration().row.to_owned()];
+    table(&["`--kind`", "curve"], Kind::ALL.into_iter().map(row))
 }
 
 /// The noise of a scene by the number of samples.
@@ -213,6 +241,15 @@ fn worked_examples(registry: &Registry) -> Vec<(&'static str, String)> {
     ["blinn_phong", "ashikhmin_shirley", "oren_nayar", "microfacet", "openpbr"].map(example).to_vec()
 }
 
+/// The numbers for the difference between two pictures.
+fn metrics() -> String {
+    let row = |metric: &&Metric| {
+        let cells = metric.row?.map(str::to_owned);
+        Some([code(metric.id)].into_iter().chain(cells).collect())
+    };
+    table(&["key", "metric", "range", "equal pictures"], metric::ALL.iter().filter_map(row))
+}
+
 /// The quantities compared by a match.
 fn matches() -> String {
     let row = |what: &What| vec![code(what.id()), what.summary().to_owned(), what.unit().to_owned()];
@@ -227,7 +264,7 @@ fn extension() -> String {
             fs::read_to_string(path).expect("the example is there").lines().count()
         };
         let names: Vec<_> =
-            files.iter().map(|file| format!("[{file}](../examples/extension/{file})")).collect();
+            files.iter().map(|file| format!("[{file}](../../examples/extension/{file})")).collect();
         vec![what.to_owned(), names.join(", "), files.iter().map(lines).sum::<usize>().to_string()]
     };
     let rows = [
