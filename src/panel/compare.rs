@@ -12,8 +12,7 @@ use bar::{NARROW, ROW, bar};
 use super::{
     caption::Lines,
     icon::{self, Icon},
-    keys::{self, Binding},
-    knob, matching,
+    keys, knob, matching,
     state::{Action, Cell, CompareCommand, MatchCommand, Session},
     theme::{self, Palette},
 };
@@ -174,27 +173,6 @@ fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
     }
 }
 
-/// The entries of a menu: the layouts, and another view.
-pub(super) fn entries(ui: &mut Ui, session: &Session, table: &[Binding], actions: &mut Vec<Action>) {
-    let now = session.document.comparison.layout;
-    for layout in Layout::ALL {
-        let mut letters = layout.name().chars();
-        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-        let radio = ui.radio(now == *layout, first + letters.as_str());
-        if radio.on_hover_text(layout.summary()).clicked() {
-            actions.push(Action::Compare(CompareCommand::Layout(*layout)));
-            ui.close();
-        }
-    }
-    ui.separator();
-    let add = Action::Compare(CompareCommand::Add);
-    let keys = RichText::new(keys::keys_of(table, &add)).color(Palette::here(ui).weak);
-    if ui.add(Button::new("Add a view").shortcut_text(keys)).clicked() {
-        actions.push(add);
-        ui.close();
-    }
-}
-
 /// Shows headers, edge and bar. Returns what was asked for, and the places that do not belong to the picture.
 pub fn show(
     ui: &mut Ui,
@@ -203,7 +181,8 @@ pub fn show(
     registry: &Registry,
 ) -> (Vec<Action>, Vec<Rect>) {
     let (mut actions, mut places) = (Vec::new(), Vec::new());
-    if session.view.blinking && !ui.input(|i| i.key_down(Key::Space)) {
+    let held = keys::of(ui.ctx(), "blink").is_some_and(|blink| ui.input(|i| i.key_down(blink.key)));
+    if session.view.blinking && !held {
         actions.push(Action::Compare(CompareCommand::Blink(false)));
     }
     let palette = Palette::here(ui);
@@ -222,7 +201,8 @@ pub fn show(
     if let Some(rect) = arrangement.vacant {
         let font = TextStyle::Body.resolve(ui.style());
         ui.painter().rect_filled(rect, 0.0, palette.panel);
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Ctrl+B adds a view", font, palette.weak);
+        let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
         places.push(rect);
     }
     if comparison.layout == Layout::Wipe && several && !session.view.presenting {

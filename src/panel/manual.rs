@@ -6,9 +6,10 @@ use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
 /// The pages, with their ids: the names of their files.
-pub const PAGES: [(&str, &str); 15] = [
+pub const PAGES: [(&str, &str); 16] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
+    ("keys", include_str!("../../docs/keys.md")),
     ("scenes", include_str!("../../docs/scenes.md")),
     ("reflection-models", include_str!("../../docs/reflection-models.md")),
     ("shading-and-lights", include_str!("../../docs/shading-and-lights.md")),

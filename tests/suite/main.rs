@@ -34,6 +34,7 @@ mod export_window;
 mod extension;
 mod features;
 mod files;
+mod finder;
 mod finite;
 mod focus;
 mod followed;

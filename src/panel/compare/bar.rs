@@ -8,6 +8,7 @@ use bevy_egui::egui::{
 use crate::{
     compare::fitting_amplification,
     panel::{
+        keys,
         segmented::{segment_width, segmented},
         state::{Action, CompareCommand, LARGEST, Session},
         theme::{self, Palette},
@@ -43,7 +44,8 @@ pub(super) fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<
             ui.set_max_width(280.0);
             ui.label(Layout::ALL[i].summary());
             if Layout::ALL[i] == Layout::Blink {
-                ui.label(theme::small(ui, "Hold Space to see the other view."));
+                let key = keys::word(ui.ctx(), "blink");
+                ui.label(theme::small(ui, format!("Hold {key} to see the other view.")));
             }
         };
         let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
