@@ -1,4 +1,4 @@
-//! Debug channels: their menu, and the legend in the picture.
+//! Debug channels: the legend in the picture.
 
 use bevy_egui::egui::{
     self, Align2, Color32, CornerRadius, CursorIcon, FontId, Id, Mesh, Rect, Sense, Stroke, StrokeKind,
@@ -6,6 +6,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    keys,
     state::{Action, CompareCommand, Session, ViewChange},
     theme::{self, Palette},
     wires,
@@ -17,27 +18,7 @@ use crate::{
     scene::variant::{LETTERS, MAX_VARIANTS},
 };
 
-/// Adds the entries of the menu.
-pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let shown = session.channel_of(session.active());
-    let all = DebugChannel::ALL.map(Some);
-    for channel in [None].into_iter().chain(all) {
-        let name = channel.map_or("The picture", DebugChannel::name);
-        let mut entry = ui.radio(shown == channel, name);
-        if let Some(channel) = channel {
-            entry = entry.on_hover_text(channel.explanation());
-        }
-        if entry.clicked() {
-            actions.push(Action::View(ViewChange::Channel(channel)));
-            ui.close();
-        }
-        if channel.is_none() {
-            ui.separator();
-        }
-    }
-}
-
-/// The debug channel that a view shows, with the legend of its picture.
+/// The channel that a view shows, with its picture's legend.
 #[must_use]
 pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(DebugChannel, Legend)> {
     let channel = session.channel_of(view)?;
@@ -84,9 +65,13 @@ pub(super) fn legend(
         }
         actions.push(Action::View(ViewChange::Channel(None)));
     }
-    let help =
-        format!("{}\n\nClick, or Shift+X: the picture again. X: the next channel.", channel.explanation());
-    // With the keyboard alone, the help can be reached in no other way.
+    let help = format!(
+        "{}\n\nClick, or {}: the picture again. {}: the next channel.",
+        channel.explanation(),
+        keys::word(ui.ctx(), "channel.none"),
+        keys::word(ui.ctx(), "next_channel"),
+    );
+    // By key there is no other way to its help.
     if response.has_focus() {
         response.show_tooltip_text(&help);
     }

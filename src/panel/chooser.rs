@@ -3,12 +3,14 @@
 use std::cell::RefCell;
 
 use bevy_egui::egui::{
-    self, Button, Color32, Id, Key, Modifiers, Popup, PopupCloseBehavior, Rect, RectAlign, RichText,
+    self, Button, Color32, Id, Key, Margin, Modifiers, Popup, PopupCloseBehavior, Rect, RectAlign, RichText,
     ScrollArea, Sense, Stroke, TextEdit, Tooltip, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{
     author,
+    icon::{self, Icon},
+    keys,
     state::{Action, Session, ViewChange},
     theme::{self, Palette},
 };
@@ -26,9 +28,9 @@ pub fn matches(text: &str, search: &str) -> bool {
     plain(search).split_whitespace().all(|word| text.split_whitespace().any(|found| found.starts_with(word)))
 }
 
-/// Search terms of a model other than its [`words`]: synonyms, then parameters and their choices. Each comes with its
-/// display name.
-fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
+/// Everything by which a model is found beside its [`words`]: synonyms, then its parameters and their choices. Each with
+/// what people call it.
+pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     let of = |parameter: &'static Parameter| {
         let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
         let choices = match parameter.kind {
@@ -41,8 +43,8 @@ fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     synonyms.chain(model.parameters.iter().flat_map(of))
 }
 
-/// The name, author, year and summary by which the list introduces a model.
-fn words(model: &ModelEntry) -> String {
+/// The words by which the list introduces a model.
+pub(super) fn words(model: &ModelEntry) -> String {
     let d = model.declaration;
     [d.name, d.id, d.author, d.family.name(), d.summary].join(" ")
 }
@@ -103,10 +105,16 @@ pub struct Entry<'a> {
     pub swatch: Option<Color32>,
     /// True if this is the current choice.
     pub current: bool,
+    /// Its key, in a column at the right end; `None` where entries have none.
+    pub key: Option<String>,
+    /// True if it is switched on, as a check mark says.
+    pub on: bool,
+    /// True if it cannot be chosen.
+    pub off: bool,
 }
 
-/// Texts of a [`list`].
-#[derive(Clone, Copy, Debug)]
+/// The words of a [`list`].
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Words {
     /// Name of the search field for screen readers, such as "Search reflection models".
     pub label: &'static str,
@@ -116,6 +124,8 @@ pub struct Words {
     pub none: &'static str,
     /// Footer of the list.
     pub foot: &'static str,
+    /// True if the search is the first thing to see.
+    pub roomy: bool,
 }
 
 /// Forgets the search text of a [`list`], so that the list opens fresh.
@@ -165,6 +175,7 @@ pub fn list<'e, T>(
     let edit = TextEdit::singleline(&mut search)
         .id(id.with("text"))
         .hint_text(words.hint)
+        .margin(if words.roomy { Margin::symmetric(10, 7) } else { Margin::symmetric(4, 2) })
         .desired_width(f32::INFINITY);
     let edit = ui.add(edit);
     edit.widget_info(|| {
@@ -225,14 +236,18 @@ pub fn list<'e, T>(
         d.insert_temp(row_id, row);
         d.insert_temp(search_id, search);
     });
-    chosen.map(|i| found.swap_remove(i))
+    chosen.filter(|i| !entry(&found[*i]).off).map(|i| found.swap_remove(i))
 }
+
+/// The width of the column of keys, points.
+const KEYS: f32 = 96.0;
 
 fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::click());
-    response
-        .widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, entry.current, entry.name));
+    response.widget_info(|| {
+        WidgetInfo::selected(WidgetType::SelectableLabel, !entry.off, entry.current, entry.name)
+    });
     if !ui.is_rect_visible(rect) {
         return response;
     }
@@ -257,10 +272,21 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
         painter.rect(sample, 3.0, colour, Stroke::new(1.0, palette.weak), egui::StrokeKind::Inside);
         left += 30.0;
     }
-    let right = rect.right() - 6.0;
-    let name = theme::elided(ui, entry.name, egui::TextStyle::Body, palette.text, right - left);
+    let mut right = rect.right() - 6.0;
+    if let Some(key) = &entry.key {
+        left = rect.left() + 26.0;
+        if entry.on {
+            let sign = Rect::from_center_size(pos2(rect.left() + 13.0, y), vec2(11.0, 11.0));
+            icon::paint(&painter, sign, Icon::Check, palette.accent);
+        }
+        let key = theme::elided(ui, key, egui::TextStyle::Body, palette.weak, KEYS);
+        painter.galley(pos2(right - key.size().x, y - key.size().y / 2.0), key, palette.weak);
+        right -= KEYS;
+    }
+    let ink = if entry.off { palette.weak } else { palette.text };
+    let name = theme::elided(ui, entry.name, egui::TextStyle::Body, ink, right - left);
     let room = right - left - name.size().x - 12.0;
-    painter.galley(pos2(left, y - name.size().y / 2.0), name, palette.text);
+    painter.galley(pos2(left, y - name.size().y / 2.0), name, ink);
     let note = theme::elided(ui, &entry.note, egui::TextStyle::Small, palette.weak, room);
     painter.galley(pos2(right - note.size().x, y - note.size().y / 2.0), note, palette.weak);
     response
@@ -271,6 +297,7 @@ const MODELS: Words = Words {
     hint: "Search: name, author, year, GGX, metalness…",
     none: "No model has that in its name, author, year, description, parameters or choices.",
     foot: "↑ ↓ Enter choose · Esc closes · 1–9 without this list",
+    roomy: false,
 };
 
 /// The list of models. `current` is the id of the selected model. `first` labels an entry before all models that stands
@@ -304,8 +331,8 @@ pub fn models<'a>(
                 None => d.author.to_owned(),
             },
             number: session.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
-            swatch: None,
             current: current == Some(d.id),
+            ..Entry::default()
         }
     };
     list(ui, id, MODELS, height, found, entry, |ui, model| {
@@ -376,7 +403,8 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
                     ui.label(format!("The model of {name} alone, in place of the scene’s."));
                 }
                 about(ui, model);
-                ui.label(theme::small(ui, "key R chooses another"));
+                let key = keys::word(ui.ctx(), "choose_model");
+                ui.label(theme::small(ui, format!("key {key} chooses another")));
             });
         }
         return actions;

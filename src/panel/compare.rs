@@ -1,7 +1,7 @@
 //! The views of a comparison in the picture: their arrangement, headers, and the edge of a wipe.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Button, Id, Key, Layout as Direction, Rect, RichText, Sense, Stroke, StrokeKind,
+    self, Align, Align2, Button, Id, Layout as Direction, Rect, RichText, Sense, Stroke, StrokeKind,
     TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, vec2,
 };
 
@@ -22,8 +22,7 @@ pub use place::Arrangement;
 use super::{
     caption::Lines,
     icon::{self, Icon},
-    keys::{self, Binding},
-    knob, matching,
+    keys, knob, matching,
     state::{Action, Cell, CompareCommand, MatchCommand, Session},
     theme::{self, Palette},
 };
@@ -75,27 +74,6 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     all
 }
 
-/// Adds the menu entries: the layouts, and another view.
-pub(super) fn entries(ui: &mut Ui, session: &Session, table: &[Binding], actions: &mut Vec<Action>) {
-    let now = session.document.comparison.layout;
-    for layout in Layout::ALL {
-        let mut letters = layout.name().chars();
-        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-        let radio = ui.radio(now == *layout, first + letters.as_str());
-        if radio.on_hover_text(layout.summary()).clicked() {
-            actions.push(Action::Compare(CompareCommand::Layout(*layout)));
-            ui.close();
-        }
-    }
-    ui.separator();
-    let add = Action::Compare(CompareCommand::Add);
-    let keys = RichText::new(keys::keys_of(table, &add)).color(Palette::here(ui).weak);
-    if ui.add(Button::new("Add a view").shortcut_text(keys)).clicked() {
-        actions.push(add);
-        ui.close();
-    }
-}
-
 /// Shows headers, edge and bar. Returns the requested actions, and the rectangles that cover the picture.
 pub fn show(
     ui: &mut Ui,
@@ -104,7 +82,8 @@ pub fn show(
     registry: &Registry,
 ) -> (Vec<Action>, Vec<Rect>) {
     let (mut actions, mut places) = (Vec::new(), Vec::new());
-    if session.view.blinking && !ui.input(|i| i.key_down(Key::Space)) {
+    let held = keys::of(ui.ctx(), "blink").is_some_and(|blink| ui.input(|i| i.key_down(blink.key)));
+    if session.view.blinking && !held {
         actions.push(Action::Compare(CompareCommand::Blink(false)));
     }
     let palette = Palette::here(ui);
@@ -123,7 +102,8 @@ pub fn show(
     if let Some(rect) = arrangement.vacant {
         let font = TextStyle::Body.resolve(ui.style());
         ui.painter().rect_filled(rect, 0.0, palette.panel);
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Ctrl+B adds a view", font, palette.weak);
+        let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
         places.push(rect);
     }
     if several && !session.view.presenting {

@@ -3,7 +3,6 @@
 use bevy_egui::egui::{Button, ProgressBar, Ui};
 
 use super::{
-    menu::submenu,
     state::{Action, ExportCommand, Session, Severity},
     theme,
 };
@@ -16,20 +15,12 @@ use crate::{
 /// Size of exported pictures, in pixels.
 pub const SIZE: (u32, u32) = (1280, 720);
 
-/// The submenu, with an entry for each format.
-pub(super) fn menu(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    submenu(ui, "Export as", |ui| {
-        for form in FORMS {
-            let help = match form.of_object.then(|| object(session)).flatten() {
-                Some(i) => format!("{} The object is {}.", sentence(form), name(session, i)),
-                None => sentence(form),
-            };
-            if ui.button(format!("{}…", form.name)).on_hover_text(help).clicked() {
-                actions.push(Action::Export(ExportCommand::Dialog(form.id)));
-                ui.close();
-            }
-        }
-    });
+/// What an export makes, of what, as a sentence.
+pub(super) fn help(session: &Session, form: &Form) -> String {
+    match form.of_object.then(|| object(session)).flatten() {
+        Some(i) => format!("{} The object is {}.", sentence(form), name(session, i)),
+        None => sentence(form),
+    }
 }
 
 /// The summary of a format as a sentence.

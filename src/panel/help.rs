@@ -70,8 +70,9 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
 }
 
 fn key_list(ui: &mut Ui, session: &Session, registry: &Registry) {
+    let bindings = keys::bindings(session, registry).into_iter();
     let mut rows: Vec<(&str, String, String)> =
-        keys::bindings(session, registry).into_iter().map(|b| (b.group, b.keys(), b.label)).collect();
+        bindings.map(|b| (b.group.name(), b.keys(), b.label)).collect();
     rows.extend(
         keys::ELSEWHERE.iter().map(|(group, key, label)| (*group, (*key).to_owned(), (*label).to_owned())),
     );

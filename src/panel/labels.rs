@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::{
     caption,
     marks::Lens,
-    state::{Action, Labels, Session, ViewChange},
+    state::{Labels, Session},
     theme::{self, Palette},
 };
 use crate::{document::Selection, registry::Registry, scene::Scene};
@@ -100,15 +100,5 @@ fn shallow(scene: &Scene) -> Scene {
         display: scene.display,
         lights: Vec::new(),
         ..Scene::default()
-    }
-}
-
-/// Adds the menu entries.
-pub(super) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    for labels in Labels::ALL {
-        if ui.radio(session.view.labels == labels, labels.name()).clicked() {
-            actions.push(Action::View(ViewChange::Labels(labels)));
-            ui.close();
-        }
     }
 }

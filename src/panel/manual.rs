@@ -6,9 +6,10 @@ use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 29] = [
+pub const PAGES: [(&str, &str); 31] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
+    ("keys", include_str!("../../docs/keys.md")),
     ("scenes", include_str!("../../docs/scenes.md")),
     ("reflection-models", include_str!("../../docs/reflection-models.md")),
     ("shading-and-lights", include_str!("../../docs/shading-and-lights.md")),
@@ -30,6 +31,7 @@ pub const PAGES: [(&str, &str); 29] = [
     ("extending/systems", include_str!("../../docs/extending/systems.md")),
     ("extending/scene-format", include_str!("../../docs/extending/scene-format.md")),
     ("extending/metric", include_str!("../../docs/extending/metric.md")),
+    ("extending/command", include_str!("../../docs/extending/command.md")),
     ("extending/channel", include_str!("../../docs/extending/channel.md")),
     ("extending/plot-kind", include_str!("../../docs/extending/plot-kind.md")),
     ("extending/handle", include_str!("../../docs/extending/handle.md")),

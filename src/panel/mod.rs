@@ -41,6 +41,7 @@ pub mod caption;
 pub mod channels;
 pub mod chooser;
 pub mod clipping;
+pub mod command;
 pub mod compare;
 mod context;
 pub mod dialogs;
@@ -48,6 +49,7 @@ pub mod effects;
 pub mod explain;
 pub mod export;
 pub mod files;
+mod finder;
 mod focus;
 pub mod follow;
 pub mod formula;
@@ -72,13 +74,13 @@ pub mod messages;
 pub mod model_override;
 mod notice;
 pub mod picture;
-mod pictures;
 mod placing;
 pub mod plots;
 pub mod presentation;
 pub mod preview;
 pub mod progress;
 pub mod question;
+mod rank;
 pub mod reload;
 pub mod segmented;
 pub mod settings;
@@ -151,6 +153,8 @@ pub fn show(
             session.view.unfold(&tab);
         }
     }
+    keys::check(&mut session, registry);
+    keys::remember(&ctx, &session, registry);
     author::notice_shaders(&mut session, registry);
     let mut effects = Vec::new();
     if session.is_lesson_due() {
@@ -176,6 +180,7 @@ pub fn show(
     actions.extend(presentation::left(&ctx, &session, area));
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
+    actions.extend(finder::show(&ctx, &session, registry));
     actions.extend(author::show(&ctx, &session, area, registry));
     actions.extend(matching::show(&ctx, &session, area, registry));
     let tooltips = theme::tooltips(&ctx);
@@ -380,8 +385,8 @@ fn picture_area(
         zoom: ctx.zoom_factor(),
         has_pointer: pointer.is_some_and(|at| is_over_picture(ctx, frame, at)),
         has_keys: !busy && ctx.memory(|m| m.focused()).is_none(),
-        // The chooser opens and closes by an action, and is not one of egui's popups.
-        popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,
+        // The chooser opens and closes by an action, and is not among egui's.
+        popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open || session.view.finder_open,
         written,
         ..PictureArea::default()
     }

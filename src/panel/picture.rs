@@ -12,7 +12,7 @@ use super::{
     caption::{self, Lines, caption_text},
     channels, clipping,
     compare::Arrangement,
-    explain, handles, icon, labels, marks,
+    explain, handles, icon, keys, labels, marks,
     presentation::{CAPTION, Stage},
     state::{Action, Badge, Cell, CompareCommand, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
@@ -313,7 +313,8 @@ fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
             "A shader has an error, so the picture shows these models as they were before the last change. Correct the \
              file and save it: the picture follows by itself.",
         );
-        ui.label(theme::small(ui, "Click, or key F9: the line and the message"));
+        let key = keys::word(ui.ctx(), "panel.shader");
+        ui.label(theme::small(ui, format!("Click, or key {key}: the line and the message")));
     });
     let mut actions = Vec::new();
     if response.clicked() {

@@ -7,7 +7,7 @@ use std::{
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::state::{RECENT_FILES, Session, Severity, ThemeChoice, View, nearest_scale};
+use super::state::{GivenKeys, OwnKeys, RECENT_FILES, Session, Severity, ThemeChoice, View, nearest_scale};
 use crate::files::Shown as _;
 use crate::{
     files::{self, FileError, tidy},
@@ -18,7 +18,9 @@ use crate::{
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
 /// File name.
 const FILE: &str = "settings.json";
-/// Maximum size of the file, enough for long names of recent files. The JSON library limits the depth to 128 levels.
+/// The name of one that could not be read.
+const KEPT: &str = "settings.unreadable.json";
+/// Settings are not larger; long names of recent files included. The library that reads them goes 128 levels deep.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Settings that are kept between sessions.
@@ -48,6 +50,9 @@ pub struct Settings {
     pub picture_caption: bool,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
+    /// Keys of the user's own, by the ids of commands. The window only reads them.
+    #[serde(skip_serializing_if = "GivenKeys::is_empty")]
+    pub keys: GivenKeys,
 }
 
 fn scale<'de, D: Deserializer<'de>>(value: D) -> Result<u16, D::Error> {
@@ -84,6 +89,7 @@ impl Default for Settings {
             guest_tab: view.guest_tab,
             picture_caption: view.picture_caption,
             recent_files: Vec::new(),
+            keys: GivenKeys::default(),
         }
     }
 }
@@ -99,26 +105,47 @@ pub fn folder() -> Option<PathBuf> {
     shared.map(program::own)
 }
 
-/// Loads the settings from a folder. A missing file means defaults; an unreadable file means defaults and a message.
+/// The file of the settings, if there is a folder for it.
+#[must_use]
+pub fn file() -> Option<PathBuf> {
+    folder().map(|folder| folder.join(FILE))
+}
+
+/// Reads the settings in a folder. No file means defaults; a file that cannot be read means defaults
+/// and a sentence that says so.
 #[must_use]
 pub fn load(folder: &Path) -> (Settings, Option<String>) {
     let path = folder.join(FILE);
-    let bytes = match files::read(&path, MAX_BYTES) {
-        Ok(bytes) => bytes,
-        Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => return (Settings::default(), None),
-        Err(e) => return (Settings::default(), Some(unreadable(&path, &e))),
+    let unreadable = |why: &dyn std::fmt::Display| {
+        format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.shown())
     };
-    match serde_json::from_slice::<Settings>(&bytes) {
-        Ok(settings) => (settings.tidy(), None),
-        Err(e) => (Settings::default(), Some(unreadable(&path, &e))),
+    match read(&path) {
+        Ok(found) => (found.unwrap_or_default().tidy(), None),
+        Err(Unreadable::File(e)) => (Settings::default(), Some(unreadable(&e))),
+        Err(Unreadable::Text(e)) => {
+            let kept = format!("{} The file is kept as {KEPT} when they are written.", unreadable(&e));
+            (Settings::default(), Some(kept))
+        }
     }
 }
 
-fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
-    format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.shown())
+/// Why there are no settings in a file.
+enum Unreadable {
+    File(FileError),
+    Text(serde_json::Error),
 }
 
-/// Saves the settings to a folder, completely or not at all.
+/// The settings in a file, if there is one.
+fn read(path: &Path) -> Result<Option<Settings>, Unreadable> {
+    match files::read(path, MAX_BYTES) {
+        Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(Unreadable::Text),
+        Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(Unreadable::File(e)),
+    }
+}
+
+/// Writes the settings to a folder, all or nothing. Keys of the user's own stay as they stand in the file, which was
+/// edited by hand; so does a text that cannot be read, in another file.
 ///
 /// # Errors
 /// Returns an error, as a sentence, if the folder or the file cannot be written.
@@ -126,7 +153,13 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
         std::fs::create_dir_all(folder)?;
-        let mut text = serde_json::to_string_pretty(settings).map_err(io::Error::from)?;
+        let mut settings = settings.clone();
+        match read(&path) {
+            Ok(Some(found)) => settings.keys = found.keys,
+            Err(Unreadable::Text(_)) => std::fs::rename(&path, folder.join(KEPT))?,
+            Ok(None) | Err(Unreadable::File(_)) => {}
+        }
+        let mut text = serde_json::to_string_pretty(&settings).map_err(io::Error::from)?;
         text.push('\n');
         files::write(&path, text.as_bytes())
     };
@@ -171,6 +204,7 @@ impl Session {
             guest_tab: self.view.guest_tab.clone(),
             picture_caption: self.view.picture_caption,
             recent_files: self.recent_files.clone(),
+            keys: self.keys.given.clone(),
         }
     }
 
@@ -188,6 +222,7 @@ impl Session {
         self.view.picture_caption = settings.picture_caption;
         self.recent_files = settings.recent_files;
         self.recent_files.truncate(RECENT_FILES);
+        self.keys = OwnKeys { given: settings.keys, checked: None };
     }
 }
 
@@ -234,6 +269,40 @@ mod tests {
         let (settings, complaint) = load(folder.path());
         assert_eq!(settings, Settings::default());
         assert!(complaint.is_some_and(|c| c.contains("cannot be read")));
+        Ok(())
+    }
+
+    #[test]
+    fn keys_of_the_user_stay_as_they_were_typed_right_or_wrong() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        let file = folder.path().join(FILE);
+        for keys in [r#"{"save":"Ctrl+Shift+X","sav":7,"save":null,"open":[{"a":[]}]}"#, "5", "null", "[1,2]"]
+        {
+            std::fs::write(&file, format!("{{ \"keys\": {keys}, \"theme\": \"light\" }}"))?;
+            let (settings, complaint) = load(folder.path());
+            assert_eq!((settings.theme, complaint), (ThemeChoice::Light, None), "{keys}");
+            // What is edited meanwhile stays too.
+            let edited = std::fs::read_to_string(&file)?.replace("Shift+X", "Shift+Y");
+            std::fs::write(&file, edited)?;
+            save(folder.path(), &settings)?;
+            let written: String = std::fs::read_to_string(&file)?.split_whitespace().collect();
+            let keys = keys.replace("Shift+X", "Shift+Y");
+            assert!(written.contains(&format!("\"keys\":{keys}")), "{keys}: {written}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_is_kept_when_settings_are_written() -> Result<(), Box<dyn std::error::Error>>
+    {
+        let folder = tempfile::tempdir()?;
+        let broken = "{ \"keys\": { \"save\": \"F4\", } }";
+        std::fs::write(folder.path().join(FILE), broken)?;
+        let (settings, complaint) = load(folder.path());
+        assert!(complaint.is_some_and(|c| c.contains("kept as settings.unreadable.json")));
+        save(folder.path(), &settings)?;
+        assert_eq!(std::fs::read_to_string(folder.path().join(KEPT))?, broken);
+        assert_eq!(load(folder.path()), (settings, None));
         Ok(())
     }
 

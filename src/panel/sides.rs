@@ -10,6 +10,7 @@ use super::{
     focus::{self, Region},
     glyphs,
     icon::{self, Icon},
+    keys,
     lesson::point,
     shares::shared,
     state::{
@@ -229,7 +230,8 @@ pub(super) fn bottom(
                 }
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if icon::button(ui, Icon::Down, "Fold the strip away (F8)").clicked() {
+                let says = keys::hint(ui.ctx(), "Fold the strip away", "panel.messages");
+                if icon::button(ui, Icon::Down, &says).clicked() {
                     context.act(Action::View(ViewChange::Bottom(false)));
                 }
             });

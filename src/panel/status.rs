@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, PanelContext, Place, export,
     icon::{self, Icon},
-    matching,
+    keys, matching,
     state::{Action, Converging, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
@@ -53,8 +53,8 @@ impl Panel for StatusLine {
                     palette.weak,
                 ),
             }
-            let says =
-                if session.view.bottom_open { "Fold the strip away (F8)" } else { "Show messages (F8)" };
+            let says = if session.view.bottom_open { "Fold the strip away" } else { "Show messages" };
+            let says = keys::hint(ui.ctx(), says, "panel.messages");
             let button = ui.add(Button::new(text).frame_when_inactive(false).small());
             button
                 .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));
@@ -65,7 +65,10 @@ impl Panel for StatusLine {
             export::progress(ui, session, actions);
             matching::progress(ui, session, actions);
             samples(ui, session);
-            let selected = format!("{} selected · F1 keys", session.name_of(session.selection, registry));
+            let mut selected = format!("{} selected", session.name_of(session.selection, registry));
+            if let Some(key) = keys::of(ui.ctx(), "keys") {
+                selected.push_str(&format!(" · {key} keys"));
+            }
             latest(ui, session, theme::small_width(ui, &selected), actions);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.add(egui::Label::new(theme::small(ui, selected)).truncate());
@@ -156,7 +159,8 @@ fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let text = format!("{}: {stale}", plural(count, "shader error"));
     let text = RichText::new(text).small().color(palette.error);
     let button = ui.add(Button::new(text).frame_when_inactive(false).small());
-    if button.on_hover_text("Show where the errors are (F9)").clicked() {
+    let tip = keys::hint(ui.ctx(), "Show where the errors are", "panel.shader");
+    if button.on_hover_text(tip).clicked() {
         actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
     }
 }

@@ -1,27 +1,22 @@
 //! The bar at the top: document, menus, reflection, shading.
 
-use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{self, Align, Layout, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, PanelContext, PanelInfo, Place, channels, chooser, compare,
-    explain::{has_sides, lobe_entries},
-    export, glyphs,
-    history::HISTORY_TAB,
-    keys::{self, Binding},
-    labels,
+    Panel, PanelContext, Place, chooser,
+    command::{self, Menu, show},
+    explain::has_sides,
+    keys,
     lesson::{list, point},
-    maths, menu, model_override, pictures,
+    maths, menu, model_override,
     segmented::{segment_width, segmented},
-    state::{
-        Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, PLOTS_TAB, SHADER_TAB, Session,
-        ThemeChoice, View, ViewChange,
-    },
+    state::{Action, Session},
     theme::{self, Palette},
     welcome,
 };
 use crate::document::Selection;
 use crate::files::Shown as _;
-use crate::{optics::TermSelection, registry::Registry};
+use crate::registry::Registry;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -42,13 +37,12 @@ impl Panel for TopBar {
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
-        let table = keys::bindings(session, registry);
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
             ui.spacing_mut().item_spacing.x = 4.0;
             document(ui, session, actions);
             divider(ui);
-            menus(ui, session, registry, &table, actions);
+            menus(ui, session, registry, actions);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
             let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
@@ -171,259 +165,28 @@ fn repeats(title: &str, file: &str) -> bool {
     words(&file).iter().all(|word| word.is_empty() || known.contains(word))
 }
 
-/// Room for the longest entry and its key, points.
-const MENU_WIDTH: f32 = 232.0;
-
-fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding], actions: &mut Vec<Action>) {
-    let item = |ui: &mut Ui, text: &str, action: Action, actions: &mut Vec<Action>| {
-        let keys = RichText::new(keys::keys_of(table, &action)).color(Palette::here(ui).weak);
-        if ui.add(Button::new(text).shortcut_text(keys)).clicked() {
-            actions.push(action);
-            ui.close();
-        }
-    };
-    let check = |ui: &mut Ui, text: &str, on: bool, keys: &str, action: Action, actions: &mut Vec<Action>| {
-        let mut on = on;
-        ui.horizontal(|ui| {
-            if ui.checkbox(&mut on, text).clicked() {
-                // A presentation has no menus.
-                if matches!(action, Action::View(ViewChange::Presenting(true))) {
-                    ui.close();
-                }
-                actions.push(action);
-            }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.weak(keys));
-        });
+fn menus(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    let beside = |ui: &mut Ui, menu: &Menu, right: f32, actions: &mut Vec<Action>| match menu.name {
+        command::EXAMPLES => welcome::menu(ui, right, registry, actions),
+        command::LESSONS => list::entries(ui, session, actions),
+        _ => {}
     };
     ui.scope(|ui| {
         egui::containers::menu::menu_style(ui.style_mut());
         ui.spacing_mut().item_spacing.x = 0.0;
         ui.spacing_mut().button_padding = vec2(7.0, 3.0);
-        let file = ui.menu_button("File", |ui| {
-            ui.set_width(MENU_WIDTH);
-            item(ui, "New default scene", Action::New, actions);
-            item(ui, "Open…", Action::OpenDialog, actions);
-            menu::submenu(ui, "Open recent", |ui| {
-                if session.recent_files.is_empty() {
-                    ui.weak("Files that you open or save appear here.");
-                    return;
-                }
-                for path in &session.recent_files {
-                    let name = path
-                        .file_name()
-                        .map_or_else(|| path.shown().to_string(), |n| n.to_string_lossy().into_owned());
-                    if ui.button(name).on_hover_text(path.shown().to_string()).clicked() {
-                        actions.push(Action::Open(path.clone()));
-                        ui.close();
-                    }
-                }
-                ui.separator();
-                item(ui, "Clear the list", Action::ClearRecent, actions);
-            });
-            let right = ui.max_rect().right();
-            menu::submenu(ui, "Examples", |ui| welcome::menu(ui, right, registry, actions));
-            ui.separator();
-            item(ui, "Save", Action::Save, actions);
-            item(ui, "Save as…", Action::SaveAsDialog, actions);
-            ui.add_enabled_ui(session.path.is_some(), |ui| {
-                item(ui, "Reload from disk", Action::Reload, actions)
-            });
-            ui.separator();
-            pictures::menu(ui, session, table, actions);
-            export::menu(ui, session, actions);
-            ui.separator();
-            item(ui, "Quit", Action::Quit, actions);
-        });
-        let edit = ui.menu_button("Edit", |ui| {
-            ui.set_width(1.3 * MENU_WIDTH);
-            let (done, steps) = (session.document.done(), session.document.steps().len());
-            let step =
-                |verb: &str, at: Option<usize>| match at.and_then(|at| session.document.steps().nth(at)) {
-                    Some(name) => format!("{verb} “{name}”"),
-                    None => verb.to_owned(),
-                };
-            let undo = done.checked_sub(1);
-            ui.add_enabled_ui(undo.is_some(), |ui| item(ui, &step("Undo", undo), Action::Undo, actions));
-            let redo = Some(done).filter(|done| *done < steps);
-            ui.add_enabled_ui(redo.is_some(), |ui| item(ui, &step("Redo", redo), Action::Redo, actions));
-            let history = Action::View(ViewChange::BottomTab(HISTORY_TAB.to_owned()));
-            item(ui, "History…", history, actions);
-            ui.separator();
-            menu::submenu(ui, "Add a light", |ui| {
-                for light in registry.lights() {
-                    let d = light.declaration;
-                    let glyph = glyphs::glyph(ui, d.glyph, d.name);
-                    if ui.button(format!("{glyph}  {}", d.name)).on_hover_text(d.summary).clicked() {
-                        actions.push(Action::AddLight(d.id.to_owned()));
-                        ui.close();
-                    }
+        let bar = command::BAR.map(|(key, name)| {
+            let menu = ui.menu_button(name, |ui| {
+                let all = command::all(session, registry, has_sides(ui.ctx(), session));
+                if let Some(menu) = all.find(name) {
+                    show::content(ui, menu, &beside, actions);
                 }
             });
-            menu::submenu(ui, "Add an object", |ui| {
-                for shape in registry.shapes() {
-                    let d = shape.declaration;
-                    let glyph = glyphs::glyph(ui, d.glyph, d.name);
-                    if ui.button(format!("{glyph}  {}", d.name)).on_hover_text(d.summary).clicked() {
-                        actions.push(Action::AddObject(d.id.to_owned()));
-                        ui.close();
-                    }
-                }
-            });
-            ui.separator();
-            let part = matches!(session.selection, Selection::Light(_) | Selection::Object(_));
-            ui.add_enabled_ui(part, |ui| {
-                item(ui, "Rename", Action::BeginRename(session.selection), actions);
-                item(ui, "Duplicate", Action::Duplicate(session.selection), actions);
-                item(ui, "Hide or switch off", Action::Toggle(session.selection), actions);
-                item(ui, "Delete", Action::Remove(session.selection), actions);
-            });
-            ui.separator();
-            item(ui, "New reflection model…", Action::Model(ModelCommand::New), actions);
-            item(ui, "Duplicate the model as a file…", Action::Model(ModelCommand::Duplicate), actions);
-            item(ui, "Open the model in an editor", Action::Model(ModelCommand::EditShown), actions);
-            item(ui, "Export shaders for editing…", Action::Model(ModelCommand::ExportDialog), actions);
-        });
-        let view_menu = ui.menu_button("View", |ui| {
-            ui.set_width(MENU_WIDTH);
-            let most = ui.ctx().content_rect().height() - 48.0;
-            egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
-                item(ui, "Home: the observer’s view", Action::HomeView, actions);
-                item(ui, "Focus selection", Action::FocusSelection, actions);
-                ui.add_enabled_ui(has_sides(ui.ctx(), session), |ui| {
-                    item(ui, "Look from the side", Action::LookFromSide, actions);
-                });
-                let problem = session.observer_problem();
-                let place =
-                    |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView, actions);
-                let place = ui.add_enabled_ui(problem.is_none(), place).response;
-                problem.map(|why| place.on_hover_text(why));
-                menu::submenu(ui, "Terms of the equation", |ui| {
-                    for terms in session.offered_terms(registry) {
-                        let name = match terms {
-                            TermSelection::All => "All terms".to_owned(),
-                            other => format!("The {} term alone", other.id()),
-                        };
-                        if ui.radio(session.terms() == terms, name).clicked() {
-                            actions.push(Action::View(ViewChange::Terms(terms)));
-                        }
-                    }
-                    ui.separator();
-                    menu::submenu(ui, "Lobe at the explained point", |ui| lobe_entries(ui, session, actions));
-                });
-                menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
-                ui.separator();
-                let v = &session.view;
-                let view = |c: ViewChange| Action::View(c);
-                menu::submenu(ui, "Marks", |ui| {
-                    let lights = view(ViewChange::Gizmos(!v.show_gizmos));
-                    check(ui, "Show light markers", v.show_gizmos, "", lights, actions);
-                    let room = view(ViewChange::Room(!v.show_room));
-                    check(ui, "Outline of the room", v.show_room, "", room, actions);
-                });
-                menu::submenu(ui, format!("Handles: {}", handles_word(v)), |ui| {
-                    let show = view(ViewChange::Handles(HandleChange::Show(!v.show_handles)));
-                    check(ui, "Show handles", v.show_handles, "", show, actions);
-                    ui.separator();
-                    for mode in HandleMode::ALL {
-                        let on = v.show_handles && v.handles == mode;
-                        if ui.radio(on, mode.name()).clicked() {
-                            actions.push(view(ViewChange::Handles(HandleChange::Mode(mode))));
-                            ui.close();
-                        }
-                    }
-                    ui.separator();
-                    let next = view(ViewChange::Handles(HandleChange::Mode(v.handles.next())));
-                    item(ui, "Next", next, actions);
-                });
-                menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
-                menu::submenu(ui, "Channel", |ui| {
-                    channels::entries(ui, session, actions);
-                    ui.separator();
-                    let clipping = ViewChange::Clipping(!v.show_clipping);
-                    check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
-                });
-                ui.separator();
-                menu::submenu(ui, "Panels", |ui| {
-                    ui.set_width(0.8 * MENU_WIDTH);
-                    let (left, right) = (ViewChange::Left(!v.left_open), ViewChange::Right(!v.right_open));
-                    let left_name =
-                        if session.lesson.is_some() { "Lesson and scene list" } else { "Scene list" };
-                    check(ui, left_name, v.left_open, "", view(left), actions);
-                    check(ui, "Properties", v.right_open, "", view(right), actions);
-                    let examples = ViewChange::Examples(!v.examples_open);
-                    check(ui, "Examples", v.examples_open, "", view(examples), actions);
-                    let beside = |p: &&PanelInfo| p.guest && matches!(p.place, Place::Left | Place::Right);
-                    for panel in session.panels.iter().filter(beside) {
-                        let side = if panel.place == Place::Left { v.left_open } else { v.right_open };
-                        let shown = side && !v.hides(panel.id);
-                        let change = ViewChange::Panel(panel.id.to_owned(), !shown);
-                        let name = title(ui, panel);
-                        check(ui, &name, shown, "", view(change), actions);
-                    }
-                    for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
-                        let shown = v.bottom_open && v.bottom_tab == panel.id;
-                        let change = if shown {
-                            ViewChange::Bottom(false)
-                        } else {
-                            ViewChange::BottomTab(panel.id.to_owned())
-                        };
-                        let key = match panel.id {
-                            MESSAGES_TAB => "F8",
-                            PLOTS_TAB => "F7",
-                            SHADER_TAB => "F9",
-                            _ => "",
-                        };
-                        let name = title(ui, panel);
-                        check(ui, &name, shown, key, view(change), actions);
-                    }
-                });
-                menu::submenu(ui, format!("Size of everything: {} %", v.scale), |ui| {
-                    item(ui, "Larger", view(ViewChange::Larger), actions);
-                    item(ui, "Smaller", view(ViewChange::Smaller), actions);
-                    item(ui, "100 %", view(ViewChange::Scale(100)), actions);
-                });
-                menu::submenu(ui, "Theme", |ui| {
-                    for (choice, name) in [(ThemeChoice::Dark, "Dark"), (ThemeChoice::Light, "Light")] {
-                        if ui.radio(v.theme == choice, name).clicked() {
-                            actions.push(view(ViewChange::Theme(choice)));
-                        }
-                    }
-                });
-                let presenting = view(ViewChange::Presenting(!v.presenting));
-                check(ui, "Presentation", v.presenting, "F5", presenting, actions);
-                check(
-                    ui,
-                    "Full screen",
-                    v.fullscreen,
-                    "F11",
-                    view(ViewChange::Fullscreen(!v.fullscreen)),
-                    actions,
-                );
-            });
-        });
-        let help = ui.menu_button("Help", |ui| {
-            ui.set_width(MENU_WIDTH);
-            item(ui, "Manual", Action::Manual, actions);
-            item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!session.view.keys_open)), actions);
-            menu::submenu(ui, "Lessons", |ui| list::entries(ui, session, actions));
-            item(ui, "About", Action::View(ViewChange::About(true)), actions);
-        });
-        let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
-        for ((_, menu), name) in bar.iter().zip(["File", "Edit", "View", "Help"]) {
             point::menu(ui, name, menu.response.rect);
-        }
-        menu::bar(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
+            (key, menu.response)
+        });
+        menu::bar(ui.ctx(), &bar);
     });
-}
-
-/// What the handles do, in a word.
-fn handles_word(view: &View) -> String {
-    if view.show_handles { view.handles.name().to_lowercase() } else { "hidden".to_owned() }
-}
-
-/// The title of a panel in menus.
-fn title(ui: &Ui, panel: &PanelInfo) -> String {
-    glyphs::legible(ui, panel.title, &format!("the panel “{}”", panel.id)).into_owned()
 }
 
 /// One button for each shading model, as one control.
@@ -441,7 +204,11 @@ fn shading(
         ui.set_max_width(300.0);
         ui.label(theme::strong(ui, format!("{} shading", d.name)));
         ui.label(d.summary);
-        ui.label(theme::small(ui, format!("{} · computed {} · key {}", d.author, d.stage.phrase(), d.key)));
+        let mut facts = format!("{} · computed {}", d.author, d.stage.phrase());
+        if let Some(key) = keys::of(ui.ctx(), &format!("shading.{}", d.id)) {
+            facts.push_str(&format!(" · key {key}"));
+        }
+        ui.label(theme::small(ui, facts));
     };
     let picked = if apart {
         segmented(ui, "Shading", names, chosen, tip)

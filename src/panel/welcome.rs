@@ -9,6 +9,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    command,
     focus::{self, Region},
     icon::{self, Icon},
     keys,
@@ -75,7 +76,7 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
             show(&mut ui.new_child(UiBuilder::new().id_salt(from as i32).max_rect(place)));
         };
         column(ui, whole.left(), whole.left() + lessons, &mut |ui| {
-            lesson_door(ui, session, &mut actions);
+            lesson_door(ui, session, registry, &mut actions);
             if !wide && small_button(ui, "New model…").on_hover_text(MODEL_TIP).clicked() {
                 actions.push(Action::Model(ModelCommand::New));
             }
@@ -146,8 +147,8 @@ fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, a
     });
 }
 
-/// The lesson to continue, and below it the button of the lesson list.
-fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+/// The lesson to go on with, and below it all of them.
+fn lesson_door(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     heading(ui, "Lessons", |_| ());
     let Some(source) = session.progress.next() else { return };
@@ -195,7 +196,10 @@ fn lesson_door(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         });
     }
     let all = small_button(ui, "All lessons ▾");
-    Popup::menu(&all).show(|ui| list::entries(ui, session, actions));
+    Popup::menu(&all).show(|ui| {
+        list::entries(ui, session, actions);
+        command::show::entries(ui, command::LESSONS, session, registry, actions);
+    });
 }
 
 fn small_button(ui: &mut Ui, text: &str) -> Response {

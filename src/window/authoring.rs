@@ -10,7 +10,10 @@ pub use crate::library::assets::write_new;
 use crate::{
     custom,
     library::assets::{self, Exported, Folders},
-    panel::state::{Effect, ModelDraft, Session, Severity},
+    panel::{
+        keys,
+        state::{Effect, ModelDraft, Session, Severity},
+    },
     registry::Registry,
     text::sentence,
 };
@@ -74,8 +77,9 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
             session.say(
                 Severity::Info,
                 format!(
-                    "{} was written. Open it in an editor (Ctrl+E), change it and save it: the picture follows.",
-                    path.shown()
+                    "{} was written. {}, change it and save it: the picture follows.",
+                    path.shown(),
+                    keys::hint_beside(session, registry, "Open it in an editor", "edit_model")
                 ),
             );
         }

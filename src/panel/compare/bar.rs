@@ -46,9 +46,9 @@ pub(super) fn bar(
         let tip = |ui: &mut Ui, i: usize| {
             ui.set_max_width(280.0);
             ui.label(Layout::ALL[i].summary());
-            let hint = hint(Layout::ALL[i]);
-            if !hint.is_empty() {
-                ui.label(theme::small(ui, hint));
+            if let Some(hint) = hint(Layout::ALL[i]) {
+                let text = hint(ui.ctx());
+                ui.label(theme::small(ui, text));
             }
         };
         let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();

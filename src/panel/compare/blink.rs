@@ -3,9 +3,10 @@
 use bevy_egui::egui::Rect;
 
 use super::place::{Arranging, over_each_other};
+use crate::panel::keys;
 
 pub(super) static ARRANGING: Arranging = Arranging {
-    hint: "Hold Space to see the other view.",
+    hint: Some(|ctx| format!("Hold {} to see the other view.", keys::word(ctx, "blink"))),
     arrange: |all, frame| {
         let rect = frame.below_header(frame.picture);
         let parts = if frame.session.view.blinking { [Rect::NOTHING, rect] } else { [rect, Rect::NOTHING] };

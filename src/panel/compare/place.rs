@@ -1,6 +1,6 @@
 //! The declaration of a layout in the window, and the places that it gives to views.
 
-use bevy_egui::egui::{Rect, Ui, vec2};
+use bevy_egui::egui::{Context, Rect, Ui, vec2};
 
 use crate::{
     panel::state::{Action, Cell, Session},
@@ -52,8 +52,8 @@ impl Arrangement {
 
 /// A layout in the window.
 pub(super) struct Arranging {
-    /// A sentence below its tooltip; often empty.
-    pub(super) hint: &'static str,
+    /// A sentence below its tooltip.
+    pub(super) hint: Option<fn(&Context) -> String>,
     /// Puts the views in their places.
     pub(super) arrange: fn(&mut Arrangement, &Frame),
     /// The number of rows with its choices: in a wide bar, and in a narrow one.
@@ -69,7 +69,7 @@ pub(super) struct Arranging {
 impl Arranging {
     /// A layout without choices.
     pub(super) const PLAIN: Self = Self {
-        hint: "",
+        hint: None,
         arrange: |_, _| (),
         rows: [0, 0],
         choices: |_, _, _, _, _| (),

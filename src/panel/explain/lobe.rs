@@ -33,11 +33,12 @@ use crate::{
     explain::{Lit, Seen, Spot},
     optics::TermSelection,
     panel::{
-        channels, segmented,
-        state::{Action, LobeChoice, LobeScale, Pin, Session, ViewChange},
+        channels, command, keys, segmented,
+        state::{Action, LobeChoice, LobeScale, Pin, Session},
         theme,
     },
     progress::Progress,
+    registry::Registry,
 };
 
 /// Distance below which lobes belong to the same point, in metres.
@@ -363,30 +364,8 @@ fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
     Some(channels::plate(ui, side, Align2::RIGHT_TOP, rect.top() + 8.0, &legend))
 }
 
-/// Adds the display options to a menu.
-pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let now = session.view.lobe;
-    let mut ask = |lobe: LobeChoice| actions.push(Action::View(ViewChange::Lobe(lobe)));
-    for scale in LobeScale::ALL {
-        if ui.radio(now.scale == scale, scale.name()).on_hover_text(scale.about()).clicked() {
-            ask(LobeChoice { scale, ..now });
-        }
-    }
-    ui.separator();
-    ui.add_enabled_ui(now.scale != LobeScale::Off, |ui| {
-        for (all, name, help) in [
-            (false, "For one light", "The lobe for the light whose block is unfolded."),
-            (true, "For all lights", "A lobe for each light that reaches the point, in a colour of its own."),
-        ] {
-            if ui.radio(now.all == all, name).on_hover_text(help).clicked() {
-                ask(LobeChoice { all, ..now });
-            }
-        }
-    });
-}
-
-/// The button of the display options.
-pub(super) fn button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+/// The button of the choices.
+pub(super) fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let now = session.view.lobe;
     let word = match now.scale {
         LobeScale::Off => "off",
@@ -397,9 +376,10 @@ pub(super) fn button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) 
     let width = segmented::segment_width(ui, "Lobe: logarithmic");
     let button = bevy_egui::egui::Button::new(&shown).min_size(bevy_egui::egui::vec2(width, 0.0));
     let (response, _) = bevy_egui::egui::containers::menu::MenuButton::from_button(button)
-        .ui(ui, |ui| entries(ui, session, actions));
-    response.on_hover_text(
-        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. Shift+E \
-         goes on to the next.",
-    );
+        .ui(ui, |ui| command::show::entries(ui, command::LOBE, session, registry, actions));
+    let key = keys::word(ui.ctx(), "next_lobe");
+    response.on_hover_text(format!(
+        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. {key} goes \
+         on to the next.",
+    ));
 }

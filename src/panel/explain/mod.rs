@@ -11,7 +11,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, PanelContext, Place, icon, knob,
+    Panel, PanelContext, Place, icon, keys, knob,
     segmented::segmented,
     state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ThemeChoice, ViewChange},
     theme::{self, Palette},
@@ -42,7 +42,6 @@ mod surface;
 mod vectors;
 mod what_if;
 
-pub(super) use lobe::entries as lobe_entries;
 pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown, lobes_shown_in};
 use probe::Level;
 pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
@@ -80,17 +79,18 @@ impl Panel for Explain {
             ui.add_space(8.0);
             ui.add(
                 egui::Label::new(
-                    RichText::new(
-                        "Point at the picture: this panel says why the pixel has its colour, number by number. E pins \
+                    RichText::new(format!(
+                        "Point at the picture: this panel says why the pixel has its colour, number by number. {} pins \
                          the pixel under the pointer, or the middle of the picture.",
-                    )
+                        keys::word(ui.ctx(), "explain"),
+                    ))
                     .color(Palette::here(ui).weak),
                 )
                 .wrap(),
             );
             return;
         };
-        header(ui, session, &explained, actions);
+        header(ui, session, registry, &explained, actions);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
         // A hidden point has no pixel.
         let subject = match explained.sight {
@@ -123,8 +123,14 @@ impl Panel for Explain {
     }
 }
 
-/// The pixel, its display code, and the buttons.
-fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut Vec<Action>) {
+/// The pixel, its code, and the buttons.
+fn header(
+    ui: &mut Ui,
+    session: &Session,
+    registry: &Registry,
+    explained: &Explained,
+    actions: &mut Vec<Action>,
+) {
     let Explanation { pixel, size, .. } = explained.explanation;
     let (pinned, fov) = (session.view.pinned.is_some(), session.document.view_angle());
     ui.horizontal(|ui| {
@@ -154,17 +160,20 @@ fn header(ui: &mut Ui, session: &Session, explained: &Explained, actions: &mut V
             if ui.button("Copy").on_hover_text("Copy the explanation as text, with all digits").clicked() {
                 actions.push(Action::Copy(explained.explanation.to_text()));
             }
+            let key = keys::word(ui.ctx(), "explain");
             let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
-                "Let go of the point (E or Esc): the pointer is followed again"
+                format!("Let go of the point ({key} or Esc): the pointer is followed again")
             } else {
-                "Keep this point explained wherever the pointer is, and where the camera and the object go. At the \
-                 pointer: E, or Alt and a click"
+                format!(
+                    "Keep this point explained wherever the pointer is, and where the camera and the object go. At the \
+                     pointer: {key}, or Alt and a click"
+                )
             });
             if pin.clicked() {
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);
                 actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
-            lobe::button(ui, session, actions);
+            lobe::button(ui, session, registry, actions);
             levels(ui);
             if !session.document.variants.is_empty() {
                 beside_button(ui, explained.view);

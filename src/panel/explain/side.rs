@@ -4,7 +4,10 @@ use bevy_egui::egui::Context;
 use glam::Vec3;
 
 use super::probe;
-use crate::panel::state::{Action, Session, Steer};
+use crate::panel::{
+    keys,
+    state::{Action, Session, Severity, Steer},
+};
 
 /// Sine of the angle below which two vectors span no usable plane.
 const APART: f32 = 0.02;
@@ -31,8 +34,15 @@ pub fn has_sides(ctx: &Context, session: &Session) -> bool {
 
 /// Completes the action that views from the side with the pinned point.
 pub fn placed(ctx: &Context, session: &Session, action: Action) -> Action {
-    match side(ctx, session).filter(|_| action == Action::LookFromSide) {
-        Some(steer) => Action::Steer(steer),
-        None => action,
+    match (action, side(ctx, session)) {
+        (Action::LookFromSide, Some(steer)) => Action::Steer(steer),
+        (Action::LookFromSide, None) => {
+            let key = keys::word(ctx, "explain");
+            let why = format!(
+                "There is no pinned point to look at from the side: {key} explains the point at the pointer, and pins it."
+            );
+            Action::Say(Severity::Info, why)
+        }
+        (action, _) => action,
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     document::{Edit, LightField, ObjectField},
     explain::{Influence, Knob, rounded},
     panel::{
-        knob, maths,
+        keys, knob, maths,
         state::{Action, Session},
         theme,
     },
@@ -90,7 +90,8 @@ fn change(ui: &mut Ui, explained: &Explained, actions: &mut Vec<Action>) {
         code(ui, before);
         ui.label("→ after");
         code(ui, after);
-        if ui.small_button("Undo").on_hover_text("Take back the last change (Ctrl+Z)").clicked() {
+        let tip = keys::hint(ui.ctx(), "Take back the last change", "undo");
+        if ui.small_button("Undo").on_hover_text(tip).clicked() {
             actions.push(Action::Undo);
         }
         if ui.small_button("Done").on_hover_text("Keep the change, and compare from here").clicked() {

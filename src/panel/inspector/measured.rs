@@ -54,6 +54,7 @@ pub(super) fn measured(
         hint: "Search materials",
         none: "No material has that in its name or source.",
         foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
+        ..chooser::Words::default()
     };
     let shown = present.map_or("none", |i| offered[i].name());
     let chosen = knob::list_knob(ui, "measured material", &caption, shown, |ui, id| {
@@ -69,12 +70,12 @@ pub(super) fn measured(
                 Offer::Look(_) => String::new(),
                 Offer::Measured(m) => m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
             },
-            number: None,
             swatch: match offer {
                 Offer::Look(_) => None,
                 Offer::Measured(m) => Some(theme::swatch(m.f0)),
             },
             current: present == Some(*i),
+            ..chooser::Entry::default()
         };
         let about = |ui: &mut Ui, (_, offer): &(usize, Offer)| match offer {
             Offer::Look(look) => {

@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
 use crate::{
     optics::TermSelection,
     panel::{
-        chooser, icon,
+        chooser, icon, keys,
         lesson::point,
         maths,
         segmented::{segment_width, segmented},
@@ -128,7 +128,8 @@ pub(super) fn terms(
                 TermSelection::All => "The whole equation.".to_owned(),
                 other => format!("The {} term alone, the others as if they were 0.", other.id()),
             });
-            ui.label(theme::small(ui, "key T goes through them"));
+            let key = keys::word(ui.ctx(), "next_term");
+            ui.label(theme::small(ui, format!("key {key} goes through them")));
         };
         if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
             actions.push(Action::View(ViewChange::Terms(options[i])));

@@ -6,6 +6,7 @@ use super::part::{direction_knob, position_limits, section};
 use crate::{
     document::Edit,
     panel::{
+        keys,
         knob::{self, Caption},
         state::{Action, Session},
         theme,
@@ -58,7 +59,8 @@ pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
             actions.push(set(Observer { field_of_view: v as f32, ..o }));
         }
         ui.horizontal_wrapped(|ui| {
-            if ui.button("View as observer").on_hover_text("Move the camera to the observer (H)").clicked() {
+            let tip = keys::hint(ui.ctx(), "Move the camera to the observer", "home");
+            if ui.button("View as observer").on_hover_text(tip).clicked() {
                 actions.push(Action::HomeView);
             }
             let problem = session.observer_problem();

@@ -7,7 +7,9 @@ use crate::{
     document::{Edit, LightField, ObjectField, Selection},
     panel::{
         icon::{self, Icon},
+        keys,
         knob::{self, Caption},
+        lesson::point,
         state::{Action, Session},
         theme::{self, Palette},
     },
@@ -29,7 +31,8 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mu
     ui.scope(|ui| {
         ui.spacing_mut().indent = 16.0;
         ui.visuals_mut().indent_has_left_vline = false;
-        CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, |ui| {
+        let heading = CollapsingHeader::new(heading).id_salt(title).default_open(open);
+        heading.open(point::seeks(ui).then_some(true)).show_unindented(ui, |ui| {
             ui.add_space(2.0);
             add(ui);
         });
@@ -60,7 +63,8 @@ pub(super) fn header(
         // At the right edge, and for the Tab key in this order.
         let buttons = 3.0 * icon::SIZE + 2.0 * ui.spacing().item_spacing.x;
         ui.add_space(ui.available_width() - buttons);
-        if icon::button(ui, Icon::Target, &format!("Look at {name}  (C)")).clicked() {
+        let look = keys::hint(ui.ctx(), &format!("Look at {name} "), "focus");
+        if icon::button(ui, Icon::Target, &look).clicked() {
             actions.push(Action::FocusSelection);
         }
         if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {

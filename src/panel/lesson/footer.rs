@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Button, Id, Label, RichText, Stroke, Ui, UiBuilder, WidgetInfo, WidgetType, vec2};
 
 use crate::panel::{
-    focus,
+    focus, keys,
     state::{Action, LessonCommand, OpenLesson},
     theme::{self, Palette},
 };
@@ -22,9 +22,9 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
     }
     let last = open.is_last();
     let (next, tip) = match (open.asking, last) {
-        (true, _) => ("Skip the task", "Go on without it (Alt+→)"),
-        (false, true) => ("Finish", "Leave the lesson: your own scene comes back (Alt+→)"),
-        (false, false) => ("Next", "The next step (Alt+→)"),
+        (true, _) => ("Skip the task", "Go on without it"),
+        (false, true) => ("Finish", "Leave the lesson: your own scene comes back"),
+        (false, false) => ("Next", "The next step"),
     };
     // The same widgets in all steps, so that Enter repeats.
     let buttons = |ui: &mut Ui| {
@@ -32,7 +32,8 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
         let width = 0.5 * (ui.available_width() - gap);
         let size = vec2(width, HEIGHT * scale);
         let before = ui.add_enabled(open.step > 0, Button::new("Previous").min_size(size));
-        if before.on_hover_text("The step before, as it began (Alt+←)").clicked() {
+        let back = keys::hint(ui.ctx(), "The step before, as it began", "previous_step");
+        if before.on_hover_text(back).clicked() {
             actions.push(Action::Lesson(LessonCommand::Previous));
         }
         let mut button = Button::new(theme::strong(ui, next)).min_size(size);
@@ -42,7 +43,7 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
         let response = ui.push_id("next", |ui| ui.add(button)).inner;
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, next));
         focus::first(ui.ctx(), response.id);
-        if response.on_hover_text(tip).clicked() {
+        if response.on_hover_text(keys::hint(ui.ctx(), tip, "next_step")).clicked() {
             actions.push(Action::Lesson(LessonCommand::Next));
         }
     };

@@ -19,7 +19,7 @@ const WIDTH: f32 = 440.0;
 /// Width of the icon in front of a title, in points.
 const SIGN: f32 = 26.0;
 
-/// Adds the entries of the menu.
+/// The lessons that come with the program, above the other entries of the menu.
 pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let screen = ui.ctx().content_rect();
     ui.set_width(WIDTH.min(screen.width() - 64.0));
@@ -33,16 +33,6 @@ pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Ve
         }
     });
     ui.separator();
-    if ui.button("Open a lesson…").on_hover_text("A lesson of your own: a Markdown file").clicked() {
-        actions.push(Action::Lesson(LessonCommand::OpenDialog));
-        ui.close();
-    }
-    ui.add_enabled_ui(session.lesson.is_some(), |ui| {
-        if ui.button("Leave the lesson").clicked() {
-            actions.push(Action::Lesson(LessonCommand::Leave));
-            ui.close();
-        }
-    });
 }
 
 /// The duration of a lesson, and the learner's progress.

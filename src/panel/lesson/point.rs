@@ -3,7 +3,7 @@
 //! The code that shows a control reports it by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson
 //! that costs a look-up in egui's memory.
 
-use bevy_egui::egui::{Align, Context, Id, LayerId, Rect, Stroke, StrokeKind, Ui};
+use bevy_egui::egui::{Align, Context, Id, LayerId, Rect, Stroke, StrokeKind, Ui, WidgetRect};
 
 use crate::{
     document::Selection,
@@ -14,7 +14,9 @@ use crate::{
 /// Duration of the pulse of a new ring, in seconds, and the number of pulses.
 const MOMENT: f64 = 1.2;
 const SWELLS: f64 = 2.0;
-/// Gap between a control and its ring, in points.
+/// Within so many passes what is folded unfolds, and a knob that is sought is found.
+const PATIENCE: u64 = 60;
+/// Between a control and its ring, points.
 const GAP: f32 = 3.0;
 
 /// Controls that the step names, and their rectangles in this frame.
@@ -36,6 +38,10 @@ fn memory() -> Id {
 
 /// Starts a frame.
 pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
+    let pass = ctx.cumulative_pass_nr();
+    if ctx.data(|d| d.get_temp::<(String, u64)>(sought())).is_some_and(|(_, until)| pass > until) {
+        ctx.data_mut(|d| d.remove::<(String, u64)>(sought()));
+    }
     let named = session.lesson.as_ref().and_then(|open| Some((open.entries, open.now()?)));
     let Some((entry, step)) = named.filter(|(_, step)| !step.points.is_empty()) else {
         ctx.data_mut(|d| d.remove::<Pointed>(memory()));
@@ -82,13 +88,57 @@ fn plain(name: &str) -> String {
     }
 }
 
-/// Reports the knob of a parameter.
+/// The knob that was asked for by name, and the pass after which it is not sought any more.
+fn sought() -> Id {
+    Id::new("knob that is sought")
+}
+
+/// Brings the knob of this name into sight, and gives it the focus.
+pub(in crate::panel) fn seek(ctx: &Context, name: &str) {
+    let until = ctx.cumulative_pass_nr() + PATIENCE;
+    ctx.data_mut(|d| d.insert_temp(sought(), (name.to_owned(), until)));
+    ctx.request_repaint();
+}
+
+/// True while a knob is sought: what is folded may hide it.
+pub(in crate::panel) fn seeks(ui: &Ui) -> bool {
+    ui.data(|d| d.get_temp::<(String, u64)>(sought())).is_some()
+}
+
+fn is_sought(ui: &Ui, name: &str) -> bool {
+    ui.data(|d| d.get_temp::<(String, u64)>(sought())).is_some_and(|(wanted, _)| wanted == name)
+}
+
+/// Gives the first widget of a knob the focus.
+fn take_focus(ui: &Ui, rect: Rect) {
+    let layer = ui.layer_id();
+    let within = |w: &&WidgetRect| {
+        w.enabled && w.sense.is_focusable() && w.rect.is_positive() && rect.contains(w.rect.center())
+    };
+    let first = ui.ctx().viewport(|viewport| {
+        let all = viewport.this_pass.widgets.get_layer(layer).filter(within);
+        all.min_by(|a, b| a.rect.left().total_cmp(&b.rect.left())).map(|w| w.id)
+    });
+    if let Some(id) = first {
+        ui.memory_mut(|m| m.request_focus(id));
+    }
+    ui.data_mut(|d| d.remove::<(String, u64)>(sought()));
+}
+
+/// The knob of a parameter is shown here.
 pub(in crate::panel) fn knob(ui: &Ui, name: &str, rect: Rect) {
+    if is_sought(ui, name) && ui.is_visible() {
+        ui.scroll_to_rect(rect, Some(Align::Center));
+        take_focus(ui, rect);
+    }
     shown(ui, rect, |control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name)));
 }
 
-/// True if the step points at the knob of a parameter, which must then be visible.
+/// True if the step points at the knob of a parameter, or if it is sought, so that it must be in sight.
 pub(in crate::panel) fn at_knob(ui: &Ui, name: &str) -> bool {
+    if is_sought(ui, name) {
+        return true;
+    }
     let is = |control: &Control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name));
     ui.data(|d| d.get_temp::<Pointed>(memory())).is_some_and(|pointed| pointed.controls.iter().any(is))
 }

@@ -137,6 +137,7 @@ fn measured(ui: &mut Ui, id: egui::Id, height: f32) -> Option<String> {
         hint: "Search materials",
         none: "No material has that in its name.",
         foot: "Paints were measured at light angles of about 30° to 75° only, in single directions. Materials of the MERL database are shown by the fits of M. Bagher et al. (2012).",
+        ..chooser::Words::default()
     };
     let paints = PAINTS.map(|(id, name)| (id.to_owned(), name.to_owned(), true));
     let fits = Sgd::all().into_iter().map(|fit| (fit.name.to_owned(), fit.name.replace('-', " "), false));

@@ -343,11 +343,8 @@ impl Session {
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
-            // With a pinned point, the panels have replaced the action by a camera movement.
-            Action::LookFromSide => self.say(
-                Severity::Info,
-                "There is no pinned point to look at from the side: E explains the point at the pointer, and pins it.",
-            ),
+            // The panels have made a movement of it, or a message.
+            Action::LookFromSide => {}
             Action::ObserverFromView => return vec![Effect::ObserverFromView],
             Action::Steer(steer) => return vec![Effect::Steer(steer)],
             Action::Copy(text) => return vec![Effect::CopyText(text)],

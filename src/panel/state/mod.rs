@@ -24,6 +24,7 @@ pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use open_lesson::OpenLesson;
 pub(super) use open_lesson::problem_of;
+pub use own_keys::{GivenKeys, OwnKeys, Pairs, Replaced};
 pub use pictures::PictureEnd;
 pub use place::{PanelInfo, Place};
 pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
@@ -32,6 +33,7 @@ pub use progress::{Past, Progress};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;
 pub use severity::Severity;
+pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
@@ -66,6 +68,7 @@ mod matching;
 mod messages;
 mod nudge;
 mod open_lesson;
+mod own_keys;
 mod parts;
 mod pictures;
 mod place;
@@ -76,6 +79,7 @@ mod question;
 mod recovery;
 mod selection;
 mod severity;
+mod shortcut;
 mod shown;
 mod slots;
 mod stash;
@@ -112,7 +116,9 @@ pub struct Session {
     pub questions: Questions,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
-    /// The models on the keys 1–9.
+    /// The keys that the user gave to commands.
+    pub keys: OwnKeys,
+    /// The models that keys 1–9 choose.
     pub model_slots: ModelSlots,
     /// Facts that the app provides without marking the session as changed.
     pub facts: Facts,
@@ -161,6 +167,7 @@ impl Session {
             messages: Messages::default(),
             questions: Questions::default(),
             recent_files: Vec::new(),
+            keys: OwnKeys::default(),
             model_slots: ModelSlots::default(),
             facts: Facts::at(&scene.observer),
             shaders: ShaderStatus::default(),

@@ -94,7 +94,17 @@ impl Labels {
     /// All options, in menu order.
     pub const ALL: [Self; 3] = [Self::Off, Self::On, Self::Presentation];
 
-    /// Display name.
+    /// The id of its command.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::On => "on",
+            Self::Presentation => "presentation",
+        }
+    }
+
+    /// The name for people.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -178,6 +188,8 @@ pub struct View {
     pub about_open: bool,
     /// True if the chooser of reflection models is open.
     pub chooser_open: bool,
+    /// True if the finder of commands is open.
+    pub finder_open: bool,
 }
 
 impl Default for View {
@@ -218,6 +230,7 @@ impl Default for View {
             keys_open: false,
             about_open: false,
             chooser_open: false,
+            finder_open: false,
         }
     }
 }
@@ -288,6 +301,8 @@ pub enum ViewChange {
     About(bool),
     /// See [`View::chooser_open`].
     Chooser(bool),
+    /// See [`View::finder_open`].
+    Finder(bool),
 }
 
 /// Adds an id to a list, or removes it.
@@ -379,6 +394,7 @@ impl View {
             ViewChange::Keys(open) => self.keys_open = open,
             ViewChange::About(open) => self.about_open = open,
             ViewChange::Chooser(open) => self.chooser_open = open,
+            ViewChange::Finder(open) => self.finder_open = open,
         }
     }
 }

@@ -13,6 +13,7 @@ use lights_camera_models::{
     light::{MAX_LIGHTS, ies, panorama},
     matching::What,
     optics::{Frame, colour::Encoding},
+    panel::{Panels, command::declared, state::Session},
     parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Parameter, Value, Values},
     progress::Progress,
     reference::{self, Settings, Until},
@@ -122,6 +123,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             ],
         ),
         ("docs/window.md", vec![("channels", channels())]),
+        ("docs/keys.md", vec![("commands", commands(&registry))]),
         (
             "docs/comparing.md",
             vec![
@@ -193,6 +195,19 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
 fn kinds_of_plots() -> String {
     let row = |kind: Kind| vec![code(kind.id()), kind.declaration().row.to_owned()];
     table(&["`--kind`", "curve"], Kind::ALL.into_iter().map(row))
+}
+
+/// The commands, with their usual keys and their places in menus.
+fn commands(registry: &Registry) -> String {
+    let mut session = Session::default();
+    session.panels = Panels::builtin().infos().collect();
+    let root = declared(&session, registry, true, false);
+    let named = root.commands().into_iter().filter(|(_, command)| !command.id.starts_with("recent_model."));
+    let rows = named.map(|(path, command)| {
+        let keys: Vec<_> = command.keys.iter().map(ToString::to_string).collect();
+        vec![code(&command.id), command.title(&path), keys.join(", "), path.join(" › ")]
+    });
+    table(&["id", "command", "keys", "menu"], rows)
 }
 
 /// The noise of a scene by the number of samples.

@@ -14,7 +14,11 @@ use lights_camera_models::{
     custom,
     lesson::{Condition, Lesson},
     light::{ies, panorama},
-    panel::{progress, settings},
+    panel::{
+        command::{Menu, declared, own},
+        progress, settings,
+        state::Session,
+    },
     recovery::Store,
     registry::Registry,
     scene::load::{self, Defaults},
@@ -82,6 +86,13 @@ fn in_folder(name: &str, bytes: &[u8], read: impl Fn(&Path) -> Option<String>) -
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     fs::write(folder.path().join(name), bytes).map_err(|e| e.to_string())?;
     read(folder.path()).map_or(Ok(()), Err)
+}
+
+/// The keys of the user's own in a folder with settings.
+fn own_keys(folder: &Path) -> Option<String> {
+    static COMMANDS: LazyLock<Menu> = LazyLock::new(|| declared(&Session::default(), &REGISTRY, true, true));
+    let (settings, complaint) = settings::load(folder);
+    complaint.or_else(|| own::check(&settings.keys, &COMMANDS).1.into_iter().next())
 }
 
 /// A copy of unsaved work left by another window: the file about it.
@@ -330,6 +341,13 @@ fn readers() -> Vec<Reader> {
             read: |bytes| in_folder("settings.json", bytes, |folder| settings::load(folder).1),
         },
         Reader {
+            name: "own keys",
+            around: ["{\"keys\": {".into(), "}}".into()],
+            pairs: &[("\"save\":[", "]"), ("\"save\":{\"a\":", "}")],
+            phrases: &["\"save\":\"F4\",", "\"example.x\":\"Ctrl+A\",", "\"home\":[\"+++\",\"\"],"],
+            read: |bytes| in_folder("settings.json", bytes, own_keys),
+        },
+        Reader {
             name: "progress",
             around: ["{\"lessons\": ".into(), "}".into()],
             pairs: &[("[", "]"), ("{\"a\":", "}")],
@@ -422,6 +440,7 @@ fn what_is_put_around_hostile_text_is_read() {
             "steps" | "question" => "a\n",
             "equation" => "x = (1 + y)/2",
             "value" => "1",
+            "own keys" => "\"save\": \"F4\"",
             "view block" => "active: A",
             "point block" => "knob: exposure",
             "task" => "probe.pinned",

@@ -5,6 +5,7 @@ mod dialogs;
 mod editors;
 mod equations;
 pub(crate) mod examples;
+mod finder;
 mod focus;
 mod handles;
 mod knobs;

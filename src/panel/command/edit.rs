@@ -1,0 +1,88 @@
+//! The menu of the parts of the scene and of custom models.
+
+use super::{Group, List, Menu, command};
+use crate::{
+    document::Selection,
+    panel::{
+        history::HISTORY_TAB,
+        state::{Action, ModelCommand, ViewChange},
+    },
+};
+
+pub(super) fn edit(to: &mut List) {
+    to.menu(Menu::new("Edit").group(Group::Edit).width(1.3 * super::show::WIDTH), |to| {
+        history(to);
+        to.line();
+        additions(to);
+        to.line();
+        parts(to);
+        to.line();
+        models(to);
+    });
+}
+
+fn history(to: &mut List) {
+    let document = &to.session.document;
+    let (done, steps) = (document.done(), document.steps().len());
+    let step = |verb: &str, at: Option<usize>| match at.and_then(|at| document.steps().nth(at)) {
+        Some(name) => format!("{verb} “{name}”"),
+        None => verb.to_owned(),
+    };
+    let undo = done.checked_sub(1);
+    let redo = Some(done).filter(|done| *done < steps);
+    let back = command("undo", step("Undo", undo), Action::Undo).says("Undo").keys("Ctrl+Z");
+    to.add(back.unless(undo.is_none(), "There is nothing to undo"));
+    let again = command("redo", step("Redo", redo), Action::Redo).says("Redo").keys("Ctrl+Shift+Z Ctrl+Y");
+    to.add(again.unless(redo.is_none(), "There is nothing to redo"));
+    let list = Action::View(ViewChange::BottomTab(HISTORY_TAB.to_owned()));
+    to.add(command("history", "History…", list).at_desk());
+}
+
+fn additions(to: &mut List) {
+    let (lights, shapes) = (to.registry.lights(), to.registry.shapes());
+    let add = |id: String, name, glyph, tip, action| super::Command {
+        glyph,
+        foreign: true,
+        ..command(id, name, action).tip(tip)
+    };
+    to.menu(Menu::new("Add a light"), |to| {
+        for d in lights.iter().map(|light| light.declaration) {
+            let action = Action::AddLight(d.id.to_owned());
+            to.add(add(format!("add_light.{}", d.id), d.name, d.glyph, d.summary, action));
+        }
+    });
+    to.menu(Menu::new("Add an object"), |to| {
+        for d in shapes.iter().map(|shape| shape.declaration) {
+            let action = Action::AddObject(d.id.to_owned());
+            to.add(add(format!("add_object.{}", d.id), d.name, d.glyph, d.summary, action));
+        }
+    });
+}
+
+fn parts(to: &mut List) {
+    let part = to.session.selection;
+    let none = !matches!(part, Selection::Light(_) | Selection::Object(_));
+    let why = "Neither a light nor an object is selected";
+    for command in [
+        command("rename", "Rename", Action::BeginRename(part)).keys("F2").rank(4).at_desk(),
+        command("duplicate", "Duplicate", Action::Duplicate(part)).keys("Ctrl+D").rank(1),
+        command("toggle", "Hide or switch off", Action::Toggle(part))
+            .says("Hide or show the object, switch the light off or on")
+            .keys("V")
+            .rank(3),
+        command("delete", "Delete", Action::Remove(part)).keys("Delete").rank(2),
+    ] {
+        to.add(command.unless(none, why));
+    }
+}
+
+fn models(to: &mut List) {
+    let model = |id: &'static str, name: &'static str, what| {
+        command(id, name, Action::Model(what)).group(Group::CustomModels)
+    };
+    to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N"));
+    let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
+    to.add(duplicate.keys("Ctrl+Shift+D"));
+    to.add(model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E"));
+    to.add(model("export_shaders", "Export shaders for editing…", ModelCommand::ExportDialog));
+}

@@ -1,0 +1,87 @@
+//! The menu of documents and pictures.
+
+use super::{Group, List, Mark, Menu, command};
+use crate::{
+    export::FORMS,
+    files::Shown as _,
+    panel::{
+        export,
+        state::{Action, ExportCommand, PictureCommand, ViewChange},
+    },
+    scene::variant::LETTERS,
+};
+
+pub(super) fn file(to: &mut List) {
+    to.menu(Menu::new("File").group(Group::File).width(super::show::WIDTH), |to| {
+        to.add(command("new", "New default scene", Action::New).keys("Ctrl+N"));
+        to.add(command("open", "Open…", Action::OpenDialog).keys("Ctrl+O"));
+        recent(to);
+        to.menu(Menu::new(super::EXAMPLES), |_| ());
+        to.line();
+        to.add(command("save", "Save", Action::Save).keys("Ctrl+S"));
+        to.add(command("save_as", "Save as…", Action::SaveAsDialog).keys("Ctrl+Shift+S"));
+        let unsaved = to.session.path.is_none();
+        let reload = command("reload", "Reload from disk", Action::Reload);
+        to.add(reload.unless(unsaved, "The scene is in no file yet"));
+        to.line();
+        pictures(to);
+        exports(to);
+        to.line();
+        to.add(command("quit", "Quit", Action::Quit).keys("Ctrl+Q"));
+    });
+}
+
+fn recent(to: &mut List) {
+    let files = &to.session.recent_files;
+    to.menu(Menu::new("Open recent").empty("Files that you open or save appear here."), |to| {
+        for (i, path) in files.iter().enumerate() {
+            let whole = path.shown().to_string();
+            let name = path.file_name().map_or_else(|| whole.clone(), |n| n.to_string_lossy().into_owned());
+            let open = command(format!("open_recent.{}", i + 1), name, Action::Open(path.clone()));
+            to.add(open.tip(whole));
+        }
+        to.line();
+        let clear = command("clear_recent", "Clear the list", Action::ClearRecent);
+        to.add(clear.says("Clear the list of recent files").absent(files.is_empty()));
+    });
+}
+
+fn pictures(to: &mut List) {
+    let alone = !to.session.document.variants.is_empty();
+    let view = to.session.active();
+    let letter = LETTERS.get(view).copied().unwrap_or_default();
+    let (save, copy) = if alone { ("Save all views…", "Copy all views") } else { ("Save…", "Copy") };
+    let picture = |id: &'static str, name: String, what| command(id, name, Action::Picture(what));
+    to.menu(Menu::new("Picture").width(super::show::WIDTH), |to| {
+        let file = "Write the picture as it is shown to a PNG file, without handles and labels. The file holds the scene, \
+                    so it can be opened again.";
+        let save = picture("save_picture", save.to_owned(), PictureCommand::Dialog(None));
+        to.add(save.says("Save the picture…").keys("Ctrl+P").tip(file));
+        let help = "Write the picture of the active view to a PNG file";
+        let name = format!("Save view {letter} alone…");
+        let save = picture("save_view", name, PictureCommand::Dialog(Some(view)));
+        to.add(save.tip(help).absent(!alone));
+        let copy = picture("copy_picture", copy.to_owned(), PictureCommand::Copy(None));
+        let help = "Put the picture as it is shown on the clipboard";
+        to.add(copy.says("Copy the picture").keys("Ctrl+Shift+P").tip(help));
+        let help = "Put the picture of the active view on the clipboard";
+        let copy = picture("copy_view", format!("Copy view {letter} alone"), PictureCommand::Copy(Some(view)));
+        to.add(copy.tip(help).absent(!alone));
+        to.line();
+        let on = to.session.view.picture_caption;
+        let caption = command("caption", "With a caption", Action::View(ViewChange::PictureCaption(!on)));
+        let help = "Add a strip below the picture: models, values that differ from the defaults, tone mapping, version";
+        to.add(caption.mark(Mark::Check(on)).tip(help));
+    });
+}
+
+/// An entry for each form.
+fn exports(to: &mut List) {
+    to.menu(Menu::new("Export as"), |to| {
+        for form in FORMS {
+            let action = Action::Export(ExportCommand::Dialog(form.id));
+            let export = command(format!("export.{}", form.id), format!("{}…", form.name), action);
+            to.add(export.tip(export::help(to.session, form)));
+        }
+    });
+}

@@ -1,0 +1,274 @@
+//! The finder: a few letters find a command, an example scene, a lesson, a reflection model or a parameter of what is
+//! selected, with its key. Enter runs it.
+
+use std::cell::Cell;
+
+use bevy_egui::egui::{Context, Frame, Id, LayerId, Popup, PopupCloseBehavior, RectAlign, pos2};
+
+use super::{
+    chooser::{self, Entry, Words},
+    command::{self, Command, Mark, Menu},
+    explain::has_sides,
+    lesson::point,
+    rank::rank,
+    state::{Action, Session, ViewChange},
+};
+use crate::{
+    document::Selection,
+    parameter::{Parameter, ParameterKind, Values},
+    reflection::usage,
+    registry::Registry,
+};
+
+/// Its width, points, and the room at its sides in a narrower window.
+const WIDTH: f32 = 620.0;
+const MARGIN: f32 = 24.0;
+/// The room around what is in it, points.
+const PADDING: f32 = 8.0;
+/// The part of the window above it, and the part that its list takes.
+const ABOVE: f32 = 0.09;
+const LIST: f32 = 0.58;
+/// So many of the latest commands come first.
+const RECENT: usize = 5;
+
+const WORDS: Words = Words {
+    label: "Find a command",
+    hint: "Find a command, a scene, a lesson, a model or a parameter…",
+    none: "Nothing is called so.",
+    foot: "↑ ↓ choose · Enter runs · Esc closes",
+    roomy: true,
+};
+
+fn id() -> Id {
+    Id::new("finder")
+}
+
+/// Something that can be found.
+struct Found {
+    id: String,
+    title: String,
+    /// Its place among the headings.
+    order: u8,
+    heading: &'static str,
+    note: String,
+    /// Further words by which it is found.
+    more: String,
+    key: String,
+    off: bool,
+    on: bool,
+    tip: String,
+    does: Does,
+}
+
+impl Found {
+    fn entry<'f>(&'f self, heading: &'f str) -> Entry<'f> {
+        Entry {
+            heading,
+            name: &self.title,
+            // Its menu stands above.
+            note: if self.note == heading { String::new() } else { self.note.clone() },
+            on: self.on,
+            key: Some(self.key.clone()),
+            off: self.off,
+            ..Entry::default()
+        }
+    }
+}
+
+/// What happens to what is chosen.
+enum Does {
+    Act(Action),
+    /// The knob of this name has the focus.
+    Seek(String),
+}
+
+/// Shows it while it is open.
+pub(super) fn show(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
+    if !session.view.finder_open {
+        chooser::forget(ctx, id());
+        return Vec::new();
+    }
+    let all = everything(ctx, session, registry);
+    let screen = ctx.content_rect();
+    let width = WIDTH.min(screen.width() - 2.0 * MARGIN);
+    let at = pos2(screen.center().x, screen.top() + ABOVE * screen.height());
+    let mut open = true;
+    let mut chosen = None;
+    Popup::new(id(), ctx.clone(), at, LayerId::background())
+        .align(RectAlign::BOTTOM)
+        .open_bool(&mut open)
+        .width(width)
+        .frame(Frame::popup(&ctx.global_style()).inner_margin(PADDING))
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(width);
+            let typed = Cell::new(false);
+            let find = |search: &str| {
+                typed.set(!search.trim().is_empty());
+                if typed.get() { ranked(&all, search) } else { listed(ctx, &all) }
+            };
+            let height = LIST * screen.height();
+            chosen = chooser::list(
+                ui,
+                id(),
+                WORDS,
+                height,
+                find,
+                |item| item.1.entry(if typed.get() { "" } else { item.0 }),
+                |ui, (_, found)| _ = ui.label(&found.tip),
+            );
+        });
+    let mut actions = Vec::new();
+    if let Some((_, found)) = chosen {
+        remember(ctx, &found.id);
+        match &found.does {
+            Does::Act(action) => actions.push(action.clone()),
+            Does::Seek(knob) => {
+                actions.push(Action::View(ViewChange::Right(true)));
+                point::seek(ctx, knob);
+            }
+        }
+        open = false;
+    }
+    if !open {
+        actions.insert(0, Action::View(ViewChange::Finder(false)));
+    }
+    actions
+}
+
+/// The ids of the latest commands, the last one first.
+fn latest(ctx: &Context) -> Vec<String> {
+    ctx.data(|d| d.get_temp(id().with("latest"))).unwrap_or_default()
+}
+
+fn remember(ctx: &Context, command: &str) {
+    let mut all = latest(ctx);
+    all.retain(|known| known != command);
+    all.insert(0, command.to_owned());
+    all.truncate(RECENT);
+    ctx.data_mut(|d| d.insert_temp(id().with("latest"), all));
+}
+
+/// All of it in the order of the menus, after the latest.
+fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)> {
+    let latest = latest(ctx);
+    let again = latest.iter().filter_map(|id| all.iter().find(|found| found.id == *id));
+    again.map(|found| ("Used last", found)).chain(all.iter().map(|found| (found.heading, found))).collect()
+}
+
+/// Those that fit what was typed, the best first.
+fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
+    let fits = |found: &'f Found| Some((rank(&found.title, &found.more, search)?, found));
+    let mut found: Vec<_> = all.iter().filter_map(fits).collect();
+    // Letters with gaps fit by chance; they count where nothing else does.
+    if found.iter().any(|(rank, _)| *rank > 0) {
+        found.retain(|(rank, _)| *rank > 0);
+    }
+    found.sort_by_key(|(rank, found)| (-rank, found.off));
+    found.into_iter().map(|(_, found)| (found.heading, found)).collect()
+}
+
+fn everything(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Found> {
+    let root = command::all(session, registry, has_sides(ctx, session));
+    let mut all = commands(&root, session, registry);
+    if !session.view.presenting {
+        all.extend(parameters(session, registry));
+    }
+    all.sort_by_key(|found| found.order);
+    all
+}
+
+fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
+    // Recent models are among all models, with the keys of their numbers.
+    let recent = |command: &Command| command.id.starts_with("recent_model.");
+    let numbers: Vec<_> = root.commands().into_iter().map(|(_, c)| c).filter(|c| recent(c)).collect();
+    let key = |command: &Command| {
+        let model = command.id.strip_prefix("model.");
+        let slot = session.model_slots.iter().position(|known| Some(&**known) == model);
+        let number = || numbers.get(slot?)?.keys.first();
+        command.keys.first().or_else(number).map(ToString::to_string)
+    };
+    let offered = |command: &Command| {
+        let away = session.view.presenting && command.at_desk;
+        !(command.absent || command.held || away || recent(command) || command.id == command::FINDER)
+    };
+    let all = root.commands().into_iter().filter(|(_, command)| offered(command));
+    let found = all.map(|(path, command)| {
+        let why = command.why_not.as_deref().map(|why| why.trim_end_matches('.').to_owned());
+        let place = if path.is_empty() { command.heading().name().to_owned() } else { path.join(" › ") };
+        let model = command.id.strip_prefix("model.").and_then(|id| registry.model(id));
+        let more = match model {
+            Some(model) => {
+                let further: Vec<_> = chooser::further(model).map(|(text, _)| text).collect();
+                format!("{} {}", chooser::words(model), further.join(" "))
+            }
+            None => format!("{place} {} {} {}", command.id, command.name, command.tip),
+        };
+        Found {
+            id: command.id.to_string(),
+            title: command.title(&path),
+            order: match path.first() {
+                Some(menu) if command::BAR.iter().any(|(_, name)| name == menu) => 0,
+                None => 1,
+                Some(_) => 3,
+            },
+            heading: path.first().copied().unwrap_or(command.heading().name()),
+            note: match (&why, model) {
+                (Some(why), _) => why.clone(),
+                (None, Some(model)) => format!("{place} · {}", model.declaration.author),
+                (None, None) => place,
+            },
+            more,
+            key: key(command).unwrap_or_default(),
+            off: why.is_some(),
+            on: matches!(command.mark, Mark::Check(true) | Mark::Radio(true)),
+            tip: if command.tip.is_empty() { command.title(&path) } else { command.tip.to_string() },
+            does: Does::Act(command.action.clone()),
+        }
+    });
+    found.collect()
+}
+
+/// The parameters of the selected object or light that have knobs.
+fn parameters(session: &Session, registry: &Registry) -> Vec<Found> {
+    let name = session.name_of(session.selection, registry);
+    let of = |parameters: &'static [Parameter], values: &Values, beginning: &str| -> Vec<Found> {
+        let knobs = parameters.iter().filter(|p| !matches!(p.kind, ParameterKind::File { .. }));
+        knobs.map(|p| parameter(p, &name, beginning, usage::unused(parameters, p, values))).collect()
+    };
+    match session.selection {
+        Selection::Object(i) => {
+            let Some(object) = session.scene().objects.get(i) else { return Vec::new() };
+            let model = registry.model(session.scene().model_of(object)).map_or(&[][..], |m| m.parameters);
+            let shape = registry.shape(&object.object_type).map_or(&[][..], |s| s.parameters);
+            let mut all = of(model, &object.material, "");
+            all.extend(of(shape, &object.shape, "shape "));
+            all
+        }
+        Selection::Light(i) => {
+            let Some(light) = session.scene().lights.get(i) else { return Vec::new() };
+            let own = registry.light(&light.light_type).map_or(&[][..], |light| light.parameters);
+            of(own, &light.parameters, "")
+        }
+        Selection::Room | Selection::Observer => Vec::new(),
+    }
+}
+
+fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -> Found {
+    let knob = format!("{beginning}{}", p.name);
+    let mut letters = p.label.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    Found {
+        id: format!("knob {of} {knob}"),
+        title: first + letters.as_str(),
+        order: 2,
+        heading: "Parameters",
+        off: unused.is_some(),
+        note: unused.unwrap_or_else(|| format!("Parameter of {of}")),
+        more: format!("{} {} parameter {of}", p.name, p.symbol),
+        key: String::new(),
+        on: false,
+        tip: p.help.to_owned(),
+        does: Does::Seek(knob),
+    }
+}

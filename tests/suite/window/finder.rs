@@ -1,0 +1,352 @@
+//! The finder of commands, and keys of the user's own.
+
+use bevy_egui::egui::{Event, Key, Modifiers, vec2};
+use lights_camera_models::{
+    document::Selection,
+    panel::{
+        Panels,
+        command::{Command, Menu, all, declared, with_keys},
+        keys::bindings,
+        settings::Settings,
+        state::{Action, Effect, LessonSource, PictureCommand, Session, ViewChange},
+    },
+    registry::Registry,
+    scene::Scene,
+};
+
+use crate::window::panels::Bench;
+
+fn bench() -> Bench {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+/// A window whose settings have these keys.
+fn with_keys_of(json: &str) -> Bench {
+    let mut session = Session::default();
+    let settings = format!("{{ \"keys\": {json} }}");
+    session.adopt(serde_json::from_str::<Settings>(&settings).expect("settings"));
+    let mut bench = Bench::new(session);
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+fn open(bench: &mut Bench) {
+    bench.key(Key::F, Modifiers::COMMAND);
+    assert!(bench.session.view.finder_open && bench.ctx.text_edit_focused());
+}
+
+fn write(bench: &mut Bench, text: &str) {
+    bench.frame(vec![Event::Text(text.to_owned())]);
+    bench.settle();
+}
+
+/// Finds something and runs the first that is found.
+fn run(bench: &mut Bench, letters: &str) {
+    open(bench);
+    write(bench, letters);
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(!bench.session.view.finder_open, "“{letters}” runs");
+}
+
+#[test]
+fn a_few_letters_and_enter_run_a_command_which_can_be_undone() {
+    let mut bench = bench();
+    run(&mut bench, "light spot");
+    let lights = bench.session.document.lights.len();
+    assert_eq!((lights, &*bench.session.document.lights[1].light_type), (2, "spot"));
+    run(&mut bench, "undo");
+    assert_eq!(bench.session.document.lights.len(), 1);
+    run(&mut bench, "chan dep");
+    assert!(bench.session.channel_of(0).is_some_and(|channel| channel.id() == "depth"));
+    run(&mut bench, "theme light");
+    assert!(bench.session.settings().theme != Settings::default().theme);
+    run(&mut bench, "home");
+    assert!(bench.effects.contains(&Effect::HomeView));
+}
+
+#[test]
+fn scenes_lessons_models_and_parameters_are_found() {
+    let mut bench = bench();
+    run(&mut bench, "oren nayar");
+    assert_eq!(bench.session.document.reflection_model, "oren_nayar");
+    run(&mut bench, "1994 oren");
+    run(&mut bench, "shininess phong 1975");
+    assert_eq!(bench.session.document.reflection_model, "phong", "by a parameter and the year");
+    run(&mut bench, "furnace energy");
+    assert!(bench.session.lesson.as_ref().is_some_and(|open| open.source == LessonSource::Shipped(7)));
+    run(&mut bench, "leave the lesson");
+    assert!(bench.session.lesson.is_none());
+    run(&mut bench, "undo");
+    run(&mut bench, "gouraud misses");
+    assert!(bench.session.questions.open.is_some() || bench.session.title().contains("Gouraud"));
+}
+
+#[test]
+fn a_parameter_that_is_found_has_the_focus_of_the_keys() {
+    let mut bench = Bench::with_everything();
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.apply(Action::View(ViewChange::Right(false)));
+    run(&mut bench, "sheen tint");
+    (0..4).for_each(|_| bench.settle());
+    let id = bench.ctx.memory(|m| m.focused()).expect("something has the focus");
+    let at = bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect)).expect("shown");
+    let knob =
+        bench.tree.iter().find(|s| s.label == "sheen tint" && s.rect.expand(2.0).contains(at.center()));
+    assert!(knob.is_some() && at.bottom() < bench.size.y, "{at:?}");
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    let value = bench.session.document.objects[0].material.0.get("sheen_tint").cloned();
+    assert!(value.is_some(), "an arrow key changes it");
+    // One that the chosen options do not use says why, and is not run.
+    let mut bench = Bench::with_model("microfacet");
+    bench.apply(Action::Select(Selection::Object(0)));
+    open(&mut bench);
+    write(&mut bench, "exponent of gtr");
+    assert!(bench.texts().iter().any(|text| text.contains("Not used with GGX")));
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.session.view.finder_open);
+}
+
+#[test]
+fn arrows_walk_escape_closes_and_what_cannot_be_used_says_why() {
+    let mut bench = bench();
+    open(&mut bench);
+    assert!(bench.texts().iter().any(|text| text == "New default scene"));
+    write(&mut bench, "undo");
+    assert!(bench.texts().iter().any(|text| text == "There is nothing to undo"));
+    assert!(bench.texts().iter().any(|text| text == "Ctrl+Z"), "its key is shown all the same");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.session.view.finder_open && bench.session.messages.is_empty(), "it is not run");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.session.view.finder_open);
+    open(&mut bench);
+    assert!(bench.texts().iter().any(|text| text == "New default scene"), "it opens fresh");
+    write(&mut bench, "theme");
+    bench.key(Key::ArrowDown, Modifiers::NONE);
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.session.settings().theme != Settings::default().theme, "the second of dark and light");
+    // The same key closes it, and what was run last comes first.
+    open(&mut bench);
+    assert!(bench.texts().iter().any(|text| text == "Used last"));
+    bench.key(Key::F, Modifiers::COMMAND);
+    assert!(!bench.session.view.finder_open);
+    // A letter is no command meanwhile.
+    let shading = bench.session.document.shading_model.clone();
+    open(&mut bench);
+    bench.letter(Key::F, "f");
+    assert_eq!(bench.session.document.shading_model, shading);
+    bench.click_at(bevy_egui::egui::pos2(20.0, 700.0), bevy_egui::egui::PointerButton::Primary);
+    assert!(!bench.session.view.finder_open, "a click elsewhere closes it");
+}
+
+#[test]
+fn a_presentation_finds_what_a_presentation_has() {
+    let mut bench = bench();
+    bench.key(Key::F5, Modifiers::NONE);
+    for (letters, name, there) in [
+        ("hist", "History…", false),
+        ("show hand", "Show handles", false),
+        ("scene lis", "Panels: Scene list", false),
+        ("dept", "Channel: Depth", true),
+    ] {
+        open(&mut bench);
+        write(&mut bench, letters);
+        assert_eq!(bench.texts().iter().any(|text| text == name), there, "{name}");
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(bench.session.view.presenting, "Escape closes the finder alone");
+    }
+    open(&mut bench);
+    write(&mut bench, "sheen");
+    assert!(!bench.texts().iter().any(|text| text.starts_with("Parameter of")), "there is no knob");
+    bench.key(Key::Escape, Modifiers::NONE);
+    run(&mut bench, "lambert");
+    assert_eq!(bench.session.document.reflection_model, "lambert");
+    assert!(bench.session.view.presenting);
+}
+
+#[test]
+fn it_fits_every_size() {
+    for (width, height) in [(1280.0, 720.0), (1920.0, 1080.0), (640.0, 480.0)] {
+        for scale in [100, 150, 200] {
+            let mut bench = bench();
+            bench.size = vec2(width, height);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            open(&mut bench);
+            let whole = bench.ctx.content_rect();
+            let layer = bevy_egui::egui::Id::new("finder");
+            let place = bench.ctx.memory(|m| m.area_rect(layer)).expect("it is open");
+            assert!(whole.contains_rect(place), "{width}×{height} at {scale} %: {place:?} in {whole:?}");
+            assert!(place.height() > 0.4 * whole.height(), "{width}×{height} at {scale} %: {place:?}");
+            assert!((place.center().x - whole.center().x).abs() < 2.0);
+        }
+    }
+}
+
+// ── declarations ──
+
+/// All commands of a window with its panels.
+fn commands() -> Menu {
+    let mut session = Session::new(Scene::default());
+    session.panels = Panels::builtin().infos().collect();
+    declared(&session, &Registry::builtin(), true, true)
+}
+
+fn each(root: &Menu) -> Vec<&Command> {
+    root.commands().into_iter().map(|(_, command)| command).collect()
+}
+
+#[test]
+fn ids_are_words_and_no_two_are_equal() {
+    let root = commands();
+    let all = each(&root);
+    assert!(all.len() > 200, "{}", all.len());
+    for (i, command) in all.iter().enumerate() {
+        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "._".contains(c);
+        assert!(command.id.chars().all(plain), "{}", command.id);
+        assert!(all[..i].iter().all(|other| other.id != command.id), "{} twice", command.id);
+        assert!(command.absent || !command.name.is_empty(), "{} has a name", command.id);
+    }
+}
+
+#[test]
+fn the_list_of_keys_has_the_groups_and_rows_in_their_order() {
+    let mut session = Session::default();
+    session.panels = Panels::builtin().infos().collect();
+    let root = all(&session, &Registry::builtin(), false);
+    let mut groups: Vec<_> = with_keys(&root).iter().map(|(_, command)| command.heading().name()).collect();
+    groups.dedup();
+    let wanted = [
+        "File",
+        "Edit",
+        "Reflection and shading",
+        "Picture",
+        "Custom models",
+        "Comparison",
+        "Camera",
+        "Handles",
+        "Window",
+        "Lessons",
+    ];
+    assert_eq!(groups, wanted);
+    let rows = |group: &str| -> Vec<String> {
+        let all = bindings(&session, &Registry::builtin());
+        all.into_iter().filter(|b| b.group.name() == group).map(|b| b.keys()).collect()
+    };
+    assert_eq!(
+        rows("Edit"),
+        ["Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+Y", "Ctrl+D", "Delete", "V", "F2"].map(str::to_owned)
+    );
+    assert_eq!(
+        rows("Picture"),
+        ["X", "Shift+X", "Tab", "Shift+Tab", "E", "Shift+E", "H", "C", "Shift+H", "+", "−"]
+            .map(str::to_owned)
+    );
+    assert_eq!(
+        rows("Window"),
+        ["Ctrl++", "Ctrl+−", "Ctrl+0", "F5", "F11", "F1", "Ctrl+F", "F8", "F7", "F9"].map(str::to_owned)
+    );
+    assert_eq!(rows("Comparison")[0], "Ctrl+B");
+}
+
+// ── keys of the user's own ──
+
+#[test]
+fn own_keys_are_pressed_and_shown_wherever_keys_are() {
+    let mut bench = with_keys_of(
+        r#"{ "find": "Ctrl+Shift+P", "copy_picture": "Ctrl+Shift+C", "panel.messages": "F12", "home": "J", "keys": ["F1", "F4"] }"#,
+    );
+    assert!(bench.session.messages.is_empty(), "{:?}", bench.session.messages);
+    bench.letter(Key::J, "j");
+    assert!(bench.effects.contains(&Effect::HomeView));
+    bench.effects.clear();
+    bench.letter(Key::H, "h");
+    assert!(bench.effects.is_empty(), "the usual key does it no more");
+    bench.key(Key::C, Modifiers { shift: true, ..Modifiers::COMMAND });
+    assert_eq!(bench.effects, [Effect::Picture { view: None, file: None, overwrite: false }]);
+    bench.key(Key::P, Modifiers { shift: true, ..Modifiers::COMMAND });
+    assert!(bench.session.view.finder_open);
+    assert!(bench.texts().iter().any(|text| text == "Ctrl+Shift+C"), "in the finder");
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::F4, Modifiers::NONE);
+    let texts = bench.texts();
+    for key in ["F4", "F12", "J", "Ctrl+Shift+C"] {
+        assert!(texts.iter().any(|text| text == key), "{key} in the list of keys");
+    }
+    assert!(!texts.iter().any(|text| text == "F8" || text == "H"));
+    bench.key(Key::F1, Modifiers::NONE);
+    bench.click("View");
+    assert!(bench.tree.iter().any(|s| s.label == "Home: the observer’s view J"), "in the menu");
+    bench.key(Key::Escape, Modifiers::NONE);
+    // In a tooltip.
+    let messages = bench.find("Messages: 0").expect("shown").rect.center();
+    bench.hover(messages);
+    assert!(bench.texts().iter().any(|text| text == "Show messages (F12)"));
+}
+
+#[test]
+fn wrong_keys_are_reported_once_change_nothing_and_stay_in_the_settings() {
+    let json = r#"{ "sav": "F4", "save": "Ctrl+O", "open": "Strg+O", "home": "J" }"#;
+    let mut bench = with_keys_of(json);
+    let said: Vec<_> = bench.session.messages.iter().map(|note| note.text.clone()).collect();
+    assert_eq!(said.len(), 3, "{said:?}");
+    for (said, part) in said.iter().zip([
+        "keys has \"sav\", which is not a command; did you mean \"save\"?",
+        "keys.open is \"Strg+O\", but must be a key",
+        "keys.save has Ctrl+O, which is the key of \"open\"",
+    ]) {
+        assert!(said.contains(part) && said.contains("settings"), "{said}");
+    }
+    bench.letter(Key::J, "j");
+    assert!(bench.effects.contains(&Effect::HomeView), "what is right is in force");
+    let written = serde_json::to_string(&bench.session.settings()).expect("settings");
+    let compact: String = json.split_whitespace().collect();
+    assert!(written.contains(&compact), "{written}");
+    bench.settle();
+    assert_eq!(bench.session.messages.len(), 3, "reported once");
+    bench.key(Key::S, Modifiers::COMMAND);
+    assert!(bench.dialogs.is_open() && bench.says("Save"), "Ctrl+S saves as before");
+}
+
+#[test]
+fn a_command_may_lose_its_key_and_another_get_one() {
+    let mut bench = with_keys_of(r#"{ "delete": null, "add_light.point": "L", "picture_caption": [] }"#);
+    assert_eq!(bench.session.messages.len(), 1, "there is no command “picture_caption”");
+    bench.key(Key::Delete, Modifiers::NONE);
+    bench.letter(Key::L, "l");
+    let document = &bench.session.document;
+    assert_eq!((document.objects.len(), document.lights.len()), (1, 2));
+    // A text says the command where there is no key.
+    let mut bench = with_keys_of(r#"{ "choose_model": null, "panel.messages": null }"#);
+    let chooser = bench.tree.iter().find(|s| s.label.starts_with("Reflection model: ")).expect("shown").rect;
+    bench.hover(chooser.center());
+    assert!(!bench.says("key R"));
+    let messages = bench.find("Messages: 0").expect("shown").rect.center();
+    bench.hover(messages);
+    assert!(bench.texts().iter().any(|text| text == "Show messages"));
+}
+
+#[test]
+fn a_key_that_is_held_blinks_until_it_is_let_go_of() {
+    let mut bench = with_keys_of(r#"{ "blink": "B" }"#);
+    let action = Action::Picture(PictureCommand::Copy(None));
+    assert!(bindings(&bench.session, &bench.registry).iter().any(|b| b.action == action));
+    bench.apply(Action::Compare(lights_camera_models::panel::state::CompareCommand::Layout(
+        lights_camera_models::scene::comparison::Layout::Blink,
+    )));
+    let event = |pressed| Event::Key {
+        key: Key::B,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![event(true)]);
+    bench.frame(Vec::new());
+    assert!(bench.session.view.blinking);
+    bench.frame(vec![event(false)]);
+    bench.frame(Vec::new());
+    assert!(!bench.session.view.blinking);
+}
