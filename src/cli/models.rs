@@ -5,7 +5,7 @@ use crate::files::Shown as _;
 use crate::{
     failure::Failure,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
-    reflection::{ModelEntry, Term},
+    reflection::ModelEntry,
     registry::Registry,
     text::number,
 };
@@ -178,14 +178,8 @@ fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     let laws = |kept: bool| -> Vec<_> {
         d.laws.list().into_iter().filter(|(_, k)| *k == kept).map(|(name, _)| name).collect()
     };
-    let term = |t: Term| match t {
-        Term::Total => "total",
-        Term::Ambient => "ambient",
-        Term::Diffuse => "diffuse",
-        Term::Specular => "specular",
-    };
     let equation: Vec<_> =
-        d.equation.iter().map(|part| json!({ "term": term(part.term), "text": part.text })).collect();
+        d.equation.iter().map(|part| json!({ "term": part.term.id(), "text": part.text })).collect();
     let mut json = json!({
         "kind": "reflection model",
         "id": d.id,

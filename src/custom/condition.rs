@@ -2,7 +2,7 @@
 
 use jsonc_parser::common::Ranged as _;
 
-use super::{declaration::Reader, intern};
+use super::{intern, reader::Reader};
 use crate::{
     parameter::{Parameter, UsedWhen},
     reflection::usage,

@@ -10,9 +10,9 @@ use glam::Vec4;
 use jsonc_parser::{ast::ObjectProp, common::Ranged as _};
 
 use super::{
-    declaration::Reader,
     intern,
     lobes::{SaidLobes, declared_alone},
+    reader::Reader,
     text,
 };
 use crate::{

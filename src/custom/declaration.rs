@@ -7,6 +7,7 @@ use super::{
     curves::Curve,
     intern,
     lobes::SaidLobes,
+    reader::{LONGEST_NAME, LONGEST_TEXT, MOST_MISTAKES, Reader},
     text::{Mistake, comment, humanised},
 };
 use crate::{
@@ -15,10 +16,8 @@ use crate::{
     registry::Registry,
     text::{
         did_you_mean,
-        json::{self, Ast, Cursor, Fields, Reader as _, STRICT},
-        listed, mathematics, one_of,
-        path::Path,
-        quoted, shortened,
+        json::{self, Cursor, Fields, Reader as _, STRICT},
+        listed, mathematics, quoted,
     },
 };
 
@@ -41,19 +40,10 @@ const MODEL_KEYS: &[&str] = &[
 ];
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
-/// Aliases of keys, for suggestions.
-const OTHER_WORDS: &[(&str, &str)] =
-    &[("title", "name"), ("description", "summary"), ("options", "choices"), ("params", "parameters")];
-/// Maximum length of a model name, symbol or label, in characters.
-pub(super) const LONGEST_NAME: usize = 60;
-/// Maximum number of brackets in a declaration, and so its maximum nesting depth.
+/// The most brackets of a declaration, and so its deepest nesting.
 const MOST_BRACKETS: usize = 600;
 /// Maximum size of a declaration, in bytes.
 const MOST_BYTES: usize = 64 << 10;
-/// Maximum number of reported errors; in longer lists, later errors follow from earlier ones.
-const MOST_MISTAKES: usize = 50;
-/// Maximum length of a text, in characters.
-pub(super) const LONGEST_TEXT: usize = 2000;
 
 /// The contents of a declaration.
 pub(super) struct Said {
@@ -124,54 +114,7 @@ fn lower(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// The state of reading.
-pub(super) struct Reader<'a> {
-    json: &'a str,
-    start: usize,
-    pub(super) id: &'a str,
-    pub(super) registry: &'a Registry,
-    pub(super) mistakes: Vec<Mistake>,
-}
-
-impl json::Reader for Reader<'_> {
-    fn text(&self) -> &str {
-        self.json
-    }
-
-    fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str) {
-        let place = if path == Path::root() { "the declaration".to_owned() } else { path.to_string() };
-        let found = found.map_or_else(String::new, |found| format!("is {found}, but "));
-        self.mistake(at, format!("{place} {found}{rule}"));
-    }
-
-    /// The value as written, if it is a short list.
-    fn shown(&self, value: &Ast) -> String {
-        match value {
-            Ast::Array(list) if list.elements.len() <= 4 => shortened(value.text(self.json)),
-            _ => json::describe(value, self.json),
-        }
-    }
-
-    fn has_enough(&self) -> bool {
-        self.mistakes.len() >= MOST_MISTAKES
-    }
-
-    fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String {
-        let words = OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
-        json::nearest_key(written, known, words, what)
-    }
-}
-
 impl Reader<'_> {
-    pub(super) fn mistake(&mut self, at: usize, what: impl Into<String>) {
-        self.mistakes.push((self.start + at, what.into()));
-    }
-
-    /// Reports a key that is superfluous or wrong.
-    pub(super) fn misplaced(&mut self, value: Cursor, predicate: &str) {
-        self.report(value.start(), value.path(), None, predicate);
-    }
-
     fn model(&mut self, root: Cursor, end: usize) -> Option<Said> {
         let fields = self.fields(root, MODEL_KEYS, "a model")?;
         let id = self.id;
@@ -200,42 +143,6 @@ impl Reader<'_> {
             curves: self.curves(&fields, parameters, taken),
             end,
         })
-    }
-
-    /// A text of limited length, if given.
-    pub(super) fn words(&mut self, fields: &Fields, key: &str, longest: usize) -> Option<&'static str> {
-        let value = fields.get(key)?;
-        let fits = |text: &&str| text.chars().count() <= longest && !text.contains(char::is_control);
-        match value.text().filter(fits) {
-            Some(text) if key == "name" && text.trim().is_empty() => {
-                self.wrong(value, "a name must have letters");
-                None
-            }
-            Some(text) => Some(intern::text(text)),
-            None => {
-                let rule = format!("it must be one line of text, of at most {longest} characters");
-                self.wrong(value, &rule);
-                None
-            }
-        }
-    }
-
-    /// One of several words, mapped to its value.
-    pub(super) fn word<T: Copy>(
-        &mut self,
-        value: Cursor,
-        what: &str,
-        known: &[(&'static str, T)],
-    ) -> Option<T> {
-        let words = known.iter().map(|(word, _)| *word);
-        let rule = one_of(what, words.clone());
-        let text = self.string(value, &rule)?;
-        let found = known.iter().find(|(word, _)| *word == text).map(|(_, meaning)| *meaning);
-        if found.is_none() {
-            let hint = did_you_mean(&text.replace("color", "colour"), words.map(|word| (word, word)));
-            self.wrong(value, &format!("{rule}{hint}"));
-        }
-        found
     }
 
     fn equation(&mut self, fields: &Fields) -> &'static [EquationPart] {
@@ -383,15 +290,6 @@ impl Reader<'_> {
             self.mistake(starts[i], problem);
         }
         intern::groups(groups)
-    }
-
-    pub(super) fn built_in_models(&self) -> impl Iterator<Item = &ModelEntry> {
-        self.registry.models().iter().filter(|m| self.registry.custom_file(m.declaration.id).is_none())
-    }
-
-    /// The built-in parameter with this name, from any model.
-    pub(super) fn built_in(&self, name: &str) -> Option<&'static Parameter> {
-        self.built_in_models().find_map(|m| m.parameter(name))
     }
 
     fn shared(&mut self, value: Cursor, name: &str) -> Option<Parameter> {

@@ -3,8 +3,8 @@
 use jsonc_parser::common::Ranged as _;
 
 use super::{
-    declaration::{LONGEST_NAME, LONGEST_TEXT, Reader},
     intern,
+    reader::{LONGEST_NAME, LONGEST_TEXT, Reader},
     text::{allowed_in_wgsl, humanised, identifier},
 };
 use crate::{

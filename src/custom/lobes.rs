@@ -3,7 +3,7 @@
 //! `"lobes": ["cosine", { "shape": "ggx", "roughness": "roughness", "weight": "k_s" }]` or `"lobes":
 //! "phong"`, the lobes of a built-in model with parameters of the same names.
 
-use super::declaration::Reader;
+use super::reader::Reader;
 use crate::{
     optics::{
         colour::Encoding,

@@ -38,6 +38,7 @@ pub mod folder;
 mod intern;
 mod knobs;
 mod lobes;
+mod reader;
 mod surface;
 mod text;
 mod write;

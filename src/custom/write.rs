@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as json_of},
-    reflection::{Ambient, ModelEntry, Term},
+    reflection::{Ambient, ModelEntry},
     registry::Registry,
     shader::compose::Sources,
     text::number,
@@ -168,16 +168,10 @@ pub fn duplicate(
     {
         let _ = writeln!(out, "    \"{key}\": {},", text(value));
     }
-    let term = |t| match t {
-        Term::Total => "total",
-        Term::Ambient => "ambient",
-        Term::Diffuse => "diffuse",
-        Term::Specular => "specular",
-    };
     out.push_str("    \"equation\": [\n");
     for part in d.equation {
-        let _ =
-            writeln!(out, "        {{ \"term\": \"{}\", \"text\": {} }},", term(part.term), text(part.text));
+        let (term, text) = (part.term.id(), text(part.text));
+        let _ = writeln!(out, "        {{ \"term\": \"{term}\", \"text\": {text} }},");
     }
     out.push_str("    ],\n");
     let laws: Vec<_> = d.laws.list().into_iter().filter(|(_, kept)| *kept).map(|(name, _)| name).collect();

@@ -2,7 +2,10 @@
 
 use glam::Vec3;
 
-use super::{ExplainError, Explainer, Seen, integral::digits_within, numbers::DIGITS};
+use super::{
+    ExplainError, Explainer, Seen,
+    numbers::{DIGITS, digits_within},
+};
 use crate::{
     optics::colour::luminance,
     parameter::{ParameterKind, Value},

@@ -1,6 +1,6 @@
 //! Light with extent in explanations: an integral over many directions instead of the equation for one.
 
-use super::{Geometry, Line, Lit, Model, lines::of_terms, measured, numbers::colour, rounded};
+use super::{Geometry, Line, Lit, Model, measured, numbers::colour, workings::of_terms};
 use crate::{
     optics::{TermSelection, Terms},
     reflection::Term,
@@ -95,55 +95,5 @@ impl Lit {
     #[must_use]
     pub fn outcome(&self, digits: usize) -> String {
         super::told(self.contribution, self.error(), digits)
-    }
-}
-
-/// The significant digits that a relative error allows: from one to `most`.
-pub(super) fn digits_within(relative: f32, most: usize) -> usize {
-    match relative {
-        r if r > 0.0 && r.is_finite() => ((-r.log10()).floor().max(0.0) as usize + 1).clamp(1, most),
-        _ => most,
-    }
-}
-
-/// A number with its standard error, both with their significant digits: one for the error, or two if it
-/// begins with 1.
-pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
-    /// The digits of a 32-bit number.
-    const MOST: i32 = 7;
-    let (value, error) = (f64::from(value), f64::from(error));
-    if error <= 0.0 || !error.is_finite() || !value.is_finite() {
-        return [rounded(value, super::numbers::DIGITS), rounded(error, 1)];
-    }
-    let place = |v: f64| v.abs().log10().floor() as i32;
-    let lead = error / 10f64.powi(place(error));
-    let of_error = if (1.0..1.95).contains(&lead) { 2 } else { 1 };
-    let last = place(error) + 1 - of_error;
-    let digits = if value == 0.0 { 1 } else { (place(value) - last + 1).clamp(1, MOST) };
-    // Digits before the decimal point are written whether significant or not.
-    let unit = 10f64.powi(last.max(0));
-    let value = if last > 0 { (value / unit).round() * unit } else { value };
-    [rounded(value, digits as usize), rounded(error, of_error as usize)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_the_digits_that_their_errors_allow() {
-        for (value, error, expected) in [
-            (0.512_345, 0.0031, ["0.512", "0.003"]),
-            (0.512_345, 0.0012, ["0.5123", "0.0012"]),
-            (12.345, 2.0, ["12", "2"]),
-            (12_345.0, 300.0, ["12300", "300"]),
-            (0.01, 0.3, ["0.01", "0.3"]),
-            (0.3, 0.0, ["0.3", "0"]),
-            (1.0 / 3.0, 0.0, ["0.3333", "0"]),
-            (0.0, 0.1, ["0", "0.1"]),
-        ] {
-            assert_eq!(with_error(value, error), expected, "{value} {error}");
-        }
-        assert_eq!([1e-5, 0.003, 0.2, 3.0, 0.0].map(|r| digits_within(r, 4)), [4, 3, 1, 1, 4]);
     }
 }

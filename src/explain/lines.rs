@@ -7,7 +7,7 @@ use super::{
     numbers::{DIGITS, colour, of_value, rounded_triple},
     put::{Put, Symbols, put},
     triple,
-    workings::{Definition, Workings, sides},
+    workings::{Definition, Workings, of_terms, sides},
 };
 use crate::{
     optics::{TermSelection, Terms},
@@ -197,13 +197,7 @@ impl Lit {
     }
 }
 
-/// The ambient, diffuse and specular terms with their values.
-pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
-    let Terms { ambient, diffuse, specular } = *response;
-    [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
-}
-
-/// A sum as a factor: in brackets if it has several terms.
+/// A sum as a factor: in brackets if there are several.
 fn factor(terms: impl Iterator<Item = String>) -> String {
     let terms: Vec<_> = terms.collect();
     match terms.as_slice() {

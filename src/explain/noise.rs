@@ -4,8 +4,7 @@ use glam::Vec3;
 
 use super::{
     Corner, Explanation, Lit, Place, Seen, Spot,
-    integral::with_error,
-    numbers::{DIGITS, measured, rounded, rounded_triple},
+    numbers::{DIGITS, measured, rounded, rounded_triple, with_error},
 };
 use crate::reference::{DisplaySteps, Picture};
 

@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use super::integral::with_error;
 use crate::text::expression::Value;
 
 /// Significant digits: codes have eight bits.
@@ -97,6 +96,33 @@ pub(super) fn colour(v: Vec3) -> Value {
     Value::colour(v.to_array().map(f64::from))
 }
 
+/// The significant digits that a relative error leaves: from one to `most`.
+pub(super) fn digits_within(relative: f32, most: usize) -> usize {
+    match relative {
+        r if r > 0.0 && r.is_finite() => ((-r.log10()).floor().max(0.0) as usize + 1).clamp(1, most),
+        _ => most,
+    }
+}
+
+/// A number with its standard error, each with the digits that mean something: one of the error, or two if it begins with 1.
+pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
+    /// The digits of 32 bits.
+    const MOST: i32 = 7;
+    let (value, error) = (f64::from(value), f64::from(error));
+    if error <= 0.0 || !error.is_finite() || !value.is_finite() {
+        return [rounded(value, DIGITS), rounded(error, 1)];
+    }
+    let place = |v: f64| v.abs().log10().floor() as i32;
+    let lead = error / 10f64.powi(place(error));
+    let of_error = if (1.0..1.95).contains(&lead) { 2 } else { 1 };
+    let last = place(error) + 1 - of_error;
+    let digits = if value == 0.0 { 1 } else { (place(value) - last + 1).clamp(1, MOST) };
+    // Digits before the point are written whether they mean something or not.
+    let unit = 10f64.powi(last.max(0));
+    let value = if last > 0 { (value / unit).round() * unit } else { value };
+    [rounded(value, digits as usize), rounded(error, of_error as usize)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,5 +166,22 @@ mod tests {
         assert_eq!(triple(Vec3::new(f32::NAN, f32::INFINITY, -f32::INFINITY)), "(NaN, ∞, −∞)");
         assert_eq!(rounded_number_or_triple(Vec3::splat(f32::NAN), DIGITS), "(NaN, NaN, NaN)");
         assert_eq!(rounded_number_or_triple(Vec3::splat(2.0), DIGITS), "2");
+    }
+
+    #[test]
+    fn numbers_have_the_digits_that_their_errors_allow() {
+        for (value, error, expected) in [
+            (0.512_345, 0.0031, ["0.512", "0.003"]),
+            (0.512_345, 0.0012, ["0.5123", "0.0012"]),
+            (12.345, 2.0, ["12", "2"]),
+            (12_345.0, 300.0, ["12300", "300"]),
+            (0.01, 0.3, ["0.01", "0.3"]),
+            (0.3, 0.0, ["0.3", "0"]),
+            (1.0 / 3.0, 0.0, ["0.3333", "0"]),
+            (0.0, 0.1, ["0", "0.1"]),
+        ] {
+            assert_eq!(with_error(value, error), expected, "{value} {error}");
+        }
+        assert_eq!([1e-5, 0.003, 0.2, 3.0, 0.0].map(|r| digits_within(r, 4)), [4, 3, 1, 1, 4]);
     }
 }

@@ -7,7 +7,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Geometry, Model, Setting, lines::of_terms, numbers::colour};
+use glam::Vec3;
+
+use super::{Geometry, Model, Setting, numbers::colour};
 use crate::{
     optics::Terms,
     parameter::Value as Parameter,
@@ -76,6 +78,12 @@ fn signature(head: &str) -> (&str, Vec<&str>) {
 
 fn number(v: f32) -> Value {
     Value::number(f64::from(v))
+}
+
+/// The ambient, diffuse and specular term, each with its value.
+pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
+    let Terms { ambient, diffuse, specular } = *response;
+    [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
 }
 
 impl<'a> Workings<'a> {

@@ -20,6 +20,7 @@ pub const FORM: Form = Form {
     summary: "a copy of this program that opens straight on the scene; runs on systems like this one",
     makes: Makes::File(if cfg!(windows) { "exe" } else { "" }),
     of_object: false,
+    of_view: false,
     make,
 };
 

@@ -52,6 +52,8 @@ pub struct Form {
     pub makes: Makes,
     /// True if the form contains a single object of the scene, which must be chosen.
     pub of_object: bool,
+    /// True if it holds one view of the scene; programs and pages hold all.
+    pub of_view: bool,
     /// Makes the files.
     pub make: fn(&Request, &Progress) -> Result<Export, ExportError>,
 }

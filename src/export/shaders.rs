@@ -60,7 +60,7 @@ const fn form(
     summary: &'static str,
     make: fn(&Request, &Progress) -> Result<Export, ExportError>,
 ) -> Form {
-    Form { id, name, summary, makes: Makes::Folder, of_object: true, make }
+    Form { id, name, summary, makes: Makes::Folder, of_object: true, of_view: true, make }
 }
 
 /// The files of a shader: the key of each in the manifest, its name, and its content.

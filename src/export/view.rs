@@ -1,6 +1,6 @@
 //! The view of a scene that an export contains: most forms contain one.
 
-use super::{Form, executable, html};
+use super::Form;
 use crate::{
     optics::TermSelection,
     registry::Registry,
@@ -19,7 +19,7 @@ pub fn exported(
     stem: &str,
     registry: &Registry,
 ) -> (Scene, Option<String>) {
-    let whole = scene.variants.is_empty() || view.is_none() && !holds_one(form);
+    let whole = scene.variants.is_empty() || view.is_none() && !form.of_view;
     let index = view.unwrap_or_default();
     let Some((seen, terms)) = (!whole).then(|| scene.seen(index, registry)).flatten() else {
         return (scene.clone(), None);
@@ -43,12 +43,6 @@ pub fn exported(
         None => note.clone(),
     });
     (seen, Some(note))
-}
-
-/// True if a form contains a single view; programs and pages contain all.
-#[must_use]
-pub fn holds_one(form: &Form) -> bool {
-    form.id != executable::FORM.id && form.id != html::HTML.id
 }
 
 /// `view B (Phong)`.

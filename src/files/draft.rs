@@ -11,9 +11,10 @@ use tempfile::NamedTempFile;
 use super::{
     FileError,
     before::{Before, Turn},
-    folder_of, follow, is_same, litter,
+    folder_of, follow, litter,
     living::{self, Living, Temporary},
-    options, regular,
+    overwrite::{fill, open_to_overwrite},
+    regular,
     shown::Shown as _,
     tidy,
 };
@@ -244,14 +245,6 @@ pub(super) fn make_executable(file: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes an open file equal to another, and waits until it is on disk. Until then its content is a prefix of
-/// the other's.
-pub(super) fn fill(from: &mut File, place: &mut File) -> io::Result<()> {
-    place.set_len(0)?;
-    io::copy(from, place)?;
-    place.sync_all()
-}
-
 /// The regular file at a path, if any.
 fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
     match fs::metadata(target) {
@@ -259,13 +252,6 @@ fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(e) => Err(e.into()),
     }
-}
-
-/// Opens a file for overwriting, if permitted and if it is still the file examined before.
-pub(super) fn open_to_overwrite(target: &Path, old: &Metadata) -> Option<File> {
-    let file = options().write(true).open(target).ok()?;
-    let now = file.metadata().ok()?;
-    (regular(&now).is_ok() && is_same(&now, old)).then_some(file)
 }
 
 /// Gives a file the owner and group of another; true if both succeeded.

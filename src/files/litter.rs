@@ -9,9 +9,9 @@ use std::{
 
 use super::shown::Shown as _;
 use super::{
-    FileError,
-    draft::{fill, open_to_overwrite},
-    is_same, options, read, read_start,
+    FileError, is_same, options,
+    overwrite::{fill, open_to_overwrite},
+    read, read_start,
 };
 
 /// File in the draft of a folder that is locked while its process lives.

@@ -56,6 +56,7 @@ mod inside;
 mod litter;
 mod living;
 mod output;
+mod overwrite;
 mod shown;
 mod stamp;
 mod words;

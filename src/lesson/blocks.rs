@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::{
-    AnswerChoice, Block, Condition, Control, Goal, Run, Step, Task, controls,
+    AnswerChoice, Block, Condition, Control, Goal, Run, Task, controls,
+    draft::Draft,
     limits::MAX_LINES,
-    markdown,
     problem::Problems,
+    runs::inline,
     state, window,
     words::{Line, Piece, lines, pair},
 };
@@ -20,27 +21,7 @@ const KINDS: [&str; 7] = ["equation", "scene", "view", "point", "predict", "do",
 /// Maximum number of answers to a question: their keys are 1 to 9.
 const MOST_ANSWERS: usize = 9;
 
-/// A step, and the bytes of the parts that are checked once its scene is known.
-#[derive(Debug, Default)]
-pub(super) struct Draft {
-    pub(super) step: Step,
-    /// The byte of its heading.
-    pub(super) at: usize,
-    pub(super) is_empty: bool,
-    /// The values of a `view` block, by setting.
-    pub(super) settings: Vec<(&'static str, usize)>,
-    /// The controls of a `point` block.
-    pub(super) points: Vec<usize>,
-    /// Texts that should name parts of the scene, but do not.
-    pub(super) misnamed: Vec<(usize, String)>,
-    /// Byte of the task's condition.
-    pub(super) until: Option<usize>,
-    /// True if the `scene` block could not be read.
-    pub(super) is_lost: bool,
-    pub(super) kinds: Vec<&'static str>,
-}
-
-/// Reads a block with the text after its opening fence.
+/// Reads a block with what stands behind its opening fence.
 pub(super) fn read(
     info: &str,
     at: usize,
@@ -182,7 +163,7 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     if asked.text.is_empty() {
         problems.at(at, "the question is missing; write it before the answers");
     }
-    let text = markdown::inline(asked, problems);
+    let text = inline(asked, problems);
     let mut answers = Vec::new();
     for (i, (start, length, right)) in marks.iter().enumerate() {
         let end = marks.get(i + 1).map_or(body.text.len(), |next| next.0);
@@ -199,9 +180,9 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
             problems.at(body.at + start, "this answer has no feedback; write | and why it is right or wrong");
         }
         answers.push(AnswerChoice {
-            text: markdown::inline(said.trimmed(), problems),
+            text: inline(said.trimmed(), problems),
             right: *right,
-            feedback: feedback.map_or_else(Vec::new, |feedback| markdown::inline(feedback, problems)),
+            feedback: feedback.map_or_else(Vec::new, |feedback| inline(feedback, problems)),
         });
     }
     match answers.iter().filter(|answer| answer.right).count() {
@@ -258,7 +239,7 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
         let end = parts.get(i + 1).map_or(body.text.len(), |next| next.1);
         Some(body.part(parts[i].2, end).trimmed())
     };
-    let text = piece("").map_or_else(Vec::new, |text| markdown::inline(text, problems));
+    let text = piece("").map_or_else(Vec::new, |text| inline(text, problems));
     if text.is_empty() {
         problems.at(at, "the task is missing; write what the learner shall do before until:");
     }
@@ -267,7 +248,7 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
         if written.text.is_empty() {
             problems.at(written.at, "the hint is empty");
         }
-        hint = Some(markdown::inline(written, problems));
+        hint = Some(inline(written, problems));
     }
     let Some(written) = piece("until").filter(|until| !until.text.is_empty()) else {
         let meant = lines(body.text, body.at)

@@ -2,10 +2,7 @@
 //! fit.
 
 use super::{
-    Block, Situation, Task, WindowFacts,
-    blocks::{self, Draft},
-    condition::Knowledge,
-    controls,
+    Block, Situation, Task, WindowFacts, blocks, condition::Knowledge, controls, draft::Draft,
     problem::Problems,
 };
 use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plural};

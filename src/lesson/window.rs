@@ -2,7 +2,7 @@
 
 use super::{
     PartName,
-    blocks::Draft,
+    draft::Draft,
     problem::Problems,
     words::{Line, Piece, pair},
 };

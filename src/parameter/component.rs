@@ -16,7 +16,8 @@ use bevy::{
 use super::{
     declaration::{Parameter, ParameterKind},
     set::ParameterSet,
-    value::{Value, Values},
+    value::Value,
+    values::Values,
 };
 use crate::optics::colour::Encoding;
 

@@ -1,6 +1,6 @@
 //! The layout of parameters for shaders.
 
-use super::{declaration::Parameter, value::Values};
+use super::{declaration::Parameter, values::Values};
 use crate::optics::colour::Encoding;
 
 /// Maximum size of a model's parameters, in bytes.

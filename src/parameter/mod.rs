@@ -15,6 +15,7 @@ mod reflect;
 mod set;
 mod shared;
 mod value;
+mod values;
 
 pub use component::{TypeComponent, Watch};
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
@@ -29,4 +30,5 @@ pub use shared::{
     ALPHA, ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, K_A, K_D, K_S, METALLIC, REFLECTANCE, ROUGHNESS,
     SIGMA, SPECULAR_COLOUR,
 };
-pub use value::{Value, Values, json};
+pub use value::{Value, json};
+pub use values::Values;

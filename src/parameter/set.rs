@@ -1,6 +1,6 @@
 //! Structs whose fields are declared parameters.
 
-use super::{declaration::Parameter, value::Values};
+use super::{declaration::Parameter, values::Values};
 use crate::optics::colour::Encoding;
 
 /// A type whose fields are declared parameters; written by [`parameters!`](crate::parameters).

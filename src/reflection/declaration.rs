@@ -70,7 +70,18 @@ pub enum Term {
 }
 
 impl Term {
-    /// The symbol in equations: `I_d`.
+    /// Its word in files, JSON and web pages.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Total => "total",
+            Self::Ambient => "ambient",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+        }
+    }
+
+    /// Its symbol in equations: `I_d`.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
         match self {

@@ -1,57 +1,15 @@
 //! Checks composed sources with naga, and reports problems in terms of the author's own file.
 
-use std::fmt;
-
 use naga::{
     Module,
     front::wgsl,
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::{compose::Composed, explain, limits, pitfall};
+use super::{compose::Composed, explain, limits, pitfall, place::place};
 
-/// A problem of a shader, located in the author's file.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct ShaderProblem {
-    /// Path below the shader folder; for custom models, `models/` and the file name.
-    pub file: String,
-    /// Line in that file, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// The line itself.
-    pub source: String,
-    /// The problem.
-    pub message: String,
-}
-
-impl ShaderProblem {
-    /// A problem at a byte of the text of a file.
-    #[must_use]
-    pub fn at(file: &str, text: &str, at: usize, message: String) -> Self {
-        let mut at = at.min(text.len());
-        while !text.is_char_boundary(at) {
-            at -= 1;
-        }
-        let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
-        Self {
-            file: file.to_owned(),
-            line: text[..start].matches('\n').count() + 1,
-            // Columns count characters.
-            column: text[start..at].chars().count() + 1,
-            source: text[start..].lines().next().unwrap_or_default().to_owned(),
-            message,
-        }
-    }
-}
-
-impl fmt::Display for ShaderProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)
-    }
-}
-
-impl std::error::Error for ShaderProblem {}
+pub(crate) use super::place::locate;
+pub use super::problem::ShaderProblem;
 
 /// Parses and validates a composed source without remaining imports, if it is within the [`limits`].
 ///
@@ -103,38 +61,7 @@ pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     message
 }
 
-/// Line and column of a byte, both from 1.
-fn place(composed: &Composed, at: usize) -> (usize, usize) {
-    let before = composed.text.get(..at).unwrap_or_default();
-    (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |i| i + 1) + 1)
-}
-
-/// A problem at a line and column of the composed text, in terms of the author's file.
-pub(crate) fn locate(
-    composed: &Composed,
-    place: Option<(usize, usize)>,
-    message: String,
-) -> Box<ShaderProblem> {
-    /// Maximum length of a message, in characters: some of naga's repeat the text.
-    const LONGEST: usize = 400;
-    let message = match message.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &message[..end]),
-        None => message,
-    };
-    let (line, column) = place.unwrap_or((1, 1));
-    let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
-    let source = composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-    Box::new(ShaderProblem {
-        file: file.to_owned(),
-        line: file_line,
-        // naga counts bytes.
-        column: source.char_indices().take_while(|(at, _)| at + 1 < column).count() + 1,
-        source: source.to_owned(),
-        message,
-    })
-}
-
-/// The byte offsets of the members of a struct in a module, by name; `None` if the struct does not exist.
+/// The byte offsets of the members of a struct in a module, by name; `None` if there is no such struct.
 #[must_use]
 pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
     module.types.iter().find_map(|(_, ty)| match &ty.inner {

@@ -11,7 +11,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{Source, check::ShaderProblem, wgsl};
+use super::{Source, problem::ShaderProblem, wgsl};
 use crate::parameter;
 
 /// The vocabulary of the models, in the order of dependencies.

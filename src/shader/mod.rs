@@ -7,6 +7,8 @@ mod explain;
 pub mod interpret;
 pub mod limits;
 pub mod pitfall;
+mod place;
+mod problem;
 pub mod report;
 pub mod slim;
 mod token;

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Outcome,
-    lights::{arguments, place, sample, words},
+    lamp::{arguments, place, sample, words},
     sample::{any_direction, random},
 };
 use crate::{

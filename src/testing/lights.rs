@@ -6,7 +6,8 @@ use glam::Vec3;
 
 use super::{
     Outcome, extended,
-    sample::{any_direction, random, random_value},
+    lamp::{arguments, place, sample, words},
+    sample::random,
 };
 use crate::{
     light::{Incident, LightEntry, LightRecord},
@@ -36,31 +37,7 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
     flux(light)
 }
 
-/// A light of a type somewhere in the default room, with parameters as a scene may have them.
-pub(super) fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
-    let mut values = Values::default();
-    for p in light.parameters {
-        values.set(p.name, random_value(p, seed));
-    }
-    let position = place(seed);
-    let direction = any_direction(seed);
-    let d = light.declaration;
-    let record = LightRecord {
-        light_type: light.index,
-        position: if d.has_position { position } else { Vec3::ZERO },
-        direction: if d.has_direction { direction } else { Vec3::ZERO },
-        colour: Vec3::ONE,
-        intensity: 0.1 + 100.0 * random(seed),
-    };
-    (values, record)
-}
-
-/// A point in the default room.
-pub(super) fn place(seed: &mut u64) -> Vec3 {
-    Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
-}
-
-/// The light from a light type, for comparison: direction, intensity, 1 if it is uniform.
+/// The answer of a light, for comparison: direction, intensity, 1 if it comes from everywhere.
 fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
     match incident {
         Incident::From { l, intensity } => (l, intensity, 0),
@@ -68,35 +45,7 @@ fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
     }
 }
 
-/// The parameters of a light in the layout of its WGSL function, and the numbers of its files.
-pub(super) fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
-    let mut words = light.words(values, Encoding::Srgb);
-    let mut files = Vec::new();
-    for (at, table) in light.tables(values) {
-        words[at] = files.len() as u32;
-        files.extend(table.numbers.iter().map(|n| n.to_bits()));
-    }
-    (words, files)
-}
-
-/// The arguments of a light type's WGSL function: the light, its own parameters, the point.
-pub(super) fn arguments(record: &LightRecord, own: &[u32], p: Vec3) -> Vec<u32> {
-    let LightRecord { light_type, position, direction, colour, intensity } = *record;
-    let mut arguments = Vec::new();
-    let mut put = |numbers: &[f32]| arguments.extend(numbers.iter().map(|n| n.to_bits()));
-    put(&position.to_array());
-    put(&[f32::from_bits(light_type)]);
-    put(&direction.to_array());
-    put(&[intensity]);
-    put(&colour.to_array());
-    // The offset of the parameters, which are passed here directly.
-    put(&[0.0]);
-    arguments.extend(own);
-    arguments.extend(p.to_array().map(f32::to_bits));
-    arguments
-}
-
-/// Checks that WGSL interpreted on the CPU agrees with the Rust function.
+/// WGSL that the CPU interprets agrees with the Rust function.
 ///
 /// # Errors
 /// Returns the first difference.

@@ -19,6 +19,7 @@
 
 pub mod equations;
 mod extended;
+mod lamp;
 pub mod laws;
 pub mod lights;
 pub mod meshes;

@@ -145,7 +145,7 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
 
 fn run(job: &Job, progress: &Progress) -> Outcome {
     let Job { form, scene, registry, stem, object, point, remark, view, path, before } = job;
-    let view = view::holds_one(form).then_some(*view);
+    let view = form.of_view.then_some(*view);
     let (scene, of_view) = view::exported(form, scene, view, stem, registry);
     let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object, point: *point };
     let made = (form.make)(&request, progress).and_then(|export| {

@@ -15,6 +15,7 @@ pub const BEVY: Form = Form {
     summary: "a Cargo project with one readable main.rs and the WGSL in use; cargo run opens a window",
     makes: Makes::Folder,
     of_object: false,
+    of_view: true,
     make,
 };
 

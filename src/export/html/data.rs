@@ -18,7 +18,7 @@ use crate::{
     },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, ParameterKind, Value, json as value, layout, stride},
-    reflection::{Ambient, ModelEntry, OnPages, Term},
+    reflection::{Ambient, ModelEntry, OnPages},
     registry::Registry,
     scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
@@ -286,7 +286,7 @@ fn model(
     let parts: Vec<_> = what
         .equation
         .iter()
-        .map(|part| json!({ "term": term(part.term), "html": equation(part.text) }))
+        .map(|part| json!({ "term": part.term.id(), "html": equation(part.text) }))
         .collect();
     json!({
         "id": what.id,
@@ -329,16 +329,6 @@ fn fixed(entry: &ModelEntry, registry: &Registry) -> Option<&'static str> {
     (!follows).then_some(
         "its knobs are fixed on the page, since only the program calculates its multiple scattering",
     )
-}
-
-/// The class of a term.
-pub fn term(term: Term) -> &'static str {
-    match term {
-        Term::Total => "total",
-        Term::Ambient => "ambient",
-        Term::Diffuse => "diffuse",
-        Term::Specular => "specular",
-    }
 }
 
 fn parameters(all: &[Parameter]) -> Vec<Json> {

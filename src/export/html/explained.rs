@@ -5,7 +5,6 @@ use glam::Vec3;
 use serde_json::{Map, Value as Json, json};
 
 use super::{
-    data::term,
     equation::{equation, escaped},
     packed,
 };
@@ -262,7 +261,7 @@ fn light(out: &mut String, seen: &Seen, lit: &Lit) {
 /// A line of the equation: as written, with numbers, and its value.
 fn worked(line: &Line) -> String {
     let mut out = String::new();
-    let class = term(line.term);
+    let class = line.term.id();
     let written = line.text.contains('=');
     let head = if written { line.text.clone() } else { format!("{} =", line.defines()) };
     let value = line.value.as_ref().map(|value| match line.rgb() {

@@ -27,6 +27,7 @@ pub const HTML: Form = Form {
     summary: "a page that shows the scene in a browser, with its knobs, in one file for students to open",
     makes: Makes::File("html"),
     of_object: false,
+    of_view: false,
     make,
 };
 

@@ -43,6 +43,7 @@ pub const FORM: Form = Form {
     summary: "a folder with a scene for Mitsuba 3: mitsuba -m scalar_rgb FOLDER/scene.xml",
     makes: Makes::Folder,
     of_object: false,
+    of_view: true,
     make,
 };
 

@@ -4,12 +4,10 @@ use std::collections::HashMap;
 
 use super::{
     Unsupported,
-    instruction::{Instruction, Operation},
+    instruction::{Instruction, Operation, REGISTERS},
 };
 
-/// Number of registers, for variables, intermediate values and constants.
-pub(super) const REGISTERS: usize = 1 << 16;
-/// Maximum number of instructions, calls and expressions of a program with all calls inlined.
+/// The most instructions, calls and expressions of a program with all calls inlined.
 const WORK: usize = 1 << 20;
 /// Maximum nesting of blocks and calls.
 const DEPTH: usize = 200;

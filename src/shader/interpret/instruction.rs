@@ -2,7 +2,10 @@
 
 use std::f32::consts::PI;
 
-use super::{STEPS, StepLimit, builder::REGISTERS};
+use super::{STEPS, StepLimit};
+
+/// The number of registers, for variables, intermediate values and constants.
+pub(super) const REGISTERS: usize = 1 << 16;
 
 /// The registers of a running program. They are floats since most instructions calculate with floats: moving
 /// values between the processor's integer and float registers would take longer than the calculation. Other

@@ -14,7 +14,6 @@ use super::{
     Unsupported,
     builder::{Builder, Operand},
     shape::{self, Layout},
-    statement::Around,
 };
 
 pub(super) type Result<T> = std::result::Result<T, Unsupported>;
@@ -40,6 +39,12 @@ pub(super) struct Place {
     /// The register with an offset to add.
     pub(super) offset: Option<u16>,
     pub(super) layout: Layout,
+}
+
+/// A loop or a switch around a statement: jumps out of it, and to the next iteration.
+pub(super) struct Around {
+    pub(super) breaks: Vec<usize>,
+    pub(super) continues: Option<Vec<usize>>,
 }
 
 /// A function being inlined.

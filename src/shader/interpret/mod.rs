@@ -28,8 +28,8 @@ mod statement;
 #[cfg(test)]
 mod tests;
 
-use builder::{Operand, REGISTERS};
-use instruction::{Instruction, Registers, execute};
+use builder::Operand;
+use instruction::{Instruction, REGISTERS, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
 /// Maximum number of instructions in the loops of one run, counting the body in every iteration; a few

@@ -15,8 +15,8 @@ pub(super) enum Layout {
     Buffer,
 }
 
-/// Maximum number of words in one value.
-const LARGEST: usize = super::builder::REGISTERS;
+/// The most words of one value.
+const LARGEST: usize = super::instruction::REGISTERS;
 
 fn too_large() -> Unsupported {
     Unsupported { what: "it has a value that is too large".to_owned() }

@@ -7,15 +7,9 @@ use naga::{Block, Expression, Handle, Statement, SwitchValue};
 use super::{
     builder::Operand,
     instruction::Operation as O,
-    lower::{Frame, Lowering, Result, Value, unsupported},
+    lower::{Around, Frame, Lowering, Result, Value, unsupported},
     shape::Layout,
 };
-
-/// A loop or a switch around a statement: jumps out of it, and to the next iteration.
-pub(super) struct Around {
-    breaks: Vec<usize>,
-    continues: Option<Vec<usize>>,
-}
 
 /// True if nothing after a statement runs.
 fn leaves(block: &Block) -> bool {

@@ -5,8 +5,7 @@
 use std::{cell::Cell, collections::HashMap};
 
 use super::{
-    Limits,
-    text::Refusal,
+    Limits, Refusal,
     token::{Finding, Kind, Token},
 };
 

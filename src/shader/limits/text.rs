@@ -3,24 +3,9 @@
 //! is long.
 
 use super::{
-    Limits, expansion,
+    Limits, Refusal, expansion,
     token::{Finding, Kind, Token, tokens},
 };
-
-/// The reason for refusing a text.
-#[derive(Debug)]
-pub(super) enum Refusal {
-    /// An error at a byte.
-    At(usize, String),
-    /// The size of the whole text.
-    Whole(String),
-}
-
-impl From<Finding> for Refusal {
-    fn from((at, what): Finding) -> Self {
-        Self::At(at, what)
-    }
-}
 
 /// Finds anything beyond a limit. `binds` is true for bytes at which bindings may be declared.
 pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) -> Result<(), Refusal> {

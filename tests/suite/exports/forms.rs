@@ -362,6 +362,7 @@ fn a_form_that_makes_one_file_replaces_one_file() {
         summary: "a file",
         makes: Makes::File("txt"),
         of_object: false,
+        of_view: true,
         make: |_, _| Ok(Export::file("new")),
     };
     let folder = tempfile::tempdir().expect("a folder");

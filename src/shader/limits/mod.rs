@@ -14,79 +14,35 @@ use std::thread;
 use naga::{Module, Span};
 
 use super::{
-    check::{ShaderProblem, locate},
     compose::{Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
-    token,
+    place::locate,
+    problem::ShaderProblem,
+    token::{self, Finding},
 };
 
 mod closed;
 mod expansion;
 mod module;
+mod numbers;
 mod text;
 
 pub use closed::{is_empty, unfinished};
+pub use numbers::{LIMITS, Limits};
 
-/// Limits on a shader.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Maximum size of a composed text, in bytes. The preprocessor has 21 bits for a position in it.
-    pub bytes: usize,
-    /// Maximum number of tokens in a composed text.
-    pub tokens: usize,
-    /// Maximum number of statements in a composed text.
-    pub statements: usize,
-    /// Maximum number of declarations in a composed text: functions, constants, types, variables.
-    pub declarations: usize,
-    /// Maximum nesting of brackets, including template lists.
-    pub nesting: usize,
-    /// Maximum number of operators, calls and brackets on one path through an expression.
-    pub depth: usize,
-    /// Maximum nesting of blocks; each `else if` counts as nested in the one before.
-    pub blocks: usize,
-    /// Maximum number of `case` values in a switch.
-    pub cases: usize,
-    /// Maximum length of a chain of declarations that use each other.
-    pub chain: usize,
-    /// Maximum number of elements in an array.
-    pub elements: u64,
-    /// Maximum number of words in a constant or a type when everything in it is expanded.
-    pub expansion: u64,
-    /// Maximum size of a value or variable, in bytes. Software Vulkan takes quadratic time: ten seconds for
-    /// this size.
-    pub value_bytes: u32,
-    /// Maximum size of the variables of a function, including the functions that it calls, and of a module,
-    /// in bytes; also that of constants.
-    pub variable_bytes: u64,
-    /// Maximum number of expressions in a function.
-    pub expressions: usize,
-    /// Maximum length of a chain of expressions that use each other, including through `let`.
-    pub values: usize,
-    /// Maximum number of steps in a function with all calls inlined, as drivers do.
-    pub steps: u64,
-    /// Maximum nesting of loops.
-    pub loops: usize,
+/// The reason for refusing a text.
+#[derive(Debug)]
+enum Refusal {
+    /// Something at a byte.
+    At(usize, String),
+    /// The size of the whole.
+    Whole(String),
 }
 
-/// The limits for models and other shaders of the lab.
-pub const LIMITS: Limits = Limits {
-    bytes: 1 << 20,
-    tokens: 100_000,
-    statements: 8_192,
-    declarations: 2_048,
-    nesting: 100,
-    depth: 256,
-    blocks: 64,
-    cases: 256,
-    chain: 64,
-    elements: 4_096,
-    expansion: 65_536,
-    value_bytes: 4 << 10,
-    variable_bytes: 16 << 10,
-    expressions: 32_768,
-    values: 1_024,
-    steps: 196_608,
-    loops: 16,
-};
+impl From<Finding> for Refusal {
+    fn from((at, what): Finding) -> Self {
+        Self::At(at, what)
+    }
+}
 
 /// Stack size for parsing and checking anything within the limits, in bytes: twice that of Bevy's threads.
 const STACK: usize = 4 << 20;
@@ -105,12 +61,12 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
         })
     };
     text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {
-        text::Refusal::At(at, what) => {
+        Refusal::At(at, what) => {
             let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
             locate(composed, Some((line_of(at), at - start + 1)), what)
         }
-        // The longest file accounts for most of it.
-        text::Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
+        // The longest file makes up most of it.
+        Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
     })
 }
 
