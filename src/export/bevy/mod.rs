@@ -2,7 +2,7 @@
 //!
 //! `program` writes `main.rs`, `words` converts values and names to Rust.
 
-use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
+use super::{Export, ExportError, File, Form, Makes, Progress, Request, filled, lit::Lit, shader::Host};
 use crate::optics::tone::exposure_factor;
 
 mod program;
@@ -19,7 +19,9 @@ pub const BEVY: Form = Form {
     make,
 };
 
-/// The Bevy version of the project.
+/// The text of `Cargo.toml`.
+const MANIFEST: &str = include_str!("template/Cargo.toml.txt");
+/// The version of Bevy that the project is written for.
 const BEVY_VERSION: &str = "=0.19.1";
 /// The Bevy features that the project needs. Sound, gamepads and Wayland would need system packages to build;
 /// with X11 alone the window also opens on Wayland, through XWayland.
@@ -80,19 +82,5 @@ fn manifest(name: &str) -> String {
             format!("    {},\n", quoted.join(", "))
         })
         .collect();
-    format!(
-        "[package]
-name = \"{name}\"
-version = \"0.1.0\"
-edition = \"2024\"
-
-[dependencies]
-bevy = {{ version = \"{BEVY_VERSION}\", default-features = false, features = [
-{features}] }}
-
-# Bevy without optimisation is very slow.
-[profile.dev.package.\"*\"]
-opt-level = 3
-"
-    )
+    filled(MANIFEST, &[("name", name), ("version", BEVY_VERSION), ("features", &features)])
 }

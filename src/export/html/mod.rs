@@ -9,7 +9,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, write::ZlibEncoder};
 
 use self::equation::escaped;
-use super::{Export, ExportError, Form, Makes, Progress, Request};
+use super::{Export, ExportError, Form, Makes, Progress, Request, filled};
 
 mod blocks;
 mod data;
@@ -117,38 +117,9 @@ fn packed(bytes: &[u8]) -> Result<String, ExportError> {
         .map_err(|e| ExportError::refused(format!("it cannot be compressed: {e}")))
 }
 
-/// A text with its `{{placeholders}}` filled in. Inserted text is not searched again.
-fn filled(text: &str, places: &[(&str, &str)]) -> String {
-    let mut filled = String::new();
-    let mut parts = text.split("{{");
-    filled.push_str(parts.next().unwrap_or_default());
-    for part in parts {
-        let found = part.split_once("}}").and_then(|(name, after)| {
-            let (_, value) = places.iter().find(|(known, _)| *known == name)?;
-            Some((value, after))
-        });
-        match found {
-            Some((value, after)) => {
-                filled.push_str(value);
-                filled.push_str(after);
-            }
-            None => {
-                filled.push_str("{{");
-                filled.push_str(part);
-            }
-        }
-    }
-    filled
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn places_are_filled_once() {
-        assert_eq!(filled("a {{x}} {{y}} {{z", &[("x", "{{y}}"), ("y", "2")]), "a {{y}} 2 {{z");
-    }
 
     #[test]
     fn the_page_has_a_place_for_everything_and_no_end_of_its_script_within() {
