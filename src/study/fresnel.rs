@@ -21,20 +21,53 @@ use crate::{
 const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");
 /// Angles of the table, in degrees.
 const ANGLES: [f64; 5] = [0.0, 45.0, 60.0, 75.0, 85.0];
-/// Measured materials: id and name.
-const MATERIALS: [(&str, &str); 6] = [
-    ("water", "Water"),
-    ("n_bk7", "Glass (N-BK7)"),
-    ("diamond", "Diamond"),
-    ("copper", "Copper"),
-    ("gold", "Gold"),
-    ("aluminium", "Aluminium"),
+/// The id of the material whose reflectance falls before it rises.
+const ALUMINIUM: &str = "aluminium";
+/// Measured materials: id, name, and the colour of its curves if the plot has them.
+const MATERIALS: [(&str, &str, Option<usize>); 6] = [
+    ("water", "Water", None),
+    ("n_bk7", "Glass (N-BK7)", Some(0)),
+    ("diamond", "Diamond", Some(2)),
+    ("copper", "Copper", None),
+    ("gold", "Gold", Some(4)),
+    (ALUMINIUM, "Aluminium", Some(3)),
 ];
 /// Blinn–Phong with the width of this α and, at normal incidence, the brightness of glass: n = 2/α² − 2 and
 /// k_s = F₀/(4 α²). The shipped scene uses the same values.
 const ALPHA: f64 = 0.15;
 const EXPONENT: i64 = 87;
 const K_S: f64 = 0.444;
+
+/// A model of the pictures.
+struct Pictured {
+    id: &'static str,
+    name: &'static str,
+    /// What stands behind the name where there is room.
+    variety: &'static str,
+}
+
+const BLINN_PHONG: Pictured = Pictured { id: "blinn_phong", name: "Blinn–Phong", variety: "" };
+const MICROFACET: Pictured =
+    Pictured { id: "microfacet", name: "Microfacet", variety: " (GGX, exact Fresnel equations)" };
+
+/// A number for smooth glass, and for the lobe of each model.
+struct Growth {
+    smooth: f64,
+    microfacet: f64,
+    blinn_phong: f64,
+}
+
+/// The brightness of the highlights with the lamp in front alone, and with those behind alone.
+struct Peaks {
+    front: f64,
+    behind: f64,
+}
+
+impl Peaks {
+    fn ratio(&self) -> f64 {
+        self.behind / self.front
+    }
+}
 
 fn cosine(degrees: f64) -> f32 {
     // The cosine of 90° is exactly zero.
@@ -84,12 +117,14 @@ pub(super) fn brightest(picture: &Picture) -> f64 {
 }
 
 pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
-    let materials: Vec<(&Measured, &str)> =
-        MATERIALS.iter().filter_map(|(id, name)| Some((preset::by_id(id)?, *name))).collect();
+    let materials: Vec<_> = MATERIALS
+        .into_iter()
+        .filter_map(|(id, name, colour)| Some((preset::by_id(id)?, name, colour)))
+        .collect();
 
     // Reflectance by angle.
     let mut raw = Table::new("fresnel_reflectance", "material,angle_deg,exact,schlick");
-    for (m, name) in &materials {
+    for (m, name, _) in &materials {
         for i in 0..=180 {
             let a = f64::from(i) * 0.5;
             raw.row(&[name], &[a, exact(m, a), approximate(m, a)]);
@@ -97,7 +132,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     }
     let rows: Vec<Vec<String>> = materials
         .iter()
-        .map(|(m, name)| {
+        .map(|(m, name, _)| {
             let (n, k) = constants(m);
             let (angle, error) = worst(m);
             let mut row = vec![
@@ -110,25 +145,24 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             row
         })
         .collect();
-    let schlick_worst = materials.iter().map(|(m, _)| worst(m).1.abs()).fold(0.0, f64::max);
+    let schlick_worst = materials.iter().map(|(m, ..)| worst(m).1.abs()).fold(0.0, f64::max);
     let mut series = Vec::new();
-    for (colour, id) in [(0, "n_bk7"), (2, "diamond"), (4, "gold"), (3, "aluminium")] {
-        let Some((m, name)) = materials.iter().find(|(m, _)| m.id == id) else { continue };
+    for (m, name, colour) in &materials {
+        let Some(colour) = *colour else { continue };
         let curve = |f: &dyn Fn(f64) -> f64| (0..=90).map(|a| (f64::from(a), f(f64::from(a)))).collect();
-        let mark = [Mark::None, Mark::None, Mark::None][0];
         series.push(Series {
             name: (*name).to_owned(),
             points: curve(&|a| exact(m, a)),
             colour,
             line: Line::Solid,
-            mark,
+            mark: Mark::None,
         });
         series.push(Series {
             name: "… after Schlick".to_owned(),
             points: curve(&|a| approximate(m, a)),
             colour,
             line: Line::Dashed,
-            mark,
+            mark: Mark::None,
         });
     }
     series.push(Series {
@@ -190,8 +224,12 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let at = |curve: &[(f64, f64)], angle: f64| {
         curve.iter().find(|p| (p.0 - angle).abs() < 0.1).map_or(f64::NAN, |p| p.1)
     };
-    let growth = [&ideal, &glass_lobe, &plastic_lobe].map(|c| at(c, 75.0));
-    let grazing = [&ideal, &glass_lobe, &plastic_lobe].map(|c| at(c, 85.0));
+    let all_at = |angle: f64| Growth {
+        smooth: at(&ideal, angle),
+        microfacet: at(&glass_lobe, angle),
+        blinn_phong: at(&plastic_lobe, angle),
+    };
+    let (growth, grazing) = (all_at(75.0), all_at(85.0));
     let relative = Plot {
         title: "Reflection of the specular lobe relative to normal incidence".to_owned(),
         x: Axis::new("angle of view (°)", 0.0, 90.0, 10),
@@ -236,15 +274,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     // A row of objects, without the room above and below it.
     scene.observer.field_of_view = 19.6;
     let size = lab.size(960, 366);
-    let both = [("blinn_phong", "Blinn–Phong"), ("microfacet", "Microfacet (GGX, exact Fresnel equations)")];
-    let mut shown = Vec::new();
-    let mut peaks = Vec::new();
-    for (id, name) in both {
-        let picture = lab.render(&scene, id, TermSelection::All, size);
-        shown.push((
-            image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {name}"))?,
-            name,
-        ));
+    let peaks_of = |model: &Pictured| -> Result<_, StudyError> {
+        let picture = lab.render(&scene, model.id, TermSelection::All, size);
+        let name = format!("{}{}", model.name, model.variety);
+        let shown = image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {name}"))?;
         let alone = |keep: &dyn Fn(usize) -> bool| {
             let mut scene = scene.clone();
             let mut i = 0;
@@ -252,46 +285,45 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 i += 1;
                 keep(i - 1)
             });
-            brightest(&lab.render(&scene, id, TermSelection::All, size))
+            brightest(&lab.render(&scene, model.id, TermSelection::All, size))
         };
-        peaks.push([alone(&|i| i == 0), alone(&|i| i > 0)]);
-    }
+        let peaks = Peaks { front: alone(&|i| i == 0), behind: alone(&|i| i > 0) };
+        Ok((pictures(&[(shown, &name)]), peaks))
+    };
+    let (blinn_phong_picture, blinn_phong) = peaks_of(&BLINN_PHONG)?;
+    let (microfacet_picture, microfacet) = peaks_of(&MICROFACET)?;
+    let both = [(BLINN_PHONG, &blinn_phong), (MICROFACET, &microfacet)];
     let mut from_pictures = Table::new("fresnel_pictures", "model,front_peak,behind_peak");
-    for ((id, _), [front, behind]) in both.iter().zip(&peaks) {
-        from_pictures.row(&[id], &[*front, *behind]);
+    for (model, peaks) in &both {
+        from_pictures.row(&[model.id], &[peaks.front, peaks.behind]);
     }
     let shown = lab.figure(
-        &html! { div .stack { (pictures(&shown[..1])) (pictures(&shown[1..])) } },
+        &html! { div .stack { (blinn_phong_picture) (microfacet_picture) } },
         &html! {
             "Objects of black glass (n = 1.5, α = " (ALPHA) ") with one lamp in front and three of the same intensity behind them. Blinn–Phong’s height and width are set so that "
             "the highlight of the front lamp is the same. Scene " code { "fresnel_effect.json" } "."
         },
     );
-    let ratio = |p: [f64; 2]| p[1] / p[0];
     let picture_table = lab.table(
         &html! { "Mean of the brightest 1\u{a0}% of the pixels covered by objects in the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
         &["Model", "lamp in front", "lamps behind", "behind / front"],
-        &both
-            .iter()
-            .zip(&peaks)
-            .map(|((_, name), p)| {
-                vec![
-                    name.split(" (").next().unwrap_or(name).to_owned(),
-                    fixed(p[0], 3),
-                    fixed(p[1], 3),
-                    fixed(ratio(*p), 1),
-                ]
-            })
-            .collect::<Vec<_>>(),
+        &both.map(|(model, peaks)| {
+            vec![
+                model.name.to_owned(),
+                fixed(peaks.front, 3),
+                fixed(peaks.behind, 3),
+                fixed(peaks.ratio(), 1),
+            ]
+        }),
     );
 
-    let dip = preset::by_id("aluminium").and_then(dip);
-    let physical = growth[1] > 2.0 && (growth[1] / growth[0]).ln().abs() < 0.5;
-    let classical = growth[2] > 2.0;
+    let dip = preset::by_id(ALUMINIUM).and_then(dip);
+    let physical = growth.microfacet > 2.0 && (growth.microfacet / growth.smooth).ln().abs() < 0.5;
+    let classical = growth.blinn_phong > 2.0;
     let confirmed = physical && !classical;
     let finding = format!(
         "From the normal to 75° the reflection of smooth glass changes by a factor of {:.1}, that of the microfacet lobe by {:.1}, and that of Blinn–Phong’s lobe by {:.2}.",
-        growth[0], growth[1], growth[2]
+        growth.smooth, growth.microfacet, growth.blinn_phong
     );
     let body = html! {
         h3 { "Question" }
@@ -321,20 +353,20 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         div .conclusion {
             p {
                 @if physical {
-                    "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth[1], 1)) " times as much as at normal incidence, smooth glass "
-                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times."
-                    @if grazing[1] < grazing[0] { " It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer." }
+                    "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth.microfacet, 1)) " times as much as at normal incidence, smooth glass "
+                    (fixed(growth.smooth, 1)) " times; at 85° " (fixed(grazing.microfacet, 1)) " and " (fixed(grazing.smooth, 1)) " times."
+                    @if grazing.microfacet < grazing.smooth { " It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer." }
                 } @else {
-                    "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth[1], 1)) ", smooth glass by " (fixed(growth[0], 1)) "."
+                    "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth.microfacet, 1)) ", smooth glass by " (fixed(growth.smooth, 1)) "."
                 }
             }
             p {
                 @if classical {
-                    "Blinn–Phong’s lobe grows as well, by " (fixed(growth[2], 2)) "."
+                    "Blinn–Phong’s lobe grows as well, by " (fixed(growth.blinn_phong, 2)) "."
                 } @else {
-                    "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth[2], 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
-                    "In the brightest 1\u{a0}% of the pictures the lamps behind the objects are " (fixed(ratio(peaks[1]), 1)) " times as bright as the lamp in front under the microfacet model and "
-                    (fixed(ratio(peaks[0]), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
+                    "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth.blinn_phong, 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
+                    "In the brightest 1\u{a0}% of the pictures the lamps behind the objects are " (fixed(microfacet.ratio(), 1)) " times as bright as the lamp in front under the microfacet model and "
+                    (fixed(blinn_phong.ratio(), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
                 }
             }
             p {
