@@ -10,6 +10,11 @@
 //!   components changed by systems
 //! ```
 //!
+//! The program is a member of the family that Sasha Soraine specifies in the *Commonality Analysis for Lights, Camera,
+//! Models!* (version 3.0, 2019). Comments call it CA, and name its parts by their numbers: DD are data definitions, IM
+//! instance models, which are reflection models, AB and AR assumptions bound at build time and at run time, LC likely
+//! changes; names in capitals are its system variables.
+//!
 //! The outside of the program:
 //!
 //! - [`declared`]: enums whose values are declared in a file each.

@@ -78,7 +78,7 @@ fn half_slope(l: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec2<f32> {
 // Squared distances below (1 mm)² count as (1 mm)²: the guard against division by zero.
 const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
 
-// 1/d² (CA DD7).
+// 1/d².
 fn inverse_square(to_light: vec3<f32>) -> f32 {
     return 1.0 / max(dot(to_light, to_light), MINIMUM_DISTANCE_SQUARED);
 }

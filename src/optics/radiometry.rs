@@ -8,7 +8,7 @@ use glam::Vec3;
 /// mm)². Only visible on a surface that touches the light.
 pub const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
 
-/// The intensity that reaches a point at distance `d` from a point source, `1 / d²` (CA DD7; exact:
+/// The intensity that reaches a point at distance `d` from a point source, `1 / d²` (CA DD7, intensity at a point; exact:
 /// no window and no clamp but [`MINIMUM_DISTANCE_SQUARED`]). Metres in, 1/m² out.
 #[must_use]
 pub fn inverse_square(to_light: Vec3) -> f32 {

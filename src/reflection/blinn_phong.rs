@@ -13,7 +13,7 @@ use crate::{
 };
 
 parameters! {
-    /// **Blinn–Phong** — Phong's highlight with the half vector (CA IM4).
+    /// **Blinn–Phong** — Phong's highlight with the half vector, instance model 4 of the Commonality Analysis.
     ///
     /// ```text
     /// I_a = k_a C_b     I_d = k_d max(0, N·L) C_b     I_s = k_s max(0, N·H)^α C_s

@@ -9,7 +9,7 @@ use crate::{
 };
 
 parameters! {
-    /// **Lambert** — the ideal matte surface (CA IM1).
+    /// **Lambert** — the ideal matte surface, instance model 1 of the Commonality Analysis.
     ///
     /// ```text
     /// response = max(0, N·L) · C_b          f_r = C_b / π

@@ -21,7 +21,7 @@ const WRAP_EXPONENT: Parameter = Parameter {
 };
 
 parameters! {
-    /// **Modified Lambert** — diffuse wrap: light reaches around the edge (CA IM2).
+    /// **Modified Lambert** — diffuse wrap: light reaches around the edge; instance model 2 of the Commonality Analysis.
     ///
     /// ```text
     /// response = max(0, (N·L) k_d + (1 − k_d))^p · C_b
@@ -33,7 +33,7 @@ parameters! {
     /// | `k_d` | k_d | – | 0.5–1 | 0.8 |
     /// | `wrap_exponent` | p | – | 1–4 | 2 |
     ///
-    /// `N·L` is not clamped; the bracket is, before it is raised to the power. Source: CA IM2; the half-Lambert case is
+    /// `N·L` is not clamped; the bracket is, before it is raised to the power. Source: Commonality Analysis, IM2; the half-Lambert case is
     /// J. Mitchell, M. McTaggart, C. Green (2006), *Shading in Valve's Source Engine*. Breaks energy conservation and
     /// reciprocity: the part of the surface facing away from the light receives none, and yet shines.
     pub struct ModLambert {

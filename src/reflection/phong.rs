@@ -13,7 +13,7 @@ use crate::{
 };
 
 parameters! {
-    /// **Phong** — the first highlight (CA IM3).
+    /// **Phong** — the first highlight, instance model 3 of the Commonality Analysis.
     ///
     /// ```text
     /// I_a = k_a C_b     I_d = k_d max(0, N·L) C_b     I_s = k_s max(0, R·V)^α C_s

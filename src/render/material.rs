@@ -39,7 +39,7 @@ use crate::{custom::CustomFile, reflection::ReflectionModel};
 /// The tangent of the vertex. Three numbers instead of Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
     MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
-/// The normal of the polygon (CA DD8), on meshes for shading models that calculate per polygon.
+/// The normal of the polygon, on meshes for shading models that calculate per polygon.
 pub const FACE_NORMAL: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
 /// The tangent of the polygon, on meshes for shading models that calculate per polygon.
@@ -171,7 +171,7 @@ impl<M: Clone + 'static> TypePath for ModelMaterial<M> {
 }
 
 impl<M: Clone + 'static> Material for ModelMaterial<M> {
-    // Objects neither shadow nor light each other (CA AB5, AB6), so no depth-only passes.
+    // The Commonality Analysis assumes that objects neither shadow nor light each other (AB5, AB6), so no depth-only passes.
     fn enable_prepass() -> bool {
         false
     }

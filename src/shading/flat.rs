@@ -4,7 +4,7 @@ use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
-    /// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (CA DD8).
+    /// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (CA DD8, normals for flat shading).
     ///
     /// Source: J. Bouknight (1970), *A Procedure for Generation of Three-dimensional Half-toned Computer
     /// Graphics Presentations*. Shows the polygons themselves, and Mach bands between them.

@@ -4,7 +4,8 @@ use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
-    /// **Gouraud shading**: colour calculated at the vertices, interpolated between them (CA DD9).
+    /// **Gouraud shading**: colour calculated at the vertices, interpolated between them (CA DD9, normals for Gouraud
+    /// shading).
     ///
     /// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; misses highlights that fall
     /// between the vertices.

@@ -106,12 +106,12 @@ pub trait Lighting {
 pub struct Corner {
     /// The position.
     pub position: Vec3,
-    /// The vertex normal, CA DD9.
+    /// The vertex normal: the mean of the normals of the polygons around it.
     pub normal: Vec3,
     /// The tangent of the vertex: the brush direction of the surface. Zero without one, and in the CPU
     /// renderer for isotropic models.
     pub tangent: Vec3,
-    /// The normal of the polygon, CA DD8.
+    /// The normal of the polygon.
     pub face_normal: Vec3,
     /// The tangent of the polygon.
     pub face_tangent: Vec3,

@@ -1,4 +1,5 @@
-//! Surface normals from polygons: CA DD8 for polygons, CA DD9 for vertices; tangents likewise.
+//! Surface normals of polygons and of vertices, as the data definitions 8 and 9 of the Commonality Analysis (CA) have
+//! them; tangents likewise.
 
 use glam::Vec3;
 

@@ -4,7 +4,8 @@ use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
-    /// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (CA DD10).
+    /// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (CA DD10, normals for
+    /// Phong shading).
     ///
     /// Source: B. T. Phong (1975), *Illumination for Computer Generated Pictures*. Not to be confused
     /// with the Phong reflection model of the same paper.

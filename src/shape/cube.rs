@@ -8,7 +8,7 @@ use crate::parameters;
 parameters! {
     /// **Cube** of edge 1, each face cut into n × n squares.
     ///
-    /// Vertices on edges and corners belong to two and three faces at once, so their normals (CA DD9) point between the faces:
+    /// Vertices on edges and corners belong to two and three faces at once, so their normals, which are means, point between the faces:
     /// Gouraud and Phong shading round off the outermost row of squares. The faces are brushed horizontally, top and bottom
     /// along x.
     pub struct Cube {}

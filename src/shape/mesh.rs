@@ -1,4 +1,4 @@
-//! Polygon meshes (CA AB10, AB11): a list of vertices and a set of polygons over them.
+//! Polygon meshes: a list of vertices and a set of polygons over them, as the Commonality Analysis assumes (AB10, AB11).
 
 use glam::{Vec2, Vec3};
 
@@ -21,7 +21,7 @@ pub struct Polygon {
     corners: [u32; 4],
     count: u8,
     brushed: Vec3,
-    /// Zero where the vertex has the normal of CA DD9.
+    /// Zero where the vertex has the mean of the normals of its polygons.
     normals: [Vec3; 4],
 }
 
@@ -105,7 +105,7 @@ impl PolygonMesh {
         (out, polygon.corners().len())
     }
 
-    /// The normal of every polygon, CA DD8.
+    /// The normal of every polygon: the normalised cross product of two of its sides (CA DD8).
     #[must_use]
     pub fn polygon_normals(&self) -> Vec<Vec3> {
         self.polygons

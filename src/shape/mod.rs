@@ -72,7 +72,7 @@ pub trait ObjectType: ParameterSet + Component + Reflectable {
     const DECLARATION: Declaration;
 
     /// The mesh for legal parameters and a legal tessellation. Coincident vertices are shared, since vertex normals are
-    /// means over shared vertices (CA DD9); corners run counter-clockwise seen from outside. Polygons are brushed
+    /// means over shared vertices; corners run counter-clockwise seen from outside. Polygons are brushed
     /// horizontally unless the shape sets another direction; see [`Polygon::brushed`](mesh::Polygon::brushed).
     fn mesh(&self, tessellation: u32) -> PolygonMesh;
 }

@@ -9,7 +9,7 @@ parameters! {
     /// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
     ///
     /// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the tessellation, the
-    /// closer the vertex normals (CA DD9) come to the position divided by the radius. It is brushed along the parallels.
+    /// closer the vertex normals come to the position divided by the radius. It is brushed along the parallels.
     pub struct Sphere {}
 }
 

@@ -1,4 +1,4 @@
-// Blinn–Phong (J. Blinn 1977, CA IM4): Phong with the half vector.
+// Blinn–Phong (J. Blinn 1977): Phong with the half vector.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_i = dot(frame.n, l);
     var specular = vec3(0.0);

@@ -1,4 +1,4 @@
-// Lambert (J. H. Lambert 1760, CA IM1): max(0, N·L) C_b.
+// Lambert (J. H. Lambert 1760): max(0, N·L) C_b.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), max(dot(frame.n, l), 0.0) * m.base_colour, vec3(0.0));
 }

@@ -1,4 +1,4 @@
-// Phong (B. T. Phong 1975, CA IM3): I_a + I_d + I_s, the highlight around the mirror direction.
+// Phong (B. T. Phong 1975): I_a + I_d + I_s, the highlight around the mirror direction.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_i = dot(frame.n, l);
     var specular = vec3(0.0);

@@ -1,4 +1,4 @@
-// Flat shading (CA DD8): one colour per polygon, calculated at its centre with its face normal. Every
+// Flat shading: one colour per polygon, calculated at its centre with its face normal. Every
 // corner of a polygon calculates the same colour, so interpolation leaves it constant.
 
 fn shade_vertex(corner: Corner) -> Varying {

@@ -1,4 +1,4 @@
-// Gouraud shading (H. Gouraud 1971, CA DD9): colour calculated at the vertices, interpolated.
+// Gouraud shading (H. Gouraud 1971): colour calculated at the vertices, interpolated.
 
 fn shade_vertex(corner: Corner) -> Varying {
     let colour = illuminate(corner.position, corner.normal, corner.tangent);

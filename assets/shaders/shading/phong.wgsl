@@ -1,4 +1,4 @@
-// Phong shading (B. T. Phong 1975, CA DD10): normals interpolated and renormalised, colour per pixel.
+// Phong shading (B. T. Phong 1975): normals interpolated and renormalised, colour per pixel.
 
 fn shade_vertex(corner: Corner) -> Varying {
     return Varying(corner.position, corner.normal, corner.tangent, vec3(0.0), vec3(0.0));

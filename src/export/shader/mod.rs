@@ -199,34 +199,11 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
     composer.source(source);
     match composer.composed.problem {
         Some(problem) => Err(ExportError::refused(problem.to_string())),
-        None => Ok(without_codes(&composer.composed.text)),
+        None => Ok(composer.composed.text.replace("\r\n", "\n")),
     }
 }
 
-/// A text without codes of requirements in comments: `(CA DD7)`, `, CA DD9)`.
-fn without_codes(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for line in text.lines() {
-        let mut line = line.to_owned();
-        if line.trim_start().starts_with("//") {
-            while let Some((begin, length)) = code(&line) {
-                line.replace_range(begin..begin + length, "");
-            }
-        }
-        out.push_str(&line);
-        out.push('\n');
-    }
-    out
-}
-
-/// The range of the first code in a comment: with its brackets, or with the comma before it.
-fn code(line: &str) -> Option<(usize, usize)> {
-    let whole = line.find(" (CA ").and_then(|at| Some((at, line[at..].find(')')? + 1)));
-    whole.or_else(|| line.find(", CA ").and_then(|at| Some((at, line[at..].find(')')?))))
-}
-
-/// The light loop, with a fixed number of lights and all terms. From the built-in loop, parts that the scene
-/// does not need are removed.
+/// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
 fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let (mut joined, mut simpler) = (String::new(), SIMPLER);

@@ -74,7 +74,7 @@ parameters! {
     /// **Mesh**: the polygons of a [file](FORMAT). They are scaled and moved so that the largest extent of the box around
     /// them is the size of the object, and the middle of that box is its position; x, y and z are those of the file.
     ///
-    /// Vertices in one place are one, so that the mean of the normals (CA DD9) is over all polygons that meet there. With
+    /// Vertices in one place are one, so that the mean of the normals is over all polygons that meet there. With
     /// the normals of the file they are one where their normals are equal, too, so that edges that the file means to be
     /// sharp stay sharp. Polygons of more than four corners are cut into triangles. A polygon is brushed where its first
     /// texture coordinate grows, and horizontally if the file has none.

@@ -356,7 +356,7 @@ mod tests {
         };
         let computed = mesh(build(), false);
         assert_eq!(computed.positions.len(), 4);
-        // CA DD9: the mean.
+        // The mean of both polygons.
         let mean = (computed.polygon_normals()[0] + computed.polygon_normals()[1]).normalize();
         assert!((computed.vertex_normals()[0] - mean).length() < 1e-6);
         let own = mesh(build(), true);
