@@ -22,13 +22,13 @@ use std::{
 
 use notify::{Event, EventKind, RecursiveMode, event::ModifyKind};
 
-pub(crate) use self::look::Print;
+pub(crate) use self::scan::Print;
 use self::{
-    look::{Found, Place, is_temporary},
+    scan::{Found, Place, is_temporary},
     system::{is_absent, is_reading, reason},
 };
 
-mod look;
+mod scan;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -206,10 +206,10 @@ struct Root {
 }
 
 impl Root {
-    fn look(&self) -> Found {
+    fn scan(&self) -> Found {
         match self.kind {
-            Kind::Folder => look::folder(&self.path),
-            Kind::File => look::file(&self.path),
+            Kind::Folder => scan::folder(&self.path),
+            Kind::File => scan::file(&self.path),
         }
     }
 
@@ -262,7 +262,7 @@ impl Worker {
                 None => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 Some(at) => orders.recv_timeout(at.saturating_duration_since(Instant::now())),
             };
-            let mut look = false;
+            let mut rescan = false;
             let mut done = Vec::new();
             let more = std::iter::from_fn(|| orders.try_recv().ok());
             let batch = match order {
@@ -280,14 +280,14 @@ impl Worker {
                         self.forget(&path);
                         done.push(ready);
                     }
-                    Order::Heard(Ok(event)) => look |= self.hear(&event),
+                    Order::Heard(Ok(event)) => rescan |= self.hear(&event),
                     Order::Remind(file, after) => self.reminders.push((Instant::now() + after, file)),
                     // Events were lost.
-                    Order::Heard(Err(_)) => look = true,
+                    Order::Heard(Err(_)) => rescan = true,
                     Order::Stop => return,
                 }
             }
-            self.catch_up(look || !done.is_empty());
+            self.catch_up(rescan || !done.is_empty());
             self.report();
             for ready in done {
                 let _ = ready.send(());
@@ -300,8 +300,8 @@ impl Worker {
             return;
         }
         let mut root = Root { path, kind, known: HashMap::new(), places: Vec::new() };
-        // Existing files are not reported.
-        root.known = root.look().files;
+        // Existing files are no news.
+        root.known = root.scan().files;
         self.roots.push(root);
     }
 
@@ -317,13 +317,13 @@ impl Worker {
     /// Handles an event from the system. True if folders must be checked.
     fn hear(&mut self, event: &Event) -> bool {
         let now = Instant::now();
-        let mut look = event.need_rescan();
+        let mut rescan = event.need_rescan();
         let only_data = matches!(event.kind, EventKind::Modify(ModifyKind::Data(_)) | EventKind::Access(_));
         let mut changed = Vec::new();
         for path in &event.paths {
             if self.watched.contains(path) && !only_data {
-                // A folder itself appeared, vanished or was renamed.
-                look = true;
+                // A folder itself came, went or was renamed.
+                rescan = true;
                 self.aftershock = Some(now + AFTERSHOCK);
                 continue;
             }
@@ -336,13 +336,13 @@ impl Worker {
                     Some(wanted) if wanted == name => changed.extend(place.shown.clone()),
                     Some(_) => continue,
                 }
-                look |= !only_data;
+                rescan |= !only_data;
             }
         }
         for path in changed {
             self.note(path, now);
         }
-        look
+        rescan
     }
 
     fn note(&mut self, path: PathBuf, now: Instant) {
@@ -352,24 +352,24 @@ impl Worker {
         }
     }
 
-    /// Checks folders when an event or the clock requires it.
-    fn catch_up(&mut self, look: bool) {
+    /// Scans folders when an event or the clock calls for it.
+    fn catch_up(&mut self, rescan: bool) {
         let now = Instant::now();
         let over = |at: Option<Instant>| at.is_some_and(|at| at <= now);
         let shaken = over(self.aftershock);
         if shaken {
             self.aftershock = None;
         }
-        if look || shaken || over(self.next_poll) {
-            self.look(shaken);
+        if rescan || shaken || over(self.next_poll) {
+            self.scan(shaken);
             let polls = self.refused && !self.roots.is_empty();
             self.next_poll = polls.then(|| Instant::now() + POLL);
         }
     }
 
-    /// Checks everything watched, records differences, and watches the folders that exist. With `anew`,
-    /// folders that seem to be watched are watched again.
-    fn look(&mut self, anew: bool) {
+    /// Scans everything watched, notes differences, and watches the folders that exist. With `anew`, folders that
+    /// seem to be watched are watched again.
+    fn scan(&mut self, anew: bool) {
         if anew {
             for folder in std::mem::take(&mut self.watched) {
                 self.unwatch(&folder);
@@ -388,7 +388,7 @@ impl Worker {
         let now = Instant::now();
         let mut differing = BTreeSet::new();
         for root in &mut self.roots {
-            let Found { files, places } = root.look();
+            let Found { files, places } = root.scan();
             root.places = places;
             let new = files.iter().filter(|(path, print)| root.known.get(*path) != Some(print));
             let gone = root.known.keys().filter(|path| !files.contains_key(*path));

@@ -513,14 +513,14 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
 
 /// The style of a progress bar; `{left}` is the remaining time, if known.
 fn style(template: &str) -> ProgressStyle {
-    let left = |state: &ProgressState, text: &mut dyn fmt::Write| {
+    let remaining = |state: &ProgressState, text: &mut dyn fmt::Write| {
         if state.pos() > 0 {
             // Writing to a String cannot fail.
             let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
         }
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    style.with_key("left", left)
+    style.with_key("left", remaining)
 }
 
 /// Runs some work and, if it takes longer than a given time and there is a terminal, calls `watch` in

@@ -168,7 +168,7 @@ pub fn import_for_shaders(registry: &mut Registry) -> Problems {
 /// Reads the files in the folder that a text imports, and their imports, unless already known.
 fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     let mut problems = Vec::new();
-    let mut looked_at = HashSet::from([path.to_owned()]);
+    let mut visited = HashSet::from([path.to_owned()]);
     let mut wanted: Vec<_> = imports_of(path, text).collect();
     while let Some(source) = wanted.pop() {
         let name = source.strip_prefix(MODELS).filter(|name| !name.contains('/') && !name.starts_with('.'));
@@ -176,7 +176,7 @@ fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
         let Some(file) = file.filter(|file| file.extension().is_some_and(|e| e == EXTENSION)) else {
             continue;
         };
-        if registry.sources().get(&source).is_some() || !looked_at.insert(source.clone()) || !file.is_file() {
+        if registry.sources().get(&source).is_some() || !visited.insert(source.clone()) || !file.is_file() {
             continue;
         }
         match file::read(&file, &source) {
@@ -233,7 +233,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
         .filter_map(|path| {
             let print = Print::of(&path)?;
             (known.files_seen().get(&path) != Some(&print)).then(|| {
-                let found = look(&path, known);
+                let found = examined(&path, known);
                 (path, print, found)
             })
         })
@@ -288,7 +288,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
 }
 
 /// Searches a file for a declaration.
-fn look(path: &Path, registry: &Registry) -> Found {
+fn examined(path: &Path, registry: &Registry) -> Found {
     match file::read(path, &named(path)) {
         Err(problem) => Found::Broken(vec![problem]),
         Ok(text) if is_model(&text) => match declare(path, &text, registry) {

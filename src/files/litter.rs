@@ -128,8 +128,10 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
         let Some(name) = name.to_str().and_then(Name::of) else { continue };
         let path = entry.path();
         match name {
-            Name::Draft if entry.file_type().is_ok_and(|kind| kind.is_dir()) => remove_folder_if_left(&path),
-            Name::Draft => remove_if_left(&path),
+            Name::Draft if entry.file_type().is_ok_and(|kind| kind.is_dir()) => {
+                remove_folder_if_abandoned(&path)
+            }
+            Name::Draft => remove_if_abandoned(&path),
             Name::OldScene => remove_if_old(&path, b"{\n  \""),
             Name::OldPicture => remove_if_old(&path, b"\x89PNG"),
             Name::Whole(inode, time) => unfinished.extend(finish(folder, &path, inode, time)),
@@ -138,8 +140,8 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
     unfinished
 }
 
-/// Opens and locks a regular file, never a link, unless another process has locked it.
-fn left(path: &Path) -> Option<File> {
+/// A regular file that no other process has locked, locked; never a link.
+fn abandoned(path: &Path) -> Option<File> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;
     }
@@ -150,19 +152,17 @@ fn left(path: &Path) -> Option<File> {
     (there.is_file() && is_same(&there, &file.metadata().ok()?)).then_some(file)
 }
 
-fn remove_if_left(path: &Path) {
-    if let Some(_lock) = left(path) {
-        // Failure to remove a file is not reported: the next tidying tries again.
+fn remove_if_abandoned(path: &Path) {
+    if let Some(_lock) = abandoned(path) {
+        // A file that cannot be removed is no news: the next tidying tries again.
         let _ = fs::remove_file(path);
     }
 }
 
-/// Removes the draft of a folder, if abandoned. The folder that it was about to replace is restored first,
-/// unless its place is taken.
-fn remove_folder_if_left(path: &Path) {
-    // A draft without a lock belongs to a process killed early, or to somebody else, who may have put
-    // something in it.
-    let Some(lock) = left(&path.join(LOCK)) else { return };
+/// Removes the draft of a folder. What it was about to replace is put back first, if nothing has taken its place.
+fn remove_folder_if_abandoned(path: &Path) {
+    // One without a lock is that of a process killed at once, or of somebody else, who may have put something in it.
+    let Some(lock) = abandoned(&path.join(LOCK)) else { return };
     // Not every system deletes open files.
     drop(lock);
     remove_draft(path);
@@ -207,7 +207,7 @@ pub(super) fn locked<T>(
 
 /// Removes a file of an older version, if it is empty or begins as such a file does.
 fn remove_if_old(path: &Path, beginning: &[u8]) {
-    let Some(lock) = left(path) else { return };
+    let Some(lock) = abandoned(path) else { return };
     let age = lock.metadata().and_then(|m| m.modified()).ok().and_then(|at| at.elapsed().ok());
     let Ok(start) = read_start(path, beginning.len() as u64) else { return };
     if age.is_some_and(|age| age > LONG) && (start.is_empty() || start == beginning) {
@@ -218,7 +218,7 @@ fn remove_if_old(path: &Path, beginning: &[u8]) {
 /// Finishes overwriting a file, if it was interrupted and is unchanged since.
 fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinished> {
     // Locked: another process is working on it.
-    let mut lock = left(copy)?;
+    let mut lock = abandoned(copy)?;
     let unfinished = |file| Some(Unfinished { copy: copy.to_owned(), file });
     let Some((file, metadata)) = with_inode(folder, inode) else { return unfinished(None) };
     let wanted = read(copy, LARGEST).ok()?;

@@ -36,20 +36,20 @@ impl Bench {
         Ok(Self { library: Library::default(), registry, folder })
     }
 
-    /// Looks at a file; true if shaders made of it must be tried again.
-    fn look(&mut self, path: &str) -> bool {
+    /// Looks at a file; true if it is to be tried again what is made of it.
+    fn reread(&mut self, path: &str) -> bool {
         let file = self.folder.path().join(path);
-        self.library.look_at(&file, &mut self.registry, |_| true).is_some()
+        self.library.reread(&file, &mut self.registry, |_| true).is_some()
     }
 
     fn save(&mut self, path: &str, text: &str) -> bool {
         fs::write(self.folder.path().join(path), text).expect("writable");
-        self.look(path)
+        self.reread(path)
     }
 
     fn delete(&mut self, path: &str) -> bool {
         fs::remove_file(self.folder.path().join(path)).expect("it is there");
-        self.look(path)
+        self.reread(path)
     }
 
     /// Adopts the arriving models, and returns their number.
@@ -83,7 +83,7 @@ fn the_text_of_a_shader_goes_into_the_registry_when_it_is_another() -> io::Resul
     let edited = format!("{}// edited\n", loop_text());
     assert!(bench.save("shaders/loop.wgsl", &edited));
     assert_eq!(bench.text("loop.wgsl"), Some(edited.as_str()));
-    assert!(!bench.look("shaders/loop.wgsl"), "nothing changed since");
+    assert!(!bench.reread("shaders/loop.wgsl"), "nothing changed since");
     assert_eq!(bench.library.reloaded().map(|r| r.file).as_deref(), Some("loop.wgsl"));
     assert!(bench.save("shaders/loop.wgsl", loop_text()));
     assert_eq!(bench.text("loop.wgsl"), None, "the built-in text is not held twice");
@@ -101,7 +101,7 @@ fn a_file_is_missed_only_if_something_was_made_of_it() -> io::Result<()> {
     bench.delete("shaders/loop.wgsl");
     assert!(bench.library.take_news());
     assert!(bench.problems()[0].contains("the file is missing"), "{:?}", bench.problems());
-    bench.look("shaders/loop.wgsl");
+    bench.reread("shaders/loop.wgsl");
     assert!(!bench.library.take_news(), "it is known");
     assert_eq!(bench.library.gone(&bench.registry).count(), 0, "there is a built-in text");
     bench.save("shaders/loop.wgsl", loop_text());
@@ -125,7 +125,7 @@ fn a_custom_model_is_held_here_until_it_is_drawn_with() -> io::Result<()> {
     assert_eq!(bench.adopt(), 1);
     assert_eq!(bench.text("models/matt.wgsl"), Some(matt(0.25).as_str()));
     assert_eq!(bench.library.pending("models/matt.wgsl"), None, "the registry has it");
-    bench.look("models/matt.wgsl");
+    bench.reread("models/matt.wgsl");
     assert_eq!(bench.adopt(), 0, "nothing changed since");
     // An error leaves the text in use unchanged.
     bench.save("models/matt.wgsl", &matt(0.5).replace("vec3(0.5)", "vec4(0.5)"));
@@ -178,7 +178,7 @@ fn models_that_are_used_are_wanted_until_they_are_looked_at() -> io::Result<()> 
     let wanted = |bench: &Bench| bench.library.wanted(["matt", "phong"].into_iter(), &bench.registry);
     assert_eq!(wanted(&bench), [file]);
     assert!(!bench.library.is_arriving(&model, &bench.registry));
-    bench.look("models/matt.wgsl");
+    bench.reread("models/matt.wgsl");
     assert!(wanted(&bench).is_empty() && bench.library.is_arriving(&model, &bench.registry));
     assert_eq!(bench.adopt(), 1);
     assert!(wanted(&bench).is_empty() && !bench.library.is_arriving(&model, &bench.registry));

@@ -45,10 +45,9 @@ pub struct Library {
 }
 
 impl Library {
-    /// Reads a file that may have changed; ignores files other than shaders. Returns the source path of a
-    /// shader file or a shared file if its text changed. `drawn` returns true for the ids of models that were
-    /// drawn.
-    pub fn look_at(
+    /// Reads a file that may have changed; others than shaders are passed over. Returns the source path of a shader
+    /// file, or of one that models share, if it has another text now. `drawn` tells by id which models were drawn.
+    pub fn reread(
         &mut self,
         file: &Path,
         registry: &mut Registry,

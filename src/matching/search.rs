@@ -119,8 +119,8 @@ impl<'a, T: Target> Search<'a, T> {
             Err(Stop) => return Err(Cancelled),
         };
         if before > NONE && !self.free.is_empty() {
-            // The limit of evaluations ends the search, and the result so far counts.
-            let _ = self.look();
+            // The end of the evaluations ends the search, and what was found counts.
+            let _ = self.find();
             if self.cancelled {
                 return Err(Cancelled);
             }
@@ -215,9 +215,8 @@ impl<'a, T: Target> Search<'a, T> {
         self.target.count().max(self.axes().count())
     }
 
-    /// Runs the stages of the search, each with its share of the evaluations; using up a share does not end
-    /// the search.
-    fn look(&mut self) -> Result<(), Stop> {
+    /// Looks for the best, each way with its share of the evaluations; the end of a share is not that of the search.
+    fn find(&mut self) -> Result<(), Stop> {
         let all: Vec<usize> = (0..self.free.len()).collect();
         let present = Point { numbers: self.present(), on: vec![true; all.len()] };
         let ways: [(f64, &mut dyn FnMut(&mut Self) -> Result<(), Stop>); 3] = [
@@ -226,7 +225,7 @@ impl<'a, T: Target> Search<'a, T> {
                 search.descend_from(&present, &all, LIMITS).map(drop)
             }),
             (0.65, &mut |search| if all.len() > 1 { search.grow() } else { Ok(()) }),
-            (1.0, &mut |search| search.look_around(&all)),
+            (1.0, &mut |search| search.spread_out(&all)),
         ];
         for (share, way) in ways {
             self.until = (share * self.most as f64).ceil() as usize;
@@ -303,8 +302,8 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(best.1)
     }
 
-    /// Descends from the best point so far, and from the most promising of points spread over all ranges.
-    fn look_around(&mut self, all: &[usize]) -> Result<(), Stop> {
+    /// Descends from the best so far, and from the most promising of points spread over all ranges.
+    fn spread_out(&mut self, all: &[usize]) -> Result<(), Stop> {
         let axes: Vec<&Axis> = self.axes().collect();
         let mut scratch = vec![0.0; self.count()];
         let on = vec![true; all.len()];

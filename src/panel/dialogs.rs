@@ -328,7 +328,7 @@ impl Dialogs {
         self.open.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
             let file =
                 dialog.selected_entry().filter(|entry| entry.is_file()).map(|entry| entry.to_path_buf());
-            look(ui, file.map(Source::File), registry);
+            show_preview(ui, file.map(Source::File), registry);
         });
         if let Some(path) = self.open.take_picked() {
             // The user was asked about unsaved changes before the dialog opened.
@@ -494,7 +494,7 @@ impl Places {
 }
 
 /// Shows the preview beside the list.
-fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
+fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
     let width = ui.available_width();
     let (place, _) = ui.allocate_exact_size(vec2(width, width * 9.0 / 16.0), Sense::hover());
     let Some(source) = source else {

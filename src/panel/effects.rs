@@ -76,7 +76,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 }
             }
         }
-        Effect::LookAtFile { discard } => reload::look(session, registry, discard, files),
+        Effect::CheckFile { discard } => reload::check(session, registry, discard, files),
         Effect::ExpectFile { path, version } => {
             files.expect(&path, Some(version));
             Vec::new()

@@ -19,14 +19,14 @@ pub trait Files: Send + Sync + 'static {
     /// file alone.
     fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
     /// Reads a scene file if its content differs from when it was opened or saved.
-    fn look(&mut self, path: &Path, registry: &Registry) -> Looked;
+    fn check(&mut self, path: &Path, registry: &Registry) -> OnDisk;
     /// Sets the state of the file that saving may replace: its content, or its absence.
     fn expect(&mut self, path: &Path, version: Option<Stamp>);
 }
 
 /// The result of checking a file for changes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Looked {
+pub enum OnDisk {
     /// The file is unchanged.
     Same,
     /// The file does not exist.

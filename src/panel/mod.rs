@@ -174,11 +174,11 @@ pub fn show(
         actions.extend(pressed.into_iter().map(|action| explain::aimed(&ctx, &session, area, action)));
     }
     actions.extend(explain::clicked(&ctx, &session, area));
-    actions.extend(explain::left(&ctx, &session, area));
-    actions.extend(explain::look(&ctx, &session, area, registry));
-    actions.extend(lesson::check::look(&ctx, &session, registry));
-    actions.extend(presentation::left(&ctx, &session, area));
-    actions.extend(welcome::left(&ctx, &session, area));
+    actions.extend(explain::on_escape(&ctx, &session, area));
+    actions.extend(explain::update(&ctx, &session, area, registry));
+    actions.extend(lesson::check::update(&ctx, &session, registry));
+    actions.extend(presentation::on_escape(&ctx, &session, area));
+    actions.extend(welcome::on_escape(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
     actions.extend(finder::show(&ctx, &session, registry));
     actions.extend(author::show(&ctx, &session, area, registry));

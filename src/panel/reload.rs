@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use super::{
-    files::{Files, Looked, Opened},
+    files::{Files, OnDisk, Opened},
     state::{Effect, MissingPart, Question, Session, Severity},
 };
 use crate::document::Selection;
@@ -21,7 +21,12 @@ use crate::{
 ///
 /// An invalid file is checked again after a moment before it is reported: many editors write in steps.
 #[must_use]
-pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
+pub fn check(
+    session: &mut Session,
+    registry: &Registry,
+    discard: bool,
+    files: &mut dyn Files,
+) -> Vec<Effect> {
     let Some(path) = session.path.clone() else { return Vec::new() };
     if session.questions.open.is_some() {
         // One question at a time.
@@ -29,8 +34,8 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
         return Vec::new();
     }
     let name = path.shown();
-    match files.look(&path, registry) {
-        Looked::Same => {
+    match files.check(&path, registry) {
+        OnDisk::Same => {
             session.disk.suspect = None;
             // A note about the reload stays until it is dismissed.
             if session.disk.badge.is_some() {
@@ -38,8 +43,8 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
             }
             Vec::new()
         }
-        Looked::Gone => doubt(session, files, path, None, Vec::new()),
-        Looked::Changed { version, content } => match content {
+        OnDisk::Gone => doubt(session, files, path, None, Vec::new()),
+        OnDisk::Changed { version, content } => match content {
             Opened::Scene(scene) => {
                 take(session, registry, files, path, version, (*scene, Vec::new()), discard)
             }

@@ -239,9 +239,9 @@ fn card(ui: &Ui, rect: Rect, response: &Response) {
 }
 
 /// Closes the strip on Escape, unless something else handles the key.
-pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
-    let left = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session, area);
-    left.then_some(Action::View(ViewChange::Examples(false)))
+pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let leaves = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session, area);
+    leaves.then_some(Action::View(ViewChange::Examples(false)))
 }
 
 /// The menu of the examples, beside a menu whose right edge is `left`: in up to three columns if one would be too long.

@@ -17,7 +17,7 @@ use crate::scene::load::Stamp;
 mod store;
 mod writer;
 
-pub use store::{Journal, Left, MAX_COPIES, Store};
+pub use store::{Abandoned, Journal, MAX_COPIES, Store};
 pub use writer::{Keeper, Settled};
 
 /// Facts about the copied document.

@@ -55,8 +55,8 @@ pub struct Journal {
 
 /// A copy left behind by a window.
 #[derive(Debug)]
-pub struct Left {
-    /// The folder of the copy, locked so that no other window offers it meanwhile.
+pub struct Abandoned {
+    /// Its folder, held: no other window offers it meanwhile.
     pub journal: Journal,
     /// The copied document.
     pub about: About,
@@ -84,8 +84,8 @@ impl Store {
     pub fn begin(&self) -> io::Result<Journal> {
         make_folder(&self.folder, true)?;
         if fs::read_dir(&self.folder)?.take(MAX_COPIES).count() == MAX_COPIES {
-            for left in self.left().into_iter().skip(MAX_COPIES - 1) {
-                left.journal.remove();
+            for copy in self.abandoned().into_iter().skip(MAX_COPIES - 1) {
+                copy.journal.remove();
             }
         }
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
@@ -106,19 +106,19 @@ impl Store {
 
     /// The copies of windows that no longer run, latest first. Removes what such windows left without a copy.
     #[must_use]
-    pub fn left(&self) -> Vec<Left> {
+    pub fn abandoned(&self) -> Vec<Abandoned> {
         let Ok(entries) = fs::read_dir(&self.folder) else { return Vec::new() };
         let folders = entries.flatten().take(MAX_ENTRIES);
         // A link may lead to a folder of somebody else.
         let folders = folders.filter(|e| e.file_type().is_ok_and(|t| t.is_dir())).map(|e| e.path());
-        let mut found: Vec<_> = folders.filter_map(look).collect();
-        found.sort_by_key(|left| std::cmp::Reverse(left.when));
+        let mut found: Vec<_> = folders.filter_map(abandoned).collect();
+        found.sort_by_key(|copy| std::cmp::Reverse(copy.when));
         found
     }
 }
 
-/// The copy in a journal's folder, unless its window is running.
-fn look(folder: PathBuf) -> Option<Left> {
+/// The copy in the folder of a journal, unless that runs.
+fn abandoned(folder: PathBuf) -> Option<Abandoned> {
     let scene = fs::metadata(folder.join(SCENE)).ok();
     // A folder without a copy is removed only if it has a lock: one without a lock may belong to a window
     // that is starting.
@@ -143,7 +143,7 @@ fn look(folder: PathBuf) -> Option<Left> {
     }
     let when = scene.modified().unwrap_or(UNIX_EPOCH);
     let journal = Journal { folder, about: Some(about.clone()), _lock: lock.ok().flatten() };
-    Some(Left { journal, about, when })
+    Some(Abandoned { journal, about, when })
 }
 
 /// Acquires the lock of a journal: `None` while another process holds it.
@@ -202,7 +202,7 @@ impl Journal {
     }
 }
 
-impl Left {
+impl Abandoned {
     /// Reads the scene of the copy.
     ///
     /// # Errors
@@ -255,32 +255,32 @@ mod tests {
     }
 
     fn titles(store: &Store) -> Vec<String> {
-        store.left().into_iter().map(|left| left.about.title).collect()
+        store.abandoned().into_iter().map(|copy| copy.about.title).collect()
     }
 
     #[test]
     fn a_copy_is_offered_once_nobody_holds_it() {
         let (store, _folder) = store();
         let registry = Registry::builtin();
-        assert!(store.left().is_empty());
+        assert!(store.abandoned().is_empty());
         let mut journal = store.begin().expect("made");
         let scene = Scene { name: Some("Mine".to_owned()), ..Scene::default() };
         journal.write(&about("one"), &to_json(&Scene::default(), None, &registry)).expect("written");
         journal.write(&about("two"), &to_json(&scene, None, &registry)).expect("written");
-        assert!(store.left().is_empty(), "its window runs");
+        assert!(store.abandoned().is_empty(), "its window runs");
         drop(journal);
 
-        let left = store.left();
-        assert_eq!(left.len(), 1);
-        assert_eq!((&left[0].about, left[0].scene(&registry)), (&about("two"), Ok(scene)));
-        assert!(left[0].when.elapsed().is_ok_and(|age| age < Duration::from_secs(600)));
-        assert!(store.left().is_empty(), "another window asks about it");
-        drop(left);
-        // It is removed only at the user's request.
-        for left in store.left() {
-            left.journal.remove();
+        let copies = store.abandoned();
+        assert_eq!(copies.len(), 1);
+        assert_eq!((&copies[0].about, copies[0].scene(&registry)), (&about("two"), Ok(scene)));
+        assert!(copies[0].when.elapsed().is_ok_and(|age| age < Duration::from_secs(600)));
+        assert!(store.abandoned().is_empty(), "another window asks about it");
+        drop(copies);
+        // Nothing but the user's word removes it.
+        for copy in store.abandoned() {
+            copy.journal.remove();
         }
-        assert!(store.left().is_empty());
+        assert!(store.abandoned().is_empty());
         assert_eq!(fs::read_dir(&store.folder).expect("there").count(), 0);
     }
 
@@ -295,11 +295,11 @@ mod tests {
             let mut journal = store.begin().expect("made");
             journal.write(&about("room"), &broken).expect("written");
             drop(journal);
-            let left = store.left().pop().expect("offered");
-            let problems = left.scene(&registry).expect_err("broken");
-            assert!(problems[0].contains(&left.journal.file().shown().to_string()), "{problems:?}");
-            assert_eq!(fs::read_to_string(left.journal.file()).expect("there"), broken);
-            left.journal.remove();
+            let copy = store.abandoned().pop().expect("offered");
+            let problems = copy.scene(&registry).expect_err("broken");
+            assert!(problems[0].contains(&copy.journal.file().shown().to_string()), "{problems:?}");
+            assert_eq!(fs::read_to_string(copy.journal.file()).expect("there"), broken);
+            copy.journal.remove();
         }
     }
 
@@ -311,9 +311,9 @@ mod tests {
         journal.write(&about("room"), &to_json(&Scene::default(), None, &registry)).expect("written");
         fs::write(journal.folder.join(ABOUT), "{").expect("writable");
         drop(journal);
-        let left = store.left().pop().expect("offered");
+        let copy = store.abandoned().pop().expect("offered");
         let about = About { title: "Untitled scene".to_owned(), ..About::default() };
-        assert_eq!((left.about.clone(), left.scene(&registry)), (about, Ok(Scene::default())));
+        assert_eq!((copy.about.clone(), copy.scene(&registry)), (about, Ok(Scene::default())));
     }
 
     #[test]
@@ -343,7 +343,7 @@ mod tests {
         // A window that is starting has a folder before it has the lock.
         let starting = store.folder.join("starting");
         fs::create_dir(&starting).expect("made");
-        assert!(store.left().is_empty());
+        assert!(store.abandoned().is_empty());
         assert!(running.folder.exists() && starting.exists() && !gone.exists());
     }
 
@@ -372,9 +372,9 @@ mod tests {
         let journal = store.begin().expect("made");
         std::os::unix::fs::symlink("/dev/zero", journal.file()).expect("made");
         drop(journal);
-        let left = store.left();
-        assert_eq!(left.len(), 1);
-        let problems = left[0].scene(&Registry::builtin()).expect_err("no end");
+        let copies = store.abandoned();
+        assert_eq!(copies.len(), 1);
+        let problems = copies[0].scene(&Registry::builtin()).expect_err("no end");
         assert!(problems[0].contains("it is a device, but it must be a file"), "{problems:?}");
     }
 }

@@ -441,12 +441,12 @@ mod tests {
         let file = journal.file();
         drop(journal);
 
-        let left = store.left().pop().expect("offered");
+        let copy = store.abandoned().pop().expect("offered");
         let keeper = Keeper::start(Some(store.clone()), || {});
         // The window's own copy is dropped.
         keep(&keeper, "own");
         assert_ne!(kept(&keeper), file);
-        keeper.adopt(left.journal, &document("left"), about("left"), &Arc::new(Registry::builtin()));
+        keeper.adopt(copy.journal, &document("left"), about("left"), &Arc::new(Registry::builtin()));
         assert_eq!(kept(&keeper), file);
         assert_eq!(copies(&folder), 1);
         assert!(fs::read_to_string(&file).expect("there").contains("\"name\": \"left\""));

@@ -623,7 +623,7 @@ mod tests {
 
     #[test]
     fn only_lights_that_lie_below_the_surface_are_left_out() {
-        let (mut left_out, mut lost_by_their_middle) = (0, 0);
+        let (mut omitted, mut lost_by_their_middle) = (0, 0);
         for (name, group, emitter, record) in lights() {
             for turn in 0..64 {
                 let n = crate::optics::sampling::sphere(Sequence::new(turn, 0).point(0));
@@ -635,12 +635,12 @@ mod tests {
                 let reaches = (0..256).any(above);
                 let rises = group.rises(0, Vec3::ZERO, n);
                 assert!(rises || !reaches, "{name} for {n}");
-                left_out += usize::from(!rises);
-                // The wrong twin: lights reduced to their centres.
+                omitted += usize::from(!rises);
+                // The wrong twin: as if lights were as small as their middles.
                 let middle = emitter.bounds(&record, Vec3::ZERO);
                 lost_by_their_middle += usize::from(reaches && middle.is_some_and(|c| c.axis.dot(n) < 0.0));
             }
         }
-        assert!(left_out > 64 && lost_by_their_middle > 0, "{left_out} {lost_by_their_middle}");
+        assert!(omitted > 64 && lost_by_their_middle > 0, "{omitted} {lost_by_their_middle}");
     }
 }

@@ -152,16 +152,16 @@ fn align<T: PartialEq>(
         *visits += 1;
         known && ids.is_none_or(|[old, new]| old.get(i) == new.get(j)) && old[i] == new[j]
     });
-    let mut left: Vec<Option<usize>> = gone.clone().map(Some).collect();
+    let mut surplus: Vec<Option<usize>> = gone.clone().map(Some).collect();
     let from = match ids.filter(|_| known) {
         Some([old_ids, new_ids]) => {
             let places: HashMap<_, _> = gone.clone().filter_map(|i| Some((*old_ids.get(i)?, i))).collect();
-            let place = |j: usize| places.get(new_ids.get(j)?).and_then(|i| left[i - gone.start].take());
+            let place = |j: usize| places.get(new_ids.get(j)?).and_then(|i| surplus[i - gone.start].take());
             come.clone().map(place).collect()
         }
-        None => (0..come.len()).map(|k| left.get_mut(k).and_then(Option::take)).collect(),
+        None => (0..come.len()).map(|k| surplus.get_mut(k).and_then(Option::take)).collect(),
     };
-    Alignment { gone, come, from, surplus: left.into_iter().flatten().collect() }
+    Alignment { gone, come, from, surplus: surplus.into_iter().flatten().collect() }
 }
 
 /// Assigns entities to the parts of a new list, and makes `old` equal to `new`. Returns the entities to

@@ -76,9 +76,9 @@ mod tests {
         render::meshes::{face_mesh, shared_mesh},
     };
 
-    /// The numbers of corners that the shader skips, seen from a position, and of those among them with a
-    /// triangle that faces it by more than the margin; with lengths multiplied by `times`.
-    fn left_out(polygons: &PolygonMesh, vertices: Vertices, eye: Vec3, times: f32) -> [usize; 2] {
+    /// The corners that the shader leaves out, seen from a place, and those of them with a triangle that faces it by more
+    /// than the margin; with lengths that are so many times too large.
+    fn omitted(polygons: &PolygonMesh, vertices: Vertices, eye: Vec3, times: f32) -> [usize; 2] {
         let (mut mesh, attribute) = match vertices {
             Vertices::Shared => (shared_mesh(polygons), Mesh::ATTRIBUTE_NORMAL),
             Vertices::Apart => (face_mesh(polygons), FACE_NORMAL),
@@ -125,10 +125,10 @@ mod tests {
                     .into_iter()
                     .flat_map(|vertices| eyes().map(move |eye| (vertices, eye)))
                 {
-                    let [_, wrong] = left_out(&polygons, vertices, eye, 1.0);
+                    let [_, wrong] = omitted(&polygons, vertices, eye, 1.0);
                     let id = shape.declaration.id;
                     assert_eq!(wrong, 0, "{id} {tessellation} {vertices:?} from {eye}");
-                    twin += left_out(&polygons, vertices, eye, 4.0)[1];
+                    twin += omitted(&polygons, vertices, eye, 4.0)[1];
                 }
             }
         }
@@ -141,7 +141,7 @@ mod tests {
         let sphere = registry.shape("sphere").expect("built in");
         let polygons = sphere.mesh(&crate::parameter::Values::default(), 32);
         for vertices in [Vertices::Shared, Vertices::Apart] {
-            let [out, _] = left_out(&polygons, vertices, Vec3::new(3.0, 20.0, 9.0), 1.0);
+            let [out, _] = omitted(&polygons, vertices, Vec3::new(3.0, 20.0, 9.0), 1.0);
             let all = match vertices {
                 Vertices::Shared => polygons.positions.len(),
                 Vertices::Apart => polygons.polygons.iter().map(|p| p.corners().len()).sum(),

@@ -53,8 +53,8 @@ pub struct ShapeMeshes {
     refused: HashSet<(MeshKey, Vertices)>,
     /// The total size that the last rejected mesh would have reached, in bytes.
     reached: u64,
-    left_out: Vec<Entity>,
-    /// True if more memory is free than when they were rejected.
+    omitted: Vec<Entity>,
+    /// True if there is more room than when they were refused.
     room: bool,
     /// True if meshes were added since unused ones were last dropped.
     grown: bool,
@@ -90,7 +90,7 @@ impl Default for ShapeMeshes {
             alone: MESH_BUDGET,
             refused: HashSet::new(),
             reached: WINDOW_BUDGET,
-            left_out: Vec::new(),
+            omitted: Vec::new(),
             room: false,
             grown: false,
         }
@@ -138,7 +138,7 @@ impl ShapeMeshes {
         objects.iter_mut(world).for_each(|mut object| object.set_changed());
         let mut meshes = world.resource_mut::<Self>();
         meshes.refused.clear();
-        meshes.left_out.clear();
+        meshes.omitted.clear();
     }
 
     /// Builds missing meshes of objects, as long as there is room: those with the highest priority first,
@@ -215,7 +215,7 @@ impl ShapeMeshes {
 
     /// Omits an object without a mesh.
     pub(super) fn leave_out(&mut self, object: Entity) {
-        self.left_out.push(object);
+        self.omitted.push(object);
     }
 
     /// The omitted objects, to be tried again if the scene has changed or memory was freed.
@@ -225,7 +225,7 @@ impl ShapeMeshes {
         }
         self.room = false;
         self.refused.clear();
-        std::mem::take(&mut self.left_out)
+        std::mem::take(&mut self.omitted)
     }
 
     /// The reason why objects are missing in the picture, if any.

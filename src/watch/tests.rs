@@ -63,16 +63,16 @@ impl Bench {
     fn news(&self) -> Vec<String> {
         let begin = Instant::now();
         loop {
-            let left = DEADLINE.saturating_sub(begin.elapsed());
-            self.woken.recv_timeout(left).expect("a change is reported");
-            let news = self.look();
+            let remaining = DEADLINE.saturating_sub(begin.elapsed());
+            self.woken.recv_timeout(remaining).expect("a change is reported");
+            let news = self.poll();
             if !news.is_empty() {
                 return news;
             }
         }
     }
 
-    fn look(&self) -> Vec<String> {
+    fn poll(&self) -> Vec<String> {
         let changed = self.watcher.changed();
         let short = |p: &PathBuf| p.strip_prefix(self.folder.path()).unwrap_or(p).display().to_string();
         changed.iter().map(short).collect()
@@ -94,7 +94,7 @@ impl Bench {
     fn expect_only(&self, names: &[&str]) {
         let end = Instant::now() + SILENCE;
         while let Ok(()) = self.woken.recv_timeout(end.saturating_duration_since(Instant::now())) {
-            let news = self.look();
+            let news = self.poll();
             assert!(news.iter().all(|n| names.contains(&&**n)), "{news:?} was reported, not only {names:?}");
         }
     }
@@ -102,8 +102,8 @@ impl Bench {
     /// Checks that for a while nothing is reported, without a wake-up.
     fn expect_silence(&self) {
         let woken = self.woken.recv_timeout(SILENCE);
-        assert_eq!(woken, Err(RecvTimeoutError::Timeout), "{:?}", self.look());
-        assert!(self.look().is_empty());
+        assert_eq!(woken, Err(RecvTimeoutError::Timeout), "{:?}", self.poll());
+        assert!(self.poll().is_empty());
     }
 }
 
@@ -263,13 +263,13 @@ fn changes_are_told_oldest_first_and_each_once() {
         thread::sleep(Duration::from_millis(1));
     }
     thread::sleep(SILENCE);
-    assert_eq!(bench.look(), ["c", "a", "b"]);
+    assert_eq!(bench.poll(), ["c", "a", "b"]);
     let bench = Bench::folder(&["a", "b"]);
     for _ in 0..2 {
         bench.write("a", "new");
         thread::sleep(SILENCE);
     }
-    assert_eq!(bench.look(), ["a"], "reports that nobody fetched are not piled up");
+    assert_eq!(bench.poll(), ["a"], "reports that nobody fetched are not piled up");
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn a_file_that_is_written_all_the_time_is_reported_nevertheless() {
         assert!(writing.elapsed() < DEADLINE, "{reports} reports");
         file.write_all(b"more").unwrap();
         thread::sleep(QUIET / 5);
-        reports += bench.look().len();
+        reports += bench.poll().len();
     }
     assert!(writing.elapsed() > PATIENCE, "it was reported while it was not quiet");
 }
@@ -379,7 +379,7 @@ fn what_is_forgotten_is_not_reported() {
     bench.watcher.watch_file(&bench.path("file.json"));
     bench.write("a.wgsl", "new");
     bench.watcher.forget(&bench.path(""));
-    bench.look();
+    bench.poll();
     while bench.woken.try_recv().is_ok() {}
     bench.write("a.wgsl", "newer");
     bench.expect_silence();

@@ -150,7 +150,7 @@ fn feed_viewpoint(
     if let Some((transform, picture)) = cameras.iter().next() {
         let facts = &mut session.bypass_change_detection().facts;
         (facts.camera, facts.eye) = (transform.rotation, transform.translation);
-        facts.camera_left = !picture.follows_observer;
+        facts.camera_is_free = !picture.follows_observer;
     }
 }
 

@@ -52,10 +52,10 @@ impl CapturePlugin {
 
 impl Plugin for CapturePlugin {
     fn build(&self, app: &mut App) {
-        let Some(left) = self.frames else { return };
+        let Some(remaining) = self.frames else { return };
         app.insert_resource(WinitSettings::continuous())
             .insert_resource(Countdown {
-                left,
+                remaining,
                 file: self.file.clone(),
                 no_scene: self.no_scene,
                 reported: None,
@@ -70,7 +70,7 @@ pub(super) type Report = Arc<Mutex<Option<Failure>>>;
 
 #[derive(Resource)]
 pub(super) struct Countdown {
-    left: u32,
+    remaining: u32,
     file: Option<PathBuf>,
     no_scene: bool,
     /// Receiver of a failure; `None` to report it here.
@@ -91,9 +91,9 @@ fn count(
         return;
     }
     // After the capture is requested, frames continue until it arrives.
-    let Some(left) = countdown.left.checked_sub(1) else { return };
-    countdown.left = left;
-    if left > 0 {
+    let Some(remaining) = countdown.remaining.checked_sub(1) else { return };
+    countdown.remaining = remaining;
+    if remaining > 0 {
         return;
     }
     if countdown.file.is_some() {

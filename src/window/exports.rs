@@ -124,7 +124,7 @@ fn pinned(session: &Session) -> (Option<[u32; 2]>, Option<&'static str>) {
         None => Some(
             "The pinned pixel is beyond the edge of the page's picture, so the page does not explain it.",
         ),
-        Some(_) if session.facts.camera_left => Some(
+        Some(_) if session.facts.camera_is_free => Some(
             "The page explains the pinned pixel as the observer of the scene sees it; the camera of the window is \
              elsewhere.",
         ),

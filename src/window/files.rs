@@ -11,7 +11,7 @@ use crate::files::Shown as _;
 use crate::{
     files::{self, Kind},
     panel::{
-        files::{Files, Looked, Opened, Saved},
+        files::{Files, OnDisk, Opened, Saved},
         state::MissingPart,
     },
     registry::Registry,
@@ -89,10 +89,10 @@ impl Files for DiskFiles {
         saved
     }
 
-    fn look(&mut self, path: &Path, registry: &Registry) -> Looked {
+    fn check(&mut self, path: &Path, registry: &Registry) -> OnDisk {
         match files::kind(path) {
-            Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,
-            Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return Looked::Same,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return OnDisk::Gone,
+            Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return OnDisk::Same,
             // Anything else at that path is an error like any other.
             _ => {}
         }
@@ -100,16 +100,16 @@ impl Files for DiskFiles {
             Ok(bytes) => bytes,
             Err(error) => {
                 let version = Stamp::of(error.to_string().as_bytes());
-                return Looked::Changed { version, content: opened(Err(error)) };
+                return OnDisk::Changed { version, content: opened(Err(error)) };
             }
         };
         let version = Stamp::of(&bytes);
         if self.seen.as_ref().is_some_and(|(seen, stamp)| seen == path && *stamp == version) {
-            return Looked::Same;
+            return OnDisk::Same;
         }
         let name = path.shown().to_string();
         let content = opened(load::from_bytes(&bytes, &name, registry, Defaults::Ask));
-        Looked::Changed { version, content }
+        OnDisk::Changed { version, content }
     }
 
     fn expect(&mut self, path: &Path, version: Option<Stamp>) {

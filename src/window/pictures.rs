@@ -121,7 +121,7 @@ fn take(
                 shown: numbers.iter().map(|view| (*view, session.terms_of(*view))).collect(),
                 size: first.view.size,
                 camera: session.facts.observer(session.document.observer.field_of_view),
-                camera_left: session.facts.camera_left,
+                camera_is_free: session.facts.camera_is_free,
                 caption: session.view.picture_caption,
                 // A layout that shows a single view also means that view alone.
                 alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
@@ -194,7 +194,7 @@ struct Job {
     size: UVec2,
     camera: Observer,
     /// True if the camera is not at the observer of the scene.
-    camera_left: bool,
+    camera_is_free: bool,
     caption: bool,
     /// True for a picture of a single view, even if the scene has others.
     alone: bool,
@@ -263,7 +263,7 @@ impl Job {
         let alone = self.shown.first().filter(|_| self.alone);
         let alone = alone.and_then(|(view, _)| self.scene.seen(*view, &self.registry));
         let mut scene = alone.map_or_else(|| self.scene.clone(), |(seen, _)| seen.alone());
-        if self.camera_left {
+        if self.camera_is_free {
             scene.observer = self.camera;
         }
         scene

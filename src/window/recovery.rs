@@ -30,7 +30,7 @@ use crate::{
         files::Files as _,
         state::{Action, LabEffect, Offer, Question, RecoveryChoice, Session, Severity},
     },
-    recovery::{About, Keeper, Left, Store, ago},
+    recovery::{Abandoned, About, Keeper, Store, ago},
     registry::Registry,
     render::schedule::LabFrame,
     signals::Interrupt,
@@ -41,8 +41,8 @@ use crate::{
 pub struct RecoveryPlugin {
     /// The file that the window opens: its copy is offered first.
     pub file: Option<PathBuf>,
-    /// True to look for copies of earlier windows.
-    pub look: bool,
+    /// True to search for copies of earlier windows.
+    pub search: bool,
     /// True to ask the user about them; false to only mention them.
     pub ask: bool,
 }
@@ -52,7 +52,7 @@ impl RecoveryPlugin {
         let attended = options.exit_after.is_none();
         Self {
             file: options.file.clone().or_else(|| options.open.clone()),
-            look: attended || !options.quiet,
+            search: attended || !options.quiet,
             ask: attended,
         }
     }
@@ -63,8 +63,8 @@ impl Plugin for RecoveryPlugin {
         let store = Store::of_user();
         let farewell = Farewell::prepare(store.clone(), app.world());
         let mut copies = Recovery::new(farewell);
-        if self.look {
-            copies.look(store.as_ref(), self.file.as_deref(), self.ask);
+        if self.search {
+            copies.search(store.as_ref(), self.file.as_deref(), self.ask);
         }
         app.insert_resource(copies)
             .add_systems(PreUpdate, interrupted)
@@ -122,9 +122,9 @@ impl Farewell {
 pub(super) struct Recovery {
     pub(super) farewell: Farewell,
     /// Copies still to be offered, the best first.
-    left: VecDeque<Left>,
+    offers: VecDeque<Abandoned>,
     /// The copy being offered.
-    asked: Option<Left>,
+    asked: Option<Abandoned>,
     registry: Option<Arc<Registry>>,
     /// While present, dropping this resource runs the farewell.
     guard: Option<Guard>,
@@ -147,24 +147,24 @@ impl Recovery {
     /// Creates the state without any copies to offer.
     fn new(farewell: Farewell) -> Self {
         let guard = Guard::set(&farewell.keeper);
-        Self { farewell, left: VecDeque::new(), asked: None, registry: None, guard: Some(guard) }
+        Self { farewell, offers: VecDeque::new(), asked: None, registry: None, guard: Some(guard) }
     }
 
     /// Looks for copies of earlier windows, that of the opened file first. If `ask` is false because nobody can answer,
     /// they are only mentioned.
-    fn look(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
-        let mut left = store.map(Store::left).unwrap_or_default();
+    fn search(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
+        let mut copies = store.map(Store::abandoned).unwrap_or_default();
         let file = file.and_then(|file| path::absolute(file).ok());
-        left.sort_by_key(|left| file.is_none() || left.about.path != file);
+        copies.sort_by_key(|copy| file.is_none() || copy.about.path != file);
         if ask {
-            self.left = left.into();
+            self.offers = copies.into();
             return;
         }
-        for left in left {
+        for copy in copies {
             complain(&format!(
                 "unsaved changes of “{}” are kept in {}; a window without --exit-after offers them",
-                left.about.title,
-                left.journal.file().shown()
+                copy.about.title,
+                copy.journal.file().shown()
             ));
         }
     }
@@ -177,25 +177,25 @@ impl Recovery {
         files: &mut DiskFiles,
         registry: &Registry,
     ) {
-        let Some(left) = self.asked.take() else { return };
+        let Some(copy) = self.asked.take() else { return };
         match choice {
             RecoveryChoice::Recovered => {
-                if let Some(path) = &left.about.path {
-                    files.expect(path, left.about.stamp);
+                if let Some(path) = &copy.about.path {
+                    files.expect(path, copy.about.stamp);
                 }
                 let registry = Arc::new(registry.clone());
-                self.farewell.keeper.adopt(left.journal, &session.document, about(session, files), &registry);
-                let more = self.left.len();
-                self.left.clear();
+                self.farewell.keeper.adopt(copy.journal, &session.document, about(session, files), &registry);
+                let more = self.offers.len();
+                self.offers.clear();
                 if more > 0 {
                     let copies = if more == 1 { "One more copy is" } else { "More copies are" };
                     let text = format!("{copies} kept: the window offers them at its next start.");
                     session.say(Severity::Info, text);
                 }
             }
-            RecoveryChoice::Discarded => left.journal.remove(),
+            RecoveryChoice::Discarded => copy.journal.remove(),
             RecoveryChoice::Next => {}
-            RecoveryChoice::Later => self.left.clear(),
+            RecoveryChoice::Later => self.offers.clear(),
         }
     }
 }
@@ -232,11 +232,11 @@ fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
 
 /// Offers the next copy as soon as no question is open.
 fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
-    if recovery.left.is_empty() || session.questions.open.is_some() {
+    if recovery.offers.is_empty() || session.questions.open.is_some() {
         return;
     }
-    let Some(left) = recovery.left.pop_front() else { return };
-    let scene = left.scene(&registry);
+    let Some(copy) = recovery.offers.pop_front() else { return };
+    let scene = copy.scene(&registry);
     if let Err(problems) = &scene {
         // The latest message is on top: the first problem.
         for problem in problems.iter().rev() {
@@ -244,15 +244,15 @@ fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry:
         }
         complain(&problems.join("\n"));
     }
-    let age = SystemTime::now().duration_since(left.when).unwrap_or(Duration::ZERO);
+    let age = SystemTime::now().duration_since(copy.when).unwrap_or(Duration::ZERO);
     session.questions.ask(Question::Recover(Box::new(Offer {
-        title: left.about.title.clone(),
-        path: left.about.path.clone(),
-        file: left.journal.file(),
+        title: copy.about.title.clone(),
+        path: copy.about.path.clone(),
+        file: copy.journal.file(),
         when: ago(age),
         scene: scene.map_err(|problems| problems.into_iter().next().unwrap_or_default()),
     })));
-    recovery.asked = Some(left);
+    recovery.asked = Some(copy);
 }
 
 /// Hands unsaved changes to the keeper; runs after everything that changes the document in a frame.

@@ -99,7 +99,7 @@ fn open(world: &mut World) {
         .chain(unreadable.into_iter().chain(of_extensions).map(|(path, _)| path))
         .collect();
     world.resource_mut::<LiveShaders>().start();
-    look_at(world, &broken);
+    reread(world, &broken);
     let Some(mut watch) = world.get_resource_mut::<FileWatch>() else { return };
     for folder in folders.shaders.iter().chain(&folders.models).chain(&folders.extensions) {
         watch.0.watch_folder(folder);
@@ -132,17 +132,17 @@ fn follow(world: &mut World, mut last: Local<bevy::ecs::message::MessageCursor<F
         let messages = world.resource::<Messages<FilesChanged>>();
         last.read(messages).flat_map(|files| files.0.clone()).collect()
     };
-    look_at(world, &changed);
+    reread(world, &changed);
 }
 
-fn look_at(world: &mut World, files: &[PathBuf]) {
+fn reread(world: &mut World, files: &[PathBuf]) {
     if files.is_empty() {
         return;
     }
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
         let mut registry = world.resource_mut::<Registry>();
         // Systems waiting for another model are notified once it was tested.
-        files.iter().for_each(|file| live.look_at(file, registry.bypass_change_detection()));
+        files.iter().for_each(|file| live.reread(file, registry.bypass_change_detection()));
     });
 }
 

@@ -170,7 +170,7 @@ fn follow_document(
 ) {
     let concerned = |files: &FilesChanged| session.path.as_ref().is_some_and(|path| files.0.contains(path));
     if changed.read().filter(|files| concerned(files)).count() > 0 {
-        effects.write(LabEffect(Effect::LookAtFile { discard: false }));
+        effects.write(LabEffect(Effect::CheckFile { discard: false }));
     }
 }
 

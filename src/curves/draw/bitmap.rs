@@ -48,7 +48,7 @@ fn dashes(path: &[[f64; 2]], dash: &[f64]) -> Vec<Vec<[f64; 2]>> {
         return vec![path.to_vec()];
     }
     let (mut pieces, mut piece) = (Vec::new(), Vec::new());
-    let (mut which, mut left) = (0, dash[0]);
+    let (mut which, mut remaining) = (0, dash[0]);
     for pair in path.windows(2) {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
         let length = (bx - ax).hypot(by - ay);
@@ -56,8 +56,8 @@ fn dashes(path: &[[f64; 2]], dash: &[f64]) -> Vec<Vec<[f64; 2]>> {
         if which % 2 == 0 && piece.is_empty() {
             piece.push([ax, ay]);
         }
-        while length - at > left {
-            at += left;
+        while length - at > remaining {
+            at += remaining;
             let here = [ax + (bx - ax) * at / length, ay + (by - ay) * at / length];
             if which % 2 == 0 {
                 piece.push(here);
@@ -66,9 +66,9 @@ fn dashes(path: &[[f64; 2]], dash: &[f64]) -> Vec<Vec<[f64; 2]>> {
                 piece = vec![here];
             }
             which += 1;
-            left = dash[which % dash.len()];
+            remaining = dash[which % dash.len()];
         }
-        left -= length - at;
+        remaining -= length - at;
         if which % 2 == 0 {
             piece.push([bx, by]);
         }

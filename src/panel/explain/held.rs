@@ -55,5 +55,5 @@ impl Holding {
 fn has_arrived(session: &Session) -> bool {
     let (facts, observer) = (&session.facts, &session.document.observer);
     let along = (facts.camera * glam::Vec3::Z).dot(rotation(observer.direction) * glam::Vec3::Z);
-    facts.camera_left || facts.eye.distance(observer.position) < THERE.0 && along > THERE.1
+    facts.camera_is_free || facts.eye.distance(observer.position) < THERE.0 && along > THERE.1
 }

@@ -44,7 +44,7 @@ mod what_if;
 
 pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown, lobes_shown_in};
 use probe::Level;
-pub use probe::{Explained, aimed, calculations, clicked, explained, left, look};
+pub use probe::{Explained, aimed, calculations, clicked, explained, on_escape, update};
 pub use side::{has_sides, placed};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;

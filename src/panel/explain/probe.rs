@@ -411,16 +411,16 @@ pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<A
 }
 
 /// Unpins on Escape, unless something else handles the key.
-pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
     let pinned = session.view.pinned.is_some() && session.explains() && !session.view.examples_open;
-    let left = pinned && ctx.dragged_id().is_none() && keys::escapes(ctx, session, area);
-    left.then_some(Action::View(ViewChange::Pin(None)))
+    let unpins = pinned && ctx.dragged_id().is_none() && keys::escapes(ctx, session, area);
+    unpins.then_some(Action::View(ViewChange::Pin(None)))
 }
 
 /// Explains the pinned pixel, or else the one under the latest pointer position, if the panel is open and something has
 /// changed. A pin holds the point of the object that it has hit; if that object is gone, returns the action that unpins
 /// it.
-pub fn look(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) -> Option<Action> {
+pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) -> Option<Action> {
     let shared = shared(ctx);
     if !session.shows_vectors() && !session.needs_probe() {
         let mut probe = lock(&shared);

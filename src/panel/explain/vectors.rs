@@ -180,7 +180,7 @@ impl Drawing {
     }
 
     /// Width and colour of a mark for the given vectors.
-    fn look(&self, ends: &[&str], width: f32, colour: Color32) -> (f32, Color32) {
+    fn stroke(&self, ends: &[&str], width: f32, colour: Color32) -> (f32, Color32) {
         match () {
             () if self.lit.is_empty() => (width, colour),
             () if ends.iter().all(|end| self.lit.contains(end)) => (width * LIT / LINE, colour),
@@ -203,7 +203,7 @@ impl Drawing {
             return;
         };
         let along = tip - origin;
-        let (width, colour) = self.look(&[arrow.letter], LINE, arrow.colour);
+        let (width, colour) = self.stroke(&[arrow.letter], LINE, arrow.colour);
         self.approach(origin, &[origin, tip], &[arrow.letter]);
         if along.length() < END_ON {
             // As in textbooks: a dot is the tip of an arrow, a cross its feathers.
@@ -265,7 +265,7 @@ impl Drawing {
                 spot.position + turned / angle.sin() * (part * reach)
             };
             let arc: Vec<Vec3> = (0..=count).map(|k| between(k as f32 / count as f32)).collect();
-            let (width, colour) = self.look(&letters, 1.25, colour);
+            let (width, colour) = self.stroke(&letters, 1.25, colour);
             let symbols: Vec<_> = letters.into_iter().chain(pairs::angles(letters[0], letters[1])).collect();
             for run in lens.path(&arc) {
                 origin.into_iter().for_each(|origin| self.approach(origin, &run, &symbols));

@@ -56,7 +56,7 @@ pub(super) fn unmet(ctx: &Context) -> Option<String> {
 }
 
 /// Checks the condition. Returns the action that completes the task if it holds.
-pub(in crate::panel) fn look(ctx: &Context, session: &Session, registry: &Registry) -> Option<Action> {
+pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Registry) -> Option<Action> {
     let open = session.lesson.as_ref()?;
     let Some(goal) = session.open_task().and_then(Task::goal) else {
         ctx.data_mut(|d| d.remove::<Checked>(memory()));

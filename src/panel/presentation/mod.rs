@@ -48,9 +48,9 @@ const BESIDE: [(f32, bool); 6] =
 const HIDDEN: f32 = 0.005;
 
 /// Leaves the presentation on Escape, unless something else handles the key.
-pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
-    let left = session.view.presenting && keys::escapes(ctx, session, area);
-    left.then_some(Action::View(ViewChange::Presenting(false)))
+pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let leaves = session.view.presenting && keys::escapes(ctx, session, area);
+    leaves.then_some(Action::View(ViewChange::Presenting(false)))
 }
 
 /// A definition: term and text.

@@ -266,7 +266,7 @@ impl Session {
             Action::Answer(answer) => {
                 let mut effects = self.answer(answer, registry);
                 if self.questions.open.is_none() && std::mem::take(&mut self.disk.deferred) {
-                    effects.push(Effect::LookAtFile { discard: false });
+                    effects.push(Effect::CheckFile { discard: false });
                 }
                 return effects;
             }

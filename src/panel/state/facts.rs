@@ -15,7 +15,7 @@ pub struct Facts {
     /// Position of the camera.
     pub eye: Vec3,
     /// True if the camera has left the observer.
-    pub camera_left: bool,
+    pub camera_is_free: bool,
     /// True while an object still has its previous appearance because its shader is not ready.
     pub compiling: bool,
     /// Clipped parts of each view's picture, view A first; `None` if nothing clips.

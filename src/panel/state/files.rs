@@ -177,7 +177,7 @@ impl Session {
 
     pub(super) fn note_saved(&mut self, path: &Path) {
         let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.shown()));
-        if self.facts.camera_left {
+        if self.facts.camera_is_free {
             note.text.push_str(" The file keeps the observer’s view, not the one you turned to.");
             match self.observer_problem() {
                 None => note = note.offering("Set observer to this view", Action::ObserverFromView),

@@ -188,7 +188,7 @@ impl Session {
                 self.disk_settled();
                 vec![Effect::ExpectFile { path, version }]
             }
-            (Question::NewerOnDisk { .. }, Answer::Reload) => vec![Effect::LookAtFile { discard: true }],
+            (Question::NewerOnDisk { .. }, Answer::Reload) => vec![Effect::CheckFile { discard: true }],
             (Question::ReplaceExport { form, path }, answer) => self.answer_export(form, path, answer),
             (Question::ReplacePicture { view, path }, answer) => Self::answer_picture(view, path, answer),
             (Question::NewerOnDisk { path, .. }, _) => {

@@ -18,7 +18,7 @@ impl LiveShaders {
         let overridden = overridden.iter().flat_map(|query| query.iter_manual(world));
         let models = overridden.filter_map(|o| o.reflection_model.as_deref()).chain(scene.0.models());
         for file in self.library.wanted(models, world.resource::<Registry>()) {
-            self.look_at(&file, world.resource_mut::<Registry>().bypass_change_detection());
+            self.reread(&file, world.resource_mut::<Registry>().bypass_change_detection());
         }
     }
 

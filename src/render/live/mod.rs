@@ -119,8 +119,8 @@ pub struct LiveShaders {
     shaders: HashMap<Key, Live>,
     /// Assets of shaders that are rebuilt when they are needed again.
     resting: HashMap<Key, Handle<Shader>>,
-    /// Number of checks for shaders that can rest.
-    looks: u64,
+    /// The number of times that shaders were looked through for some that may rest.
+    rounds: u64,
     /// True if an object waits for a shader that is tried for the first time.
     awaited: bool,
     /// Composed texts that were tried successfully in this frame.
@@ -203,12 +203,12 @@ impl LiveShaders {
         self.library.is_reading()
     }
 
-    /// Reads a file that may have changed, see [`Library::look_at`]. Custom models are registered once they
-    /// were tried.
-    pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
+    /// Reads a file that may have changed, see [`Library::reread`]. Custom models go into the registry once they were
+    /// tried.
+    pub fn reread(&mut self, file: &Path, registry: &mut Registry) {
         let Self { library, shaders, .. } = self;
         let drawn = |id: &str| shaders.keys().any(|key| key.0 == id);
-        let Some(changed) = library.look_at(file, registry, drawn) else { return };
+        let Some(changed) = library.reread(file, registry, drawn) else { return };
         if self.mark_due(&changed) {
             self.unused_problems.remove(&changed);
         } else {

@@ -94,7 +94,7 @@ impl LiveShaders {
             None => assets.add(asset),
         };
         self.stale_status = true;
-        let seen = self.looks;
+        let seen = self.rounds;
         let live =
             Live { handle: handle.clone(), declared, shown, replaced, before: None, refused, due, seen };
         self.shaders.insert(key, live);
@@ -121,9 +121,9 @@ impl LiveShaders {
     /// Puts the shaders to rest that were out of the picture for longest, if there are many: their pipelines
     /// stay, since Bevy keeps them, but with minimal content.
     pub(super) fn rest(&mut self, world: &mut World, visible: &Visible) {
-        self.looks += 1;
+        self.rounds += 1;
         for (_, live) in self.shaders.iter_mut().filter(|(key, _)| visible.has(key)) {
-            live.seen = self.looks;
+            live.seen = self.rounds;
         }
         let idle = |(key, live): &(&Key, &Live)| !visible.has(key) && !live.due && live.refused.is_none();
         let mut idle: Vec<_> =

@@ -48,19 +48,19 @@ fn flat(corners: &[Vec3]) -> Vec<Vec2> {
 /// Cuts off one ear after the other: a corner whose triangle contains no other corner. The search continues
 /// at the last ear.
 fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<[usize; 3]> {
-    let mut left: Vec<usize> = (0..flat.len()).collect();
+    let mut remaining: Vec<usize> = (0..flat.len()).collect();
     let mut triangles = Vec::with_capacity(flat.len() - 2);
     let mut last = 0;
-    while left.len() > 3 {
-        let n = left.len();
-        let corners = |i: usize| [left[(i + n - 1) % n], left[i], left[(i + 1) % n]];
+    while remaining.len() > 3 {
+        let n = remaining.len();
+        let corners = |i: usize| [remaining[(i + n - 1) % n], remaining[i], remaining[(i + 1) % n]];
         let inside = |[a, b, c]: [usize; 3], p: usize| {
             turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
         };
         let is_ear = |i: &usize| {
             let ear = corners(*i);
             let [a, b, c] = ear;
-            let others = left.iter().filter(|p| ![flat[a], flat[b], flat[c]].contains(&flat[**p]));
+            let others = remaining.iter().filter(|p| ![flat[a], flat[b], flat[c]].contains(&flat[**p]));
             turn(a, b, c) > 0.0 && !others.copied().any(|p| inside(ear, p))
         };
         let Some(i) = (last..n).chain(0..last.min(n)).find(is_ear) else {
@@ -68,10 +68,10 @@ fn ears(flat: &[Vec2], turn: impl Fn(usize, usize, usize) -> f32) -> Vec<[usize;
             break;
         };
         triangles.push(corners(i));
-        left.remove(i);
+        remaining.remove(i);
         last = i.min(n - 2);
     }
-    triangles.extend(left[1..].windows(2).map(|pair| [left[0], pair[0], pair[1]]));
+    triangles.extend(remaining[1..].windows(2).map(|pair| [remaining[0], pair[0], pair[1]]));
     triangles
 }
 

@@ -23,7 +23,7 @@ use std::{
 use lights_camera_models::{
     files::{self, Draft, FileError, Kind, printable},
     panel::{
-        files::{Files as _, Looked, Opened, Saved},
+        files::{Files as _, OnDisk, Opened, Saved},
         settings::{self, Settings},
         state::{Session, Severity},
     },
@@ -221,23 +221,23 @@ fn an_open_document_that_becomes_a_pipe_or_a_device_is_kept_and_told_of() {
         let registry = Registry::builtin();
         let stamp = load::file(&file, &registry, Defaults::Ask).expect("valid").stamp;
         let mut disk = DiskFiles::new(Some(file.clone()), Some(stamp));
-        assert_eq!(disk.look(&file, &registry), Looked::Same);
+        assert_eq!(disk.check(&file, &registry), OnDisk::Same);
         fs::remove_file(&file).expect("removed");
         match kind {
             Kind::Pipe => pipe(&file),
             _ => symlink("/dev/zero", &file).expect("linked"),
         }
-        let (looked, opened, saved) = bounded("looking and saving", move || {
-            let looked = disk.look(&file, &registry);
+        let (found, opened, saved) = bounded("looking and saving", move || {
+            let found = disk.check(&file, &registry);
             let opened = disk.open(&file, &registry);
             let saved = [true, false].map(|over| disk.save(&file, &Scene::default(), &registry, over));
-            (looked, opened, saved)
+            (found, opened, saved)
         });
         let told = |content: &Opened| match content {
             Opened::Failed(problems) => problems.join("\n"),
             other => panic!("{other:?}"),
         };
-        let Looked::Changed { content, .. } = looked else { panic!("{looked:?}") };
+        let OnDisk::Changed { content, .. } = found else { panic!("{found:?}") };
         assert!(told(&content).contains(&kind.to_string()), "{content:?}");
         assert!(told(&opened).contains(&kind.to_string()), "{opened:?}");
         for saved in saved {

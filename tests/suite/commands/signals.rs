@@ -13,7 +13,7 @@ use std::{
 };
 
 use lights_camera_models::{
-    recovery::{Left, Store},
+    recovery::{Abandoned, Store},
     registry::Registry,
     scene::{
         Scene,
@@ -110,20 +110,20 @@ impl Desk {
     }
 
     /// The copies left by windows that no longer run.
-    fn left(&self) -> Vec<Left> {
-        Store::new(self.folder.path().join("data/recovery")).left()
+    fn abandoned(&self) -> Vec<Abandoned> {
+        Store::new(self.folder.path().join("data/recovery")).abandoned()
     }
 
     /// The only copy left, which contains the scene with this model.
     fn copy(&self, model: &str) -> PathBuf {
-        let mut left = self.left();
-        assert_eq!(left.len(), 1, "one copy");
-        let left = left.remove(0);
-        assert_eq!(left.about.path.as_deref(), Some(&*self.file()));
-        // The description of the default scene is removed with the first change that contradicts it.
+        let mut copies = self.abandoned();
+        assert_eq!(copies.len(), 1, "one copy");
+        let copy = copies.remove(0);
+        assert_eq!(copy.about.path.as_deref(), Some(&*self.file()));
+        // The words of the default scene end with the first change that they do not describe.
         let expected = Scene { reflection_model: model.to_owned(), description: None, ..self.saved() };
-        assert_eq!(left.scene(&Registry::builtin()), Ok(expected));
-        left.journal.file()
+        assert_eq!(copy.scene(&Registry::builtin()), Ok(expected));
+        copy.journal.file()
     }
 
     fn press(&self, keys: &[Key]) {
@@ -231,7 +231,7 @@ fn ctrl_c_closes_a_window_without_unsaved_changes() {
     window.signal("INT");
     let (status, said) = window.ended();
     assert_eq!((status.signal(), &*said), (Some(SIGINT), ""));
-    assert!(desk.left().is_empty());
+    assert!(desk.abandoned().is_empty());
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn ctrl_c_asks_about_unsaved_changes_and_the_answer_counts() {
     let (status, said) = window.ended();
     assert_eq!((status.signal(), &*said), (Some(SIGINT), ""));
     assert_eq!(desk.saved().reflection_model, "mod_lambert");
-    assert!(desk.left().is_empty());
+    assert!(desk.abandoned().is_empty());
 }
 
 #[test]
@@ -366,8 +366,8 @@ fn what_a_killed_window_left_is_offered_until_the_user_decides() {
         assert!(begin.elapsed() < LONG, "no copy");
         thread::sleep(Duration::from_millis(50));
     }
-    // A running window is nobody else's business.
-    assert!(desk.left().is_empty());
+    // A window that runs is nobody else's business.
+    assert!(desk.abandoned().is_empty());
     window.signal("KILL");
     assert_eq!(window.ended().0.signal(), Some(9));
     let copy = desk.copy("mod_lambert");
@@ -406,7 +406,7 @@ fn what_a_killed_window_left_is_offered_until_the_user_decides() {
     }
     window.signal("TERM");
     assert_eq!(window.ended().1, "");
-    assert!(desk.left().is_empty());
+    assert!(desk.abandoned().is_empty());
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl Desk {
             }
             if let Effect::OpenFile(_)
             | Effect::SaveFile { .. }
-            | Effect::LookAtFile { .. }
+            | Effect::CheckFile { .. }
             | Effect::ExpectFile { .. } = effect
             {
                 let more = effects::run(&mut self.session, &self.registry, effect, &mut self.files);
@@ -317,7 +317,7 @@ impl Desk {
             }
         }
         fs::write(&self.path, save::to_json(&scene, None, &self.registry)).unwrap();
-        self.carry_out(vec![Effect::LookAtFile { discard: false }]);
+        self.carry_out(vec![Effect::CheckFile { discard: false }]);
     }
 
     /// Changes something as a user, a system or another program would. Returns what was removed.

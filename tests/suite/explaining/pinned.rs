@@ -62,7 +62,7 @@ fn orbit(bench: &mut Bench, axis: Vec3, degrees: f32) {
     let facts = &mut bench.session.facts;
     facts.camera = turn * facts.camera;
     facts.eye = middle + turn * (facts.eye - middle);
-    facts.camera_left = true;
+    facts.camera_is_free = true;
     bench.settle();
 }
 
@@ -209,7 +209,7 @@ fn a_point_that_nobody_sees_stays_explained_and_that_is_said() {
     for turn in [60.0, 60.0, 60.0] {
         let facts = &mut bench.session.facts;
         facts.camera = Quat::from_rotation_y(f32::to_radians(turn)) * facts.camera;
-        facts.camera_left = true;
+        facts.camera_is_free = true;
         bench.settle();
         assert_eq!(now(&bench).sight, Some(Sight::Outside));
         assert!(point(&bench).distance(before) < MILLIMETRE && bench.says("outside the picture"));
@@ -271,8 +271,8 @@ fn the_same_pixel_pinned_anew_is_another_point() {
     orbit(&mut bench, Vec3::Y, 40.0);
     let effects = bench.session.apply(Action::New, &bench.registry);
     assert_eq!(effects, [Effect::DocumentChanged]);
-    // The camera returns, but not at once.
-    bench.session.facts.camera_left = false;
+    // The camera goes home, and is not there at once.
+    bench.session.facts.camera_is_free = false;
     bench.settle();
     home(&mut bench);
     assert!(bench.session.view.pinned.is_some() && now(&bench).sight.is_none());

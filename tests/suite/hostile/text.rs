@@ -104,7 +104,7 @@ fn recovery(bytes: &[u8]) -> Result<(), String> {
     for (name, content) in [("about.json", bytes), ("scene.json", b"{}".as_slice()), ("lock", b"")] {
         fs::write(journal.join(name), content).map_err(|e| e.to_string())?;
     }
-    assert_eq!(store.left().len(), 1, "the copy counts whatever the file about it holds");
+    assert_eq!(store.abandoned().len(), 1, "the copy counts whatever the file about it holds");
     Ok(())
 }
 

@@ -380,7 +380,7 @@ fn the_own_file_replaces_nothing_while_a_lesson_is_shown_and_is_looked_at_afterw
     let mut bench = desk.bench(session);
     let news = Scene { shading_model: "flat".to_owned(), ..Scene::default() };
     save::write(&own, &news, &registry, Expected::Anything).expect("written");
-    let look = Effect::LookAtFile { discard: false };
+    let look = Effect::CheckFile { discard: false };
     let before = bench.session.document.revision();
     assert_eq!(effects::run(&mut bench.session, &registry, look.clone(), &mut files), []);
     assert_eq!(bench.session.document.revision(), before);

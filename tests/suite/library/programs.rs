@@ -149,9 +149,12 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     assert!(line.contains("programs.rs:") && line.contains("the forty frames are over"), "{line}");
     assert!(err.contains("the panel is fragile") && !line.contains("fragile"), "it was caught: {err}");
     let data = folder.path().join("data");
-    assert!(Store::new(data.join("recovery")).left().is_empty(), "nothing in the folder of the laboratory");
+    assert!(
+        Store::new(data.join("recovery")).abandoned().is_empty(),
+        "nothing in the folder of the laboratory"
+    );
     let name = env::current_exe().expect("it runs").file_stem().expect("a name").to_owned();
-    let left = Store::new(data.join("programs").join(name).join("recovery")).left();
+    let left = Store::new(data.join("programs").join(name).join("recovery")).abandoned();
     assert_eq!(left.len(), 1, "{err}");
     let scene = fs::read_to_string(left[0].journal.file()).expect("the copy");
     assert!(scene.contains("\"Unsaved\""), "{scene}");

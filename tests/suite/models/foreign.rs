@@ -102,10 +102,10 @@ fn status(renderer: &mut GpuRenderer) -> ShaderStatus {
     renderer.app().world().resource::<LiveShaders>().status().clone()
 }
 
-fn look_at(renderer: &mut GpuRenderer, file: &std::path::Path) {
+fn reread(renderer: &mut GpuRenderer, file: &std::path::Path) {
     let world = renderer.app().world_mut();
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
-        live.look_at(file, &mut world.resource_mut::<Registry>());
+        live.reread(file, &mut world.resource_mut::<Registry>());
     });
 }
 
@@ -187,19 +187,19 @@ fn files_in_the_folder_of_another_crate_are_followed() {
     let dark = picture(&mut with, &lit_by_lamp());
     assert_eq!(status(&mut with).troubles[0].path.as_deref(), Some(file.as_path()), "the file to open");
     fs::write(&file, MENDED).expect("writable");
-    look_at(&mut with, &file);
+    reread(&mut with, &file);
     assert_eq!(status(&mut with).troubles, []);
     let lit = picture(&mut with, &lit_by_lamp());
     assert!(lit != dark, "it shines");
     // Another error leaves the last valid version.
     fs::write(&file, MENDED.replace("0u", "0.5")).expect("writable");
-    look_at(&mut with, &file);
+    reread(&mut with, &file);
     let troubles = status(&mut with).troubles;
     assert_eq!(troubles[0].stale, ["Lambert"], "{troubles:?}");
     assert!(picture(&mut with, &lit_by_lamp()) == lit);
     // A file with the name of one of ours belongs only to that crate.
     let ours = folder.path().join("loop.wgsl");
     fs::write(&ours, "fn illuminate( {").expect("writable");
-    look_at(&mut with, &ours);
+    reread(&mut with, &ours);
     assert_eq!(status(&mut with).troubles.len(), 1);
 }

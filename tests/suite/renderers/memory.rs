@@ -133,7 +133,7 @@ fn a_model_that_is_gone_leaves_its_place_to_the_next() {
         lab.renderer.set_scene(phong_scene("gouraud"));
         lab.settled();
         fs::remove_file(lab.file(&file)).expect("it is there");
-        lab.look_at(&file);
+        lab.reread(&file);
         lab.settled();
         let world = lab.renderer.app().world();
         assert!(world.resource::<Registry>().model(&format!("passing_{i}")).is_none(), "{i}");

@@ -90,22 +90,22 @@ impl Lab {
         self.renderer.app().world_mut().resource_mut::<LiveShaders>()
     }
 
-    /// Reports a file as changed on disk.
-    pub fn look_at(&mut self, path: &str) {
+    /// A file changed on disk.
+    pub fn reread(&mut self, path: &str) {
         let file = self.file(path);
-        self.look_at_file(&file);
+        self.reread_file(&file);
     }
 
-    pub fn look_at_file(&mut self, file: &Path) {
+    pub fn reread_file(&mut self, file: &Path) {
         let world = self.renderer.app().world_mut();
         world.resource_scope(|world, mut live: Mut<LiveShaders>| {
-            live.look_at(file, &mut world.resource_mut::<Registry>());
+            live.reread(file, &mut world.resource_mut::<Registry>());
         });
     }
 
     pub fn save(&mut self, path: &str, text: impl AsRef<[u8]>) {
         fs::write(self.file(path), text).expect("writable");
-        self.look_at(path);
+        self.reread(path);
     }
 
     /// The next frame.
@@ -440,8 +440,8 @@ fn a_deleted_or_renamed_file_leaves_the_picture_and_is_missed() {
     let aside = lab.file("reflection/other.wgsl");
     for rename in [false, true] {
         if rename { fs::rename(&file, &aside) } else { fs::remove_file(&file) }.expect("possible");
-        lab.look_at("reflection/phong.wgsl");
-        lab.look_at("reflection/other.wgsl");
+        lab.reread("reflection/phong.wgsl");
+        lab.reread("reflection/other.wgsl");
         assert!(lab.settled() == before);
         let troubles = lab.troubles();
         assert_eq!(troubles.len(), 1, "{troubles:?}");
@@ -578,8 +578,8 @@ fn unchanged_text_recompiles_nothing_and_a_change_recompiles_only_what_depends_o
     let mut lab = Lab::new(phong_scene("phong"));
     lab.settled();
     assert!(!lab.live().is_busy());
-    lab.look_at("reflection/phong.wgsl");
-    lab.look_at("terms.wgsl");
+    lab.reread("reflection/phong.wgsl");
+    lab.reread("terms.wgsl");
     lab.save("loop.wgsl", original("loop.wgsl"));
     assert!(!lab.live().is_busy(), "nothing is due after unchanged saves");
     assert_eq!(lab.status().last, None);
@@ -600,7 +600,7 @@ fn follow(lab: &mut Lab, watcher: &Watcher, expect_change: bool) -> Vec<Vec<u8>>
     for _ in 0..400 {
         let changed = watcher.changed();
         quiet = if changed.is_empty() && watcher.pending().is_none() { quiet + 1 } else { 0 };
-        changed.iter().for_each(|file| lab.look_at_file(file));
+        changed.iter().for_each(|file| lab.reread_file(file));
         let frame = lab.frame();
         if frames.last() != Some(&frame) {
             frames.push(frame);
@@ -901,7 +901,7 @@ fn files_that_are_gone_and_were_nothing_are_not_missed() {
         lab.settled();
         assert_eq!(lab.troubles().len(), usize::from(name != "unused.wgsl"), "{name}: {:?}", lab.troubles());
         fs::remove_file(lab.file(&format!("own/{name}"))).expect("removed");
-        lab.look_at(&format!("own/{name}"));
+        lab.reread(&format!("own/{name}"));
         lab.settled();
         assert_eq!(lab.troubles(), [], "{name}");
     }
@@ -909,7 +909,7 @@ fn files_that_are_gone_and_were_nothing_are_not_missed() {
     assert!(registry.model("unused").is_none(), "a model whose file is gone cannot be chosen");
     // The twin: one in use is missed, and stays.
     fs::remove_file(lab.file("own/tinted.wgsl")).expect("removed");
-    lab.look_at("own/tinted.wgsl");
+    lab.reread("own/tinted.wgsl");
     assert!(lab.settled() == green);
     assert_eq!(lab.troubles().len(), 1);
     lab.save("own/tinted.wgsl", custom_model(RED, ""));

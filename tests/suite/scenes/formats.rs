@@ -323,11 +323,11 @@ fn an_edited_table_is_saved_as_a_table_and_followed() {
     assert!(text.starts_with("# ") && text.contains("\nscene,,Mine,"), "{text}");
     // Another program changes it.
     fs::write(&path, text.replace("Mine", "Theirs")).expect("written");
-    desk.carry_out(vec![Effect::LookAtFile { discard: false }]);
+    desk.carry_out(vec![Effect::CheckFile { discard: false }]);
     assert_eq!(desk.session.title(), "Theirs");
     // And breaks it: the last valid version stays, and the error has a position.
     fs::write(&path, text.replace(",sphere,Red,", ",sphre,Red,")).expect("written");
-    (0..2).for_each(|_| desk.carry_out(vec![Effect::LookAtFile { discard: false }]));
+    (0..2).for_each(|_| desk.carry_out(vec![Effect::CheckFile { discard: false }]));
     assert_eq!(desk.session.title(), "Theirs");
     assert!(desk.session.messages.iter().any(|m| m.text.contains("wheel.csv:6:8: objects[0].type is sphre")));
 }

@@ -8,7 +8,7 @@ use lights_camera_models::{
     optics::TermSelection,
     panel::{
         effects,
-        files::{Files as _, Looked},
+        files::{Files as _, OnDisk},
         state::{Action, Answer, Effect, Offer, Question, Session, Severity, ViewChange},
     },
     registry::Registry,
@@ -82,7 +82,7 @@ impl Desk {
 
     /// Reports the file as the watcher does. Returns whether it must be looked at again after a moment.
     fn report(&mut self) -> bool {
-        self.carry_out(vec![Effect::LookAtFile { discard: false }]);
+        self.carry_out(vec![Effect::CheckFile { discard: false }]);
         let before = self.left.len();
         let again = Effect::LookAgain(self.path());
         self.left.retain(|e| *e != again);
@@ -207,11 +207,11 @@ fn our_own_save_is_no_change_on_disk() {
     let other = desk.folder.path().join("other.json");
     desk.act(Action::SaveAs(other.clone()));
     desk.left.clear();
-    let looked = desk.files.look(&other, &desk.registry);
-    assert_eq!(looked, Looked::Same);
-    // The same bytes written by somebody else are the same; others are not.
+    let looked = desk.files.check(&other, &desk.registry);
+    assert_eq!(looked, OnDisk::Same);
+    // The same bytes from someone else's hand are the same; others are not.
     fs::write(&other, text(&three())).unwrap();
-    assert!(matches!(desk.files.look(&other, &desk.registry), Looked::Changed { .. }));
+    assert!(matches!(desk.files.check(&other, &desk.registry), OnDisk::Changed { .. }));
 }
 
 #[test]
@@ -650,8 +650,8 @@ fn what_can_be_read_only_once_is_not_read_again() {
     let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
     assert!(made.success());
     let mut files = DiskFiles::new(Some(pipe.clone()), None);
-    // Reading would wait forever.
-    assert_eq!(files.look(&pipe, &Registry::builtin()), Looked::Same);
+    // Reading would wait for ever.
+    assert_eq!(files.check(&pipe, &Registry::builtin()), OnDisk::Same);
 }
 
 /// A window that continues with a copy of the file from an earlier one, with the file's state as known then.

@@ -800,8 +800,8 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     assert_eq!(bench.effects, keep(version));
     let (mut bench, _) = ask();
     bench.click("Reload from disk");
-    assert_eq!(bench.effects, [Effect::LookAtFile { discard: true }]);
-    // Leaving the question postpones the decision, and the picture shows that one is pending.
+    assert_eq!(bench.effects, [Effect::CheckFile { discard: true }]);
+    // To leave the question is to decide later, and the picture says that there is something to decide.
     let (mut bench, _) = ask();
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(bench.effects.is_empty() && bench.session.questions.open.is_none());

@@ -296,7 +296,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     assert!(!bench.session.is_dirty());
     assert!(bench.says("Saved to /somewhere/lecture.json"), "in sight without unfolding anything");
     assert!(bench.find("Set observer to this view").is_none(), "the view is the observer's");
-    bench.session.facts.camera_left = true;
+    bench.session.facts.camera_is_free = true;
     bench.session.saved(path.clone(), &bench.registry);
     bench.settle();
     assert_eq!(bench.session.messages.len(), 1, "the last time counts");
@@ -406,7 +406,7 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
 #[test]
 fn the_observer_is_offered_no_place_outside_the_room() {
     let mut bench = Bench::new(Session::default());
-    bench.session.facts.camera_left = true;
+    bench.session.facts.camera_is_free = true;
     bench.session.facts.eye = glam::Vec3::new(5.0, 5.0, 14.0);
     bench.session.saved(PathBuf::from("/somewhere/lecture.json"), &bench.registry);
     bench.settle();

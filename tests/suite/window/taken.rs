@@ -98,7 +98,7 @@ fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
     assert_eq!(captioned.at(60, 45), picture.at(60, 45));
     // Seen from another position, it opens from there.
     session(&mut app).facts.eye.x += 1.0;
-    session(&mut app).facts.camera_left = true;
+    session(&mut app).facts.camera_is_free = true;
     let _ = take(&mut app, None, &file, true);
     let scene = opened(&file);
     assert_eq!(scene.observer.position.x, session(&mut app).document.observer.position.x + 1.0);

@@ -50,7 +50,7 @@ pub(super) struct Place {
     pub(super) shown: Option<PathBuf>,
 }
 
-/// The result of a look.
+/// The result of a scan.
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) files: HashMap<PathBuf, Print>,
