@@ -83,7 +83,7 @@ impl Lab {
             world.resource_scope(|world, mut live: Mut<LiveShaders>| {
                 // As in the window: looking at a file does not report news about the models.
                 let mut registry = world.resource_mut::<Registry>();
-                changed.iter().for_each(|f| live.look_at(f, registry.bypass_change_detection()));
+                changed.iter().for_each(|f| live.reread(f, registry.bypass_change_detection()));
             });
             self.renderer.step();
             self.renderer.wait();
