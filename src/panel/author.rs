@@ -115,11 +115,43 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
     let palette = Palette::here(ui);
     let checked = check_name(&draft.name, registry);
     ui.label("Name");
+    let response = name_field(ui, draft, checked.is_ok(), &mut actions);
+    ui.add_space(2.0);
+    // Fixed height for either message, so that nothing below moves.
+    let room = vec2(ui.available_width(), SAID);
+    ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
+        ui.set_min_height(SAID);
+        actions.extend(said_of(ui, session, &checked));
+    });
+    let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
+                its parameters.";
+    ui.add(egui::Label::new(theme::small(ui, what)).wrap());
+    ui.add_space(12.0);
+    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    let line = vec2(ui.available_width(), 28.0);
+    ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
+        let mut button = Button::new(theme::strong(ui, "Create")).min_size(vec2(80.0, 28.0));
+        if checked.is_ok() {
+            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
+        }
+        if ui.add_enabled(checked.is_ok(), button).clicked() || enter {
+            actions.push(Action::Model(ModelCommand::Create));
+        }
+        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
+            actions.push(Action::Model(ModelCommand::Cancel));
+        }
+    });
+    if enter && checked.is_err() {
+        response.request_focus();
+    }
+    actions
+}
+
+/// The field for the name. It takes the focus when the dialog opens.
+fn name_field(ui: &mut Ui, draft: &ModelDraft, is_right: bool, actions: &mut Vec<Action>) -> egui::Response {
+    let palette = Palette::here(ui);
     let mut text = draft.name.clone();
-    let stroke = match &checked {
-        Ok(_) => egui::Stroke::new(1.5, palette.accent),
-        Err(_) => egui::Stroke::new(1.5, palette.error),
-    };
+    let stroke = egui::Stroke::new(1.5, if is_right { palette.accent } else { palette.error });
     let id = Id::new("model draft id");
     let edit = TextEdit::singleline(&mut text)
         .id(id)
@@ -152,35 +184,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
     if response.changed() {
         actions.push(Action::Model(ModelCommand::Type(text)));
     }
-    ui.add_space(2.0);
-    // Fixed height for either message, so that nothing below moves.
-    let room = vec2(ui.available_width(), SAID);
-    ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
-        ui.set_min_height(SAID);
-        actions.extend(said_of(ui, session, &checked));
-    });
-    let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
-                its parameters.";
-    ui.add(egui::Label::new(theme::small(ui, what)).wrap());
-    ui.add_space(12.0);
-    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
-    let line = vec2(ui.available_width(), 28.0);
-    ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
-        let mut button = Button::new(theme::strong(ui, "Create")).min_size(vec2(80.0, 28.0));
-        if checked.is_ok() {
-            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
-        }
-        if ui.add_enabled(checked.is_ok(), button).clicked() || enter {
-            actions.push(Action::Model(ModelCommand::Create));
-        }
-        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
-            actions.push(Action::Model(ModelCommand::Cancel));
-        }
-    });
-    if enter && checked.is_err() {
-        response.request_focus();
-    }
-    actions
+    response
 }
 
 /// Height of the line about the name, in points.

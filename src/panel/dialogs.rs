@@ -1,7 +1,7 @@
 //! The file dialogs.
 
 use std::{
-    ops::DerefMut,
+    ops::{Deref, DerefMut},
     path::{Path, PathBuf},
 };
 
@@ -71,6 +71,18 @@ enum Exported {
     Form(&'static str),
     Picture(Option<usize>),
     Plot,
+}
+
+impl Exported {
+    /// The subject of the export for which an effect requests a destination.
+    fn of(effect: &Effect) -> Option<Self> {
+        match effect {
+            Effect::PickExport(id) => Some(Self::Form(id)),
+            Effect::PickPicture(view) => Some(Self::Picture(*view)),
+            Effect::PickPlot => Some(Self::Plot),
+            _ => None,
+        }
+    }
 }
 
 /// Dialog fields that pass keys on to the dialog.
@@ -227,14 +239,8 @@ impl Dialogs {
         registry: &Registry,
     ) -> bool {
         let folder = session.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
-        let exported = match effect {
-            Effect::PickExport(id) => Some(Exported::Form(id)),
-            Effect::PickPicture(view) => Some(Exported::Picture(*view)),
-            Effect::PickPlot => Some(Exported::Plot),
-            _ => None,
-        };
-        if let Some(what) = exported {
-            self.exporting = exported;
+        if let Some(what) = Exported::of(effect) {
+            self.exporting = Some(what);
             self.export = export_dialog(what, session, folder);
             self.export.save_file();
             return true;
@@ -306,17 +312,26 @@ impl Dialogs {
             let selection = &mut style.visuals.selection;
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
         });
+        self.arrange(ctx);
+        self.show_scenes(ctx, session, registry, &mut actions);
+        self.show_others(ctx, session, &mut actions);
+        self.finish(ctx, &palette);
+        ctx.set_global_style(plain);
+        actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
+        actions
+    }
+
+    fn all(&mut self) -> [&mut FileDialog; 6] {
+        let Self { open, save, folder, file, lesson, export, .. } = self;
+        [open, save, folder, file, lesson, export]
+    }
+
+    /// Fits the dialogs to the window.
+    fn arrange(&mut self, ctx: &Context) {
         let screen = ctx.content_rect().size();
         let narrow = screen.x < NARROW;
         let size = if narrow { ALL } else { SHARE } * screen;
-        for dialog in [
-            &mut self.open,
-            &mut self.save,
-            &mut self.folder,
-            &mut self.file,
-            &mut self.lesson,
-            &mut self.export,
-        ] {
+        for dialog in self.all() {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             // Leaves enough width for the buttons below the list.
@@ -324,6 +339,16 @@ impl Dialogs {
             // The confirm button repeats the title.
             config.title_bar = !narrow;
         }
+    }
+
+    /// Shows the dialogs that open and save scenes.
+    fn show_scenes(
+        &mut self,
+        ctx: &Context,
+        session: &mut impl DerefMut<Target = Session>,
+        registry: &Registry,
+        actions: &mut Vec<Action>,
+    ) {
         let was_open = *self.open.state() == DialogState::Open;
         self.open.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
             let file =
@@ -343,6 +368,15 @@ impl Dialogs {
         } else if was_open && *self.save.state() == DialogState::Cancelled {
             session.questions.not_saved();
         }
+    }
+
+    /// Shows the dialogs for folders, files of parameters, lessons and exports.
+    fn show_others(
+        &mut self,
+        ctx: &Context,
+        session: &impl Deref<Target = Session>,
+        actions: &mut Vec<Action>,
+    ) {
         self.folder.update(ctx);
         self.file.update(ctx);
         if let (Some(path), Some((part, parameter))) = (self.file.take_picked(), self.wanted) {
@@ -360,50 +394,59 @@ impl Dialogs {
                 Exported::Plot => Action::Plot(PlotCommand::To(path)),
             });
         }
-        let mut entered = false;
-        for dialog in [
-            &mut self.open,
-            &mut self.save,
-            &mut self.folder,
-            &mut self.file,
-            &mut self.lesson,
-            &mut self.export,
-        ] {
+    }
+
+    /// Adds to the dialogs, once shown, what they lack.
+    fn finish(&mut self, ctx: &Context, palette: &Palette) {
+        let (mut entered, mut aids) = (false, (self.typed_into, self.blank));
+        for dialog in self.all() {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
-            lighten(ctx, layer, &palette);
-            // The dialog blocks the pointer, but not the keys.
+            lighten(ctx, layer, palette);
             if *dialog.state() == DialogState::Open {
-                ctx.memory_mut(|m| m.set_modal_layer(layer));
-                let list = Places::of(ctx, layer.id);
-                if let Some(places) = &list {
-                    aids::name_icons(ctx, layer, places.top, dialog.config_mut());
-                    let selected = dialog.selected_entry();
-                    let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
-                    if is_folder && dialog.mode() == DialogMode::PickFile {
-                        let label = dialog.config_mut().labels.open_button.clone();
-                        entered |= aids::open_folder(ctx, layer, places.bottom, &label);
-                    }
-                }
-                self.typed_into = list.as_ref().and_then(|places| places.focused(ctx));
-                let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
-                self.blank = if is_blank { self.blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
-                match list {
-                    Some(places) if self.blank == BLANK_FRAMES => places.say_empty(ctx, layer, &palette),
-                    _ if is_blank => ctx.request_repaint(),
-                    _ => {}
-                }
+                entered |= aid(ctx, layer, dialog, palette, &mut aids);
             }
         }
+        (self.typed_into, self.blank) = aids;
         if entered {
             // As with the keyboard: the dialog shows the contents of the folder.
             ctx.memory_mut(|m| m.focused().into_iter().for_each(|focus| m.surrender_focus(focus)));
             self.again = Some(Key::Enter);
             ctx.request_repaint();
         }
-        ctx.set_global_style(plain);
-        actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
-        actions
     }
+}
+
+/// Aids of an open dialog: names of its icons, folders that open, and a word about an empty list. Updates the field
+/// that has the focus and the number of frames without entries. Returns true if a folder is to be opened.
+fn aid(
+    ctx: &Context,
+    layer: LayerId,
+    dialog: &mut FileDialog,
+    palette: &Palette,
+    (typed_into, blank): &mut (Option<Field>, u8),
+) -> bool {
+    // The dialog blocks the pointer, but not the keys.
+    ctx.memory_mut(|m| m.set_modal_layer(layer));
+    let list = Places::of(ctx, layer.id);
+    let mut entered = false;
+    if let Some(places) = &list {
+        aids::name_icons(ctx, layer, places.top, dialog.config_mut());
+        let selected = dialog.selected_entry();
+        let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
+        if is_folder && dialog.mode() == DialogMode::PickFile {
+            let label = dialog.config_mut().labels.open_button.clone();
+            entered = aids::open_folder(ctx, layer, places.bottom, &label);
+        }
+    }
+    *typed_into = list.as_ref().and_then(|places| places.focused(ctx));
+    let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
+    *blank = if is_blank { blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
+    match list {
+        Some(places) if *blank == BLANK_FRAMES => places.say_empty(ctx, layer, palette),
+        _ if is_blank => ctx.request_repaint(),
+        _ => {}
+    }
+    entered
 }
 
 impl Dialogs {

@@ -50,93 +50,76 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
     let s = rect.width().min(rect.height());
     let stroke = Stroke::new((s / 11.0).max(1.2), colour);
     let at = |x: f32, y: f32| pos2(rect.center().x + (x - 0.5) * s, rect.center().y + (y - 0.5) * s);
-    let line = |points: &[(f32, f32)]| {
-        painter.add(Shape::line(points.iter().map(|(x, y)| at(*x, *y)).collect(), stroke));
+    let line = |points: &mut dyn Iterator<Item = (f32, f32)>| {
+        painter.add(Shape::line(points.map(|(x, y)| at(x, y)).collect(), stroke));
+    };
+    let arc = |steps: u8, from: f32, step: f32, (x, y): (f32, f32), radius: f32| {
+        let angles = (0..=steps).map(|i| (from + step * f32::from(i)).to_radians());
+        line(&mut angles.map(|a| (x + radius * a.cos(), y + radius * a.sin())));
     };
     match icon {
-        Icon::Plus => {
-            line(&[(0.5, 0.16), (0.5, 0.84)]);
-            line(&[(0.16, 0.5), (0.84, 0.5)]);
-        }
-        Icon::Cross => {
-            line(&[(0.22, 0.22), (0.78, 0.78)]);
-            line(&[(0.78, 0.22), (0.22, 0.78)]);
-        }
-        Icon::Bin => {
-            line(&[(0.14, 0.26), (0.86, 0.26)]);
-            line(&[(0.38, 0.26), (0.38, 0.12), (0.62, 0.12), (0.62, 0.26)]);
-            line(&[(0.24, 0.26), (0.3, 0.9), (0.7, 0.9), (0.76, 0.26)]);
-        }
-        Icon::Duplicate | Icon::Copy => {
-            line(&[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)]);
-            line(&[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)]);
-            if icon == Icon::Duplicate {
-                line(&[(0.62, 0.48), (0.62, 0.76)]);
-                line(&[(0.48, 0.62), (0.76, 0.62)]);
-            }
-        }
-        Icon::Pencil => {
-            line(&[(0.14, 0.86), (0.2, 0.64), (0.7, 0.14), (0.86, 0.3), (0.36, 0.8), (0.14, 0.86)]);
-        }
-        Icon::Down => line(&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]),
-        Icon::Up => line(&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]),
-        Icon::Lamp | Icon::LampOff => {
-            let bulb: Vec<Pos2> = (0..=16)
-                .map(|i| {
-                    let a = (128.0 + 17.75 * i as f32).to_radians();
-                    at(0.5 + 0.32 * a.cos(), 0.4 + 0.32 * a.sin())
-                })
-                .collect();
-            painter.add(Shape::line(bulb, stroke));
-            line(&[(0.36, 0.78), (0.64, 0.78)]);
-            line(&[(0.4, 0.94), (0.6, 0.94)]);
-            if icon == Icon::LampOff {
-                line(&[(0.06, 0.94), (0.94, 0.06)]);
-            }
-        }
-        Icon::Eye | Icon::EyeOff => {
-            let lid = |sign: f32| -> Vec<Pos2> {
-                (0..=12)
-                    .map(|i| {
-                        let t = i as f32 / 12.0;
-                        at(0.06 + 0.88 * t, 0.5 - sign * 0.3 * (std::f32::consts::PI * t).sin())
-                    })
-                    .collect()
-            };
-            painter.add(Shape::line(lid(1.0), stroke));
-            painter.add(Shape::line(lid(-1.0), stroke));
-            painter.circle_filled(at(0.5, 0.5), 0.15 * s, colour);
-            if icon == Icon::EyeOff {
-                line(&[(0.06, 0.94), (0.94, 0.06)]);
-            }
-        }
-        Icon::Room => {
-            line(&[(0.12, 0.34), (0.66, 0.34), (0.66, 0.9), (0.12, 0.9), (0.12, 0.34)]);
-            line(&[(0.12, 0.34), (0.36, 0.1), (0.9, 0.1), (0.66, 0.34)]);
-            line(&[(0.9, 0.1), (0.9, 0.64), (0.66, 0.9)]);
-        }
-        Icon::Check => line(&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)]),
-        Icon::Reset => {
-            let arc: Vec<Pos2> = (0..=14)
-                .map(|i| {
-                    let a = (-150.0 + 20.0 * i as f32).to_radians();
-                    at(0.5 + 0.36 * a.cos(), 0.54 + 0.36 * a.sin())
-                })
-                .collect();
-            painter.add(Shape::line(arc, stroke));
-            line(&[(0.1, 0.12), (0.18, 0.38), (0.44, 0.32)]);
-        }
+        Icon::Lamp | Icon::LampOff => arc(16, 128.0, 17.75, (0.5, 0.4), 0.32),
+        Icon::Reset => arc(14, -150.0, 20.0, (0.5, 0.54), 0.36),
         Icon::Target => {
             painter.circle_stroke(at(0.5, 0.5), 0.26 * s, stroke);
-            for (a, b) in [
-                ((0.5, 0.02), (0.5, 0.3)),
-                ((0.5, 0.7), (0.5, 0.98)),
-                ((0.02, 0.5), (0.3, 0.5)),
-                ((0.7, 0.5), (0.98, 0.5)),
-            ] {
-                line(&[a, b]);
-            }
         }
+        Icon::Eye | Icon::EyeOff => {
+            for height in [0.3, -0.3] {
+                let lid = (0..=12).map(|i| i as f32 / 12.0);
+                line(&mut lid.map(|t| (0.06 + 0.88 * t, 0.5 - height * (std::f32::consts::PI * t).sin())));
+            }
+            painter.circle_filled(at(0.5, 0.5), 0.15 * s, colour);
+        }
+        _ => {}
+    }
+    let slash: Line = &[(0.06, 0.94), (0.94, 0.06)];
+    let off = matches!(icon, Icon::LampOff | Icon::EyeOff).then_some(slash);
+    for points in lines(icon).iter().copied().chain(off) {
+        line(&mut points.iter().copied());
+    }
+}
+
+/// The corners of a line, in a square with side 1.
+type Line = &'static [(f32, f32)];
+
+/// The straight lines of an icon, apart from the one through what is off.
+fn lines(icon: Icon) -> &'static [Line] {
+    match icon {
+        Icon::Plus => &[&[(0.5, 0.16), (0.5, 0.84)], &[(0.16, 0.5), (0.84, 0.5)]],
+        Icon::Cross => &[&[(0.22, 0.22), (0.78, 0.78)], &[(0.78, 0.22), (0.22, 0.78)]],
+        Icon::Bin => &[
+            &[(0.14, 0.26), (0.86, 0.26)],
+            &[(0.38, 0.26), (0.38, 0.12), (0.62, 0.12), (0.62, 0.26)],
+            &[(0.24, 0.26), (0.3, 0.9), (0.7, 0.9), (0.76, 0.26)],
+        ],
+        Icon::Copy => &[
+            &[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)],
+            &[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)],
+        ],
+        Icon::Duplicate => &[
+            &[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)],
+            &[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)],
+            &[(0.62, 0.48), (0.62, 0.76)],
+            &[(0.48, 0.62), (0.76, 0.62)],
+        ],
+        Icon::Pencil => &[&[(0.14, 0.86), (0.2, 0.64), (0.7, 0.14), (0.86, 0.3), (0.36, 0.8), (0.14, 0.86)]],
+        Icon::Down => &[&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]],
+        Icon::Up => &[&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]],
+        Icon::Lamp | Icon::LampOff => &[&[(0.36, 0.78), (0.64, 0.78)], &[(0.4, 0.94), (0.6, 0.94)]],
+        Icon::Eye | Icon::EyeOff => &[],
+        Icon::Room => &[
+            &[(0.12, 0.34), (0.66, 0.34), (0.66, 0.9), (0.12, 0.9), (0.12, 0.34)],
+            &[(0.12, 0.34), (0.36, 0.1), (0.9, 0.1), (0.66, 0.34)],
+            &[(0.9, 0.1), (0.9, 0.64), (0.66, 0.9)],
+        ],
+        Icon::Check => &[&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)]],
+        Icon::Reset => &[&[(0.1, 0.12), (0.18, 0.38), (0.44, 0.32)]],
+        Icon::Target => &[
+            &[(0.5, 0.02), (0.5, 0.3)],
+            &[(0.5, 0.7), (0.5, 0.98)],
+            &[(0.02, 0.5), (0.3, 0.5)],
+            &[(0.7, 0.5), (0.98, 0.5)],
+        ],
     }
 }
 

@@ -13,7 +13,10 @@ use super::{
 use crate::{
     matching::What,
     registry::Registry,
-    scene::variant::{LETTERS, MAX_VARIANTS},
+    scene::{
+        Scene,
+        variant::{LETTERS, MAX_VARIANTS},
+    },
 };
 
 /// Width of the dialog, in points.
@@ -101,26 +104,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) 
     ui.add_space(8.0);
     ui.label(theme::strong(ui, format!("Free parameters of view {}", letter(draft.view))));
     let seen = session.document.seen(draft.view, registry).map(|(scene, _)| scene);
-    ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
-        for (parameter, free) in &mut next.parameters {
-            let now = seen.as_ref().and_then(|scene| {
-                let has =
-                    |id: &str| registry.model(id).is_some_and(|m| m.parameter(parameter.name).is_some());
-                let object = scene.shown().find(|object| has(scene.model_of(object)))?;
-                Some(object.material.get(parameter).to_string())
-            });
-            ui.horizontal(|ui| {
-                let name = format!("Free: {}", parameter.label);
-                let check = ui.checkbox(free, parameter.label).on_hover_text(parameter.help);
-                check.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, *free, &name));
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    // The scroll bar floats over this margin.
-                    ui.add_space(12.0);
-                    ui.label(theme::small(ui, now.unwrap_or_default()));
-                });
-            });
-        }
-    });
+    parameters(ui, registry, seen.as_ref(), &mut next);
     ui.add_space(12.0);
     let mut actions = Vec::new();
     let ready = draft.free().next().is_some();
@@ -145,6 +129,30 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) 
         actions.push(Action::Match(MatchCommand::Change(next)));
     }
     actions
+}
+
+/// The parameters of a view, each with its value and a box that frees it.
+fn parameters(ui: &mut Ui, registry: &Registry, seen: Option<&Scene>, next: &mut MatchDraft) {
+    ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
+        for (parameter, free) in &mut next.parameters {
+            let now = seen.and_then(|scene| {
+                let has =
+                    |id: &str| registry.model(id).is_some_and(|m| m.parameter(parameter.name).is_some());
+                let object = scene.shown().find(|object| has(scene.model_of(object)))?;
+                Some(object.material.get(parameter).to_string())
+            });
+            ui.horizontal(|ui| {
+                let name = format!("Free: {}", parameter.label);
+                let check = ui.checkbox(free, parameter.label).on_hover_text(parameter.help);
+                check.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, *free, &name));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    // The scroll bar floats over this margin.
+                    ui.add_space(12.0);
+                    ui.label(theme::small(ui, now.unwrap_or_default()));
+                });
+            });
+        }
+    });
 }
 
 /// The progress of the running match, with a button that stops it.

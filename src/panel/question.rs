@@ -96,24 +96,9 @@ fn words(session: &Session, question: &Question) -> Words {
                 ("Replace", Answer::Overwrite),
             ],
         ),
-        Question::ReplaceExport { path, .. } => (
-            "Replace it?",
-            format!("{} exists. Replace it with the export?", path.shown()),
-            Vec::new(),
-            vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
-        ),
-        Question::ReplaceScene { path } => (
-            "Replace it?",
-            format!("{} exists. Replace it with a copy of this scene?", path.shown()),
-            Vec::new(),
-            vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
-        ),
-        Question::ReplacePicture { path, .. } => (
-            "Replace it?",
-            format!("{} exists. Replace it with the new picture?", path.shown()),
-            Vec::new(),
-            vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
-        ),
+        Question::ReplaceExport { path, .. } => replace(path, "the export"),
+        Question::ReplaceScene { path } => replace(path, "a copy of this scene"),
+        Question::ReplacePicture { path, .. } => replace(path, "the new picture"),
         Question::NewerOnDisk { path, .. } => (
             "Reload from disk?",
             format!(
@@ -128,6 +113,16 @@ fn words(session: &Session, question: &Question) -> Words {
             ],
         ),
     }
+}
+
+/// The question whether a file that exists is to be replaced.
+fn replace(path: &path::Path, with: &str) -> Words {
+    (
+        "Replace it?",
+        format!("{} exists. Replace it with {with}?", path.shown()),
+        Vec::new(),
+        vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
+    )
 }
 
 /// The question about unsaved work of an earlier window.

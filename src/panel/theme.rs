@@ -277,28 +277,7 @@ fn style(p: &Palette) -> egui::Style {
     ]
     .into();
     let mut style = egui::Style { text_styles, ..egui::Style::default() };
-    let s = &mut style.spacing;
-    s.item_spacing = vec2(UNIT, UNIT / 2.0);
-    s.button_padding = vec2(UNIT, UNIT / 4.0);
-    s.interact_size = vec2(3.0 * UNIT, 3.0 * UNIT);
-    s.menu_margin = Margin::same((UNIT / 2.0) as i8);
-    s.window_margin = Margin::same((2.0 * UNIT) as i8);
-    s.indent = 2.0 * UNIT;
-    s.icon_width = 14.0;
-    s.icon_width_inner = 8.0;
-    s.icon_spacing = 6.0;
-    s.combo_width = 8.0 * UNIT;
-    s.combo_height = 40.0 * UNIT;
-    s.tooltip_width = 40.0 * UNIT;
-    s.menu_width = 36.0 * UNIT;
-    s.scroll = egui::style::ScrollStyle::thin();
-    // A bar that appears only under the pointer would hide that there is more.
-    s.scroll.foreground_color = true;
-    s.scroll.dormant_handle_opacity = SCROLL_BAR;
-    s.scroll.dormant_background_opacity = 0.0;
-    s.scroll.floating_width = 5.0;
-    // Faded edges would distort the colours there.
-    s.scroll.fade.strength = 0.0;
+    spacing(&mut style.spacing);
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;
     style.animation_time = 0.08;
@@ -324,8 +303,37 @@ fn style(p: &Palette) -> egui::Style {
     v.handle_shape = HandleShape::Circle;
     v.slider_trailing_fill = true;
     v.disabled_alpha = 0.62;
+    widgets(&mut v.widgets, p);
+    style
+}
+
+fn spacing(s: &mut egui::style::Spacing) {
+    s.item_spacing = vec2(UNIT, UNIT / 2.0);
+    s.button_padding = vec2(UNIT, UNIT / 4.0);
+    s.interact_size = vec2(3.0 * UNIT, 3.0 * UNIT);
+    s.menu_margin = Margin::same((UNIT / 2.0) as i8);
+    s.window_margin = Margin::same((2.0 * UNIT) as i8);
+    s.indent = 2.0 * UNIT;
+    s.icon_width = 14.0;
+    s.icon_width_inner = 8.0;
+    s.icon_spacing = 6.0;
+    s.combo_width = 8.0 * UNIT;
+    s.combo_height = 40.0 * UNIT;
+    s.tooltip_width = 40.0 * UNIT;
+    s.menu_width = 36.0 * UNIT;
+    s.scroll = egui::style::ScrollStyle::thin();
+    // A bar that appears only under the pointer would hide that there is more.
+    s.scroll.foreground_color = true;
+    s.scroll.dormant_handle_opacity = SCROLL_BAR;
+    s.scroll.dormant_background_opacity = 0.0;
+    s.scroll.floating_width = 5.0;
+    // Faded edges would distort the colours there.
+    s.scroll.fade.strength = 0.0;
+}
+
+/// The states of a widget.
+fn widgets(w: &mut egui::style::Widgets, p: &Palette) {
     let radius = CornerRadius::same(4);
-    let w = &mut v.widgets;
     for widget in [&mut w.noninteractive, &mut w.inactive, &mut w.hovered, &mut w.active, &mut w.open] {
         widget.corner_radius = radius;
         widget.expansion = 0.0;
@@ -346,7 +354,6 @@ fn style(p: &Palette) -> egui::Style {
     w.open.bg_fill = p.hovered;
     w.open.weak_bg_fill = p.hovered;
     w.open.bg_stroke = Stroke::new(1.0, p.accent);
-    style
 }
 
 /// The margins inside a panel.

@@ -20,6 +20,9 @@ use crate::{
     registry::Registry,
 };
 
+/// Height of a row, in points.
+const HEIGHT: f32 = 26.0;
+
 /// The scene list.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree;
@@ -58,60 +61,22 @@ impl Panel for Tree {
         };
         actions.extend(step(ui, session).map(Action::Select));
         focus::first(ui.ctx(), row_id(session.selection));
-        let height = 26.0;
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
         let mut area = ScrollArea::vertical().auto_shrink(false);
-        // Scrolls to a selection made elsewhere.
         let memory = ui.id().with("shown selection");
-        let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
-        if shown != Some(session.selection) {
-            ui.data_mut(|d| d.insert_temp(memory, session.selection));
-            let index = match session.selection {
-                Selection::Room => 0,
-                Selection::Observer => 1,
-                Selection::Light(i) => 3 + i,
-                Selection::Object(i) => 4 + lights + i,
-            };
-            let (top, view) = (index as f32 * height, ui.available_height());
-            let offset: f32 = ui.data(|d| d.get_temp(memory.with("offset"))).unwrap_or(0.0);
-            if top < offset || top + height > offset + view {
-                area = area.vertical_scroll_offset((top - 0.4 * view).max(0.0));
-            }
+        if let Some(offset) = offset_of_selection(ui, memory, session) {
+            area = area.vertical_scroll_offset(offset);
         }
-        let output = area.show_rows(ui, height, total, |ui, range| {
+        let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
             for i in range {
                 match row(i) {
-                    Row::Part(part) => part_row(ui, session, registry, part, height, actions),
+                    Row::Part(part) => part_row(ui, session, registry, part, actions),
                     Row::Lights => {
-                        heading(ui, "Lights", lights, height, |ui| {
-                            for light in registry.lights() {
-                                let d = light.declaration;
-                                add_item(
-                                    ui,
-                                    d.glyph,
-                                    d.name,
-                                    d.summary,
-                                    Action::AddLight(d.id.to_owned()),
-                                    actions,
-                                );
-                            }
-                        });
+                        heading(ui, "Lights", lights, HEIGHT, |ui| add_lights(ui, registry, actions));
                     }
                     Row::Objects => {
-                        heading(ui, "Objects", objects, height, |ui| {
-                            for shape in registry.shapes() {
-                                let d = shape.declaration;
-                                add_item(
-                                    ui,
-                                    d.glyph,
-                                    d.name,
-                                    d.summary,
-                                    Action::AddObject(d.id.to_owned()),
-                                    actions,
-                                );
-                            }
-                        });
+                        heading(ui, "Objects", objects, HEIGHT, |ui| add_objects(ui, registry, actions));
                     }
                 }
             }
@@ -122,6 +87,39 @@ impl Panel for Tree {
 
 fn row_id(part: Selection) -> Id {
     Id::new(("row", part))
+}
+
+/// The offset that scrolls to a selection made elsewhere, if it is out of sight.
+fn offset_of_selection(ui: &Ui, memory: Id, session: &Session) -> Option<f32> {
+    let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
+    if shown == Some(session.selection) {
+        return None;
+    }
+    ui.data_mut(|d| d.insert_temp(memory, session.selection));
+    let index = match session.selection {
+        Selection::Room => 0,
+        Selection::Observer => 1,
+        Selection::Light(i) => 3 + i,
+        Selection::Object(i) => 4 + session.document.lights.len() + i,
+    };
+    let (top, view) = (index as f32 * HEIGHT, ui.available_height());
+    let offset: f32 = ui.data(|d| d.get_temp(memory.with("offset"))).unwrap_or(0.0);
+    let out_of_sight = top < offset || top + HEIGHT > offset + view;
+    out_of_sight.then(|| (top - 0.4 * view).max(0.0))
+}
+
+fn add_lights(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
+    for light in registry.lights() {
+        let d = light.declaration;
+        add_item(ui, d.glyph, d.name, d.summary, Action::AddLight(d.id.to_owned()), actions);
+    }
+}
+
+fn add_objects(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
+    for shape in registry.shapes() {
+        let d = shape.declaration;
+        add_item(ui, d.glyph, d.name, d.summary, Action::AddObject(d.id.to_owned()), actions);
+    }
 }
 
 /// The part that an arrow key moves to from the focused row. That part gets the focus.
@@ -184,18 +182,11 @@ fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce
 /// Width below which the list has tighter spacing, in points.
 const NARROW: f32 = 190.0;
 
-fn part_row(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    part: Selection,
-    height: f32,
-    actions: &mut Vec<Action>,
-) {
+fn part_row(ui: &mut Ui, session: &Session, registry: &Registry, part: Selection, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let selected = session.selection == part;
     let name = session.name_of(part, registry);
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let response = ui.interact(rect, row_id(part), Sense::click());
     response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
     let hovered = ui.rect_contains_pointer(rect);
@@ -211,40 +202,8 @@ fn part_row(
     let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
     let narrow = rect.width() < NARROW;
     let x = rect.left() + (if nested && !narrow { 22.0 } else { 16.0 });
-    let centre = pos2(x, rect.center().y);
-    let square = Rect::from_center_size(centre, vec2(14.0, 14.0));
-    let body = TextStyle::Body.resolve(ui.style());
-    let glyph = |glyph: &str, name: &str| {
-        painter.text(
-            centre,
-            Align2::CENTER_CENTER,
-            glyphs::glyph(ui, glyph, name),
-            FontId::new(14.0, body.family.clone()),
-            palette.text,
-        );
-    };
-    let mut dot = None;
-    match part {
-        Selection::Room => icon::paint(&painter, square, Icon::Room, palette.text),
-        Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
-        Selection::Light(i) => {
-            let light = &session.document.lights[i];
-            let (sign, name) = registry
-                .light(&light.light_type)
-                .map_or(("?", ""), |e| (e.declaration.glyph, e.declaration.name));
-            glyph(sign, name);
-            dot = Some(light.rgb8());
-        }
-        Selection::Object(i) => {
-            let object = &session.document.objects[i];
-            let (sign, name) = registry
-                .shape(&object.object_type)
-                .map_or(("?", ""), |e| (e.declaration.glyph, e.declaration.name));
-            glyph(sign, name);
-            let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
-            dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
-        }
-    }
+    let square = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, 14.0));
+    let dot = sign(ui, &painter, square, session, registry, part);
     let text_left = x + 14.0;
     if session.renaming == Some(part) {
         let place = Rect::from_min_max(
@@ -259,6 +218,7 @@ fn part_row(
     let there = is_there(session, part);
     let colour = if there { palette.text } else { palette.weak };
     let room = (right - text_left).max(8.0);
+    let body = TextStyle::Body.resolve(ui.style());
     let (galley, cut) = theme::elided_within(ui, &name, &body, colour, room);
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
@@ -266,6 +226,52 @@ fn part_row(
         toggle(ui, centre(1.5 * between), hovered, part, there, &name, actions);
         colour_dot(ui, centre(0.5 * between), rgb, part, &name, actions);
     }
+    acted(ui, &response, part, nested, actions);
+    response.context_menu(|ui| menu(ui, session, part, nested, actions));
+    if cut {
+        response.on_hover_text(name);
+    }
+}
+
+/// Paints the icon or the glyph of a part. Returns the colour of a light or an object.
+fn sign(
+    ui: &Ui,
+    painter: &egui::Painter,
+    square: Rect,
+    session: &Session,
+    registry: &Registry,
+    part: Selection,
+) -> Option<[u8; 3]> {
+    let palette = Palette::here(ui);
+    let (sign, name, rgb) = match part {
+        Selection::Room | Selection::Observer => {
+            let icon = if part == Selection::Room { Icon::Room } else { Icon::Eye };
+            icon::paint(painter, square, icon, palette.text);
+            return None;
+        }
+        Selection::Light(i) => {
+            let light = &session.document.lights[i];
+            let known = registry.light(&light.light_type).map(|e| (e.declaration.glyph, e.declaration.name));
+            let (sign, name) = known.unwrap_or(("?", ""));
+            (sign, name, light.rgb8())
+        }
+        Selection::Object(i) => {
+            let object = &session.document.objects[i];
+            let known =
+                registry.shape(&object.object_type).map(|e| (e.declaration.glyph, e.declaration.name));
+            let (sign, name) = known.unwrap_or(("?", ""));
+            let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
+            (sign, name, [colour.x as u8, colour.y as u8, colour.z as u8])
+        }
+    };
+    let font = FontId::new(14.0, TextStyle::Body.resolve(ui.style()).family);
+    let sign = glyphs::glyph(ui, sign, name);
+    painter.text(square.center(), Align2::CENTER_CENTER, sign, font, palette.text);
+    Some(rgb)
+}
+
+/// Clicks on a row, and keys while it has the focus.
+fn acted(ui: &Ui, response: &egui::Response, part: Selection, nested: bool, actions: &mut Vec<Action>) {
     // The menu of a row applies to the selection.
     if response.clicked() || response.secondary_clicked() {
         actions.push(Action::Select(part));
@@ -276,31 +282,30 @@ fn part_row(
     if nested && response.double_clicked() {
         actions.push(Action::BeginRename(part));
     }
-    response.context_menu(|ui| {
-        let mut item = |ui: &mut Ui, text: &str, action: Action| {
-            if ui.button(text).clicked() {
-                actions.push(action);
-                ui.close();
-            }
-        };
-        if nested {
-            item(ui, "Rename", Action::BeginRename(part));
-            item(ui, "Duplicate", Action::Duplicate(part));
-            item(ui, toggle_words(part, is_there(session, part)), Action::Toggle(part));
-            ui.separator();
-            item(ui, "Delete", Action::Remove(part));
-        } else {
-            item(ui, "Show properties", Action::Select(part));
+}
+
+/// The context menu of a row.
+fn menu(ui: &mut Ui, session: &Session, part: Selection, nested: bool, actions: &mut Vec<Action>) {
+    let mut item = |ui: &mut Ui, text: &str, action: Action| {
+        if ui.button(text).clicked() {
+            actions.push(action);
+            ui.close();
         }
-        if part == Selection::Observer {
-            let problem = session.observer_problem();
-            let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView);
-            let place = ui.add_enabled_ui(problem.is_none(), place).response;
-            problem.map(|why| place.on_hover_text(why));
-        }
-    });
-    if cut {
-        response.on_hover_text(name);
+    };
+    if nested {
+        item(ui, "Rename", Action::BeginRename(part));
+        item(ui, "Duplicate", Action::Duplicate(part));
+        item(ui, toggle_words(part, is_there(session, part)), Action::Toggle(part));
+        ui.separator();
+        item(ui, "Delete", Action::Remove(part));
+    } else {
+        item(ui, "Show properties", Action::Select(part));
+    }
+    if part == Selection::Observer {
+        let problem = session.observer_problem();
+        let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView);
+        let place = ui.add_enabled_ui(problem.is_none(), place).response;
+        problem.map(|why| place.on_hover_text(why));
     }
 }
 

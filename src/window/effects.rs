@@ -21,6 +21,14 @@ use crate::{
 #[derive(Resource)]
 pub(super) struct Unattended;
 
+/// Wakes the idle window; if it is gone, there is nobody to notify.
+fn wake(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + 'static + use<> {
+    let proxy = proxy.map(|proxy| (**proxy).clone());
+    move || {
+        proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+    }
+}
+
 /// Carries out the effects of the panels.
 pub(super) fn carry_out(
     mut effects: MessageReader<LabEffect>,
@@ -108,39 +116,23 @@ pub(super) fn carry_out(
                 }
             }
             Effect::OpenInEditor { path, line } => {
-                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
                 let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
-                editors.open(variable.as_deref(), &path, line, move || {
-                    // Wakes the idle window; if it is gone, there is nobody to notify.
-                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-                });
+                editors.open(variable.as_deref(), &path, line, wake(proxy.as_deref()));
             }
             Effect::Export { form, path, overwrite } => {
-                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                exports.begin(form, path, overwrite, &mut session, &registry, move || {
-                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-                });
+                exports.begin(form, path, overwrite, &mut session, &registry, wake(proxy.as_deref()));
             }
             Effect::CancelExport => exports.cancel(),
             Effect::Match { view, what, parameters } => {
-                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                matches.begin((view, what, parameters), &session, &registry, move || {
-                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-                });
+                matches.begin((view, what, parameters), &session, &registry, wake(proxy.as_deref()));
             }
             Effect::CancelMatch => matches.cancel(),
             Effect::WritePlot(path) => {
-                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                plot_files.begin(path, &mut session, &registry, move || {
-                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-                });
+                plot_files.begin(path, &mut session, &registry, wake(proxy.as_deref()));
             }
             Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
             Effect::CheckLaws(model) => {
-                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                laws.begin(&model, registry.folders(), move || {
-                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-                });
+                laws.begin(&model, registry.folders(), wake(proxy.as_deref()));
             }
             other => {
                 let more = run_files(&mut session, &registry, other.clone(), &mut *files);

@@ -214,25 +214,7 @@ fn levels(ui: &mut Ui) {
 fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let mut all = Vec::new();
-    let unseen = match explained.sight {
-        None | Some(Sight::Clear) => None,
-        Some(Sight::Outside) => {
-            Some("The pinned point is outside the picture: this is its light all the same.".to_owned())
-        }
-        Some(Sight::Away) => Some(
-            "The pinned point faces away from here: this is its light all the same, for a V that is mirrored in the \
-             surface."
-                .to_owned(),
-        ),
-        Some(Sight::Behind(i)) => {
-            let own = explanation.seen.as_ref().is_some_and(|seen| seen.object.index == i);
-            let name = match own {
-                true => "its own object".to_owned(),
-                false => session.name_of(Selection::Object(i), registry),
-            };
-            Some(format!("The pinned point is hidden here by {name}: this is its light all the same."))
-        }
-    };
+    let unseen = unseen(explained, session, registry);
     all.extend(unseen.map(|text| (Severity::Info, text)));
     if session.facts.compiling {
         all.push((
@@ -282,6 +264,29 @@ fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec
         ));
     }
     all
+}
+
+/// Why the pinned point cannot be seen, if so.
+fn unseen(explained: &Explained, session: &Session, registry: &Registry) -> Option<String> {
+    match explained.sight {
+        None | Some(Sight::Clear) => None,
+        Some(Sight::Outside) => {
+            Some("The pinned point is outside the picture: this is its light all the same.".to_owned())
+        }
+        Some(Sight::Away) => Some(
+            "The pinned point faces away from here: this is its light all the same, for a V that is mirrored in the \
+             surface."
+                .to_owned(),
+        ),
+        Some(Sight::Behind(i)) => {
+            let own = explained.explanation.seen.as_ref().is_some_and(|seen| seen.object.index == i);
+            let name = match own {
+                true => "its own object".to_owned(),
+                false => session.name_of(Selection::Object(i), registry),
+            };
+            Some(format!("The pinned point is hidden here by {name}: this is its light all the same."))
+        }
+    }
 }
 
 fn remark(ui: &mut Ui, severity: Severity, text: &str) {

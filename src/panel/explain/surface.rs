@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use bevy_egui::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui};
+use bevy_egui::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, Ui};
 use glam::Vec3;
 
 use super::room::Room;
@@ -116,8 +116,7 @@ pub(super) fn paint(
     room: &mut Room,
 ) {
     let lens = Lens::of(session, rect);
-    let own = |i: usize| Vec3::from(tint(i).map(|c| f32::from(c) / 255.0));
-    let colour = |i: usize, length: f32| if lobes.len() == 1 { viridis(length) } else { own(i) };
+    let colour = |i: usize, length: f32| if lobes.len() == 1 { viridis(length) } else { own_colour(i) };
     let all: Vec<_> = lobes
         .iter()
         .enumerate()
@@ -146,7 +145,7 @@ pub(super) fn paint(
     painter.add(Shape::mesh(mesh));
     for (i, light) in lobes.iter().enumerate() {
         let lobe = &all[i];
-        let line = if lobes.len() == 1 { Color32::WHITE } else { swatch(own(i)) };
+        let line = if lobes.len() == 1 { Color32::WHITE } else { swatch(own_colour(i)) };
         let seen = |k: u32| lobe.outside[k as usize];
         for (edge, sides) in &light.rims {
             let around = match sides {
@@ -161,18 +160,28 @@ pub(super) fn paint(
         }
     }
     if lobes.len() > 1 {
-        let mut ink = Ink::new(lens);
-        for (i, light) in lobes.iter().enumerate() {
-            let end = from + light.l * lens.metres(from, LENGTH);
-            for run in lens.path(&[from, end]) {
-                ink.stroke(run, 1.5, swatch(own(i)));
-            }
-            if let Some(end) = lens.project(end) {
-                ink.disc(end, 3.0, swatch(own(i)));
-            }
-        }
-        ink.paint(&painter);
+        directions(&painter, lens, from, lobes);
     }
+}
+
+/// Paints the directions of several lights, each in the colour of its lobe.
+fn directions(painter: &Painter, lens: Lens, from: Vec3, lobes: &[LightLobe]) {
+    let mut ink = Ink::new(lens);
+    for (i, light) in lobes.iter().enumerate() {
+        let end = from + light.l * lens.metres(from, LENGTH);
+        for run in lens.path(&[from, end]) {
+            ink.stroke(run, 1.5, swatch(own_colour(i)));
+        }
+        if let Some(end) = lens.project(end) {
+            ink.disc(end, 3.0, swatch(own_colour(i)));
+        }
+    }
+    ink.paint(painter);
+}
+
+/// The colour of the lobe of a light among several.
+fn own_colour(i: usize) -> Vec3 {
+    Vec3::from(tint(i).map(|c| f32::from(c) / 255.0))
 }
 
 fn swatch(colour: Vec3) -> Color32 {
