@@ -2,4 +2,5 @@
 
 mod cycles;
 mod features;
+mod lengths;
 pub(crate) mod modules;
