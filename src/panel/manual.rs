@@ -129,11 +129,13 @@ fn target(page: &str, to: &str) -> Option<String> {
     let (file, place) = to.split_once('#').unwrap_or((to, ""));
     let folder = page.rsplit_once('/').map_or("", |(folder, _)| folder);
     let path = match file.strip_prefix("../") {
-        _ if file.is_empty() => format!("{page}.md"),
         Some(above) if !folder.is_empty() => above.to_owned(),
         _ => format!("{folder}/{file}").trim_start_matches('/').to_owned(),
     };
-    let named = path.strip_suffix(".md").filter(|name| PAGES.iter().any(|(id, _)| id == name))?;
+    let named = match path.strip_suffix(".md") {
+        _ if file.is_empty() => page,
+        name => name.filter(|name| PAGES.iter().any(|(id, _)| id == name))?,
+    };
     Some(if place.is_empty() { format!("#{named}") } else { format!("#{named}--{place}") })
 }
 
