@@ -156,7 +156,7 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
         let mut settings = settings.clone();
         match read(&path) {
             Ok(Some(found)) => settings.keys = found.keys,
-            Err(Unreadable::Text(_)) => std::fs::rename(&path, folder.join(KEPT))?,
+            Err(Unreadable::Text(_)) => files::write(&folder.join(KEPT), &files::read(&path, MAX_BYTES)?)?,
             Ok(None) | Err(Unreadable::File(_)) => {}
         }
         let mut text = serde_json::to_string_pretty(&settings).map_err(io::Error::from)?;
