@@ -8,8 +8,6 @@ pub(super) fn help(to: &mut List) {
         to.add(command("manual", "Manual", Action::Manual));
         let keys = Action::View(ViewChange::Keys(!to.session.view.keys_open));
         to.add(command("keys", "Keys and mouse", keys).row("This list").keys("F1").anywhere());
-        let finder = Action::View(ViewChange::Finder(!to.session.view.finder_open));
-        to.add(command(super::FINDER, "Find a command…", finder).keys("Ctrl+F"));
         to.menu(Menu::new(super::LESSONS).group(Group::Lessons), |to| {
             let open = command("open_lesson", "Open a lesson…", Action::Lesson(LessonCommand::OpenDialog));
             to.add(open.says("Open a lesson…").tip("A lesson of your own: a Markdown file"));
@@ -17,6 +15,8 @@ pub(super) fn help(to: &mut List) {
             let none = to.session.lesson.is_none();
             to.add(leave.says("Leave the lesson").unless(none, "No lesson is open"));
         });
+        let finder = Action::View(ViewChange::Finder(!to.session.view.finder_open));
+        to.add(command(super::FINDER, "Find a command…", finder).keys("Ctrl+F"));
         to.add(command("about", "About", Action::View(ViewChange::About(true))));
     });
 }
