@@ -348,8 +348,9 @@ fn the_window_draws_lines_over_each_view_and_follows_the_camera() {
     assert!(std::sync::Arc::ptr_eq(&wires, &same) && count == first, "nothing changed");
 
     bench.session.facts.eye += Vec3::new(0.4, 0.0, 0.0);
-    let (moved, count) = lines(&mut bench, 0);
-    assert!(count > first && !std::sync::Arc::ptr_eq(&wires, &moved));
+    // On a busy machine the previous ones are shown for a while.
+    let new = (0..100).map(|_| lines(&mut bench, 0)).find(|(new, _)| !std::sync::Arc::ptr_eq(&wires, new));
+    assert!(new.expect("other lines").1 > first);
     assert!(drawn(&mut bench).1.x < at.x - 5.0, "the camera went to the right");
     bench.key(Key::X, Modifiers::NONE);
     let (dots, _) = lines(&mut bench, 0);
