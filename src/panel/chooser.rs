@@ -105,7 +105,7 @@ pub struct Entry<'a> {
     pub swatch: Option<Color32>,
     /// True if this is the current choice.
     pub current: bool,
-    /// Its key, in a column at the right end; `None` where entries have none.
+    /// The key, in a column at the right end; `None` where entries have none.
     pub key: Option<String>,
     /// True if it is switched on, as a check mark says.
     pub on: bool,

@@ -21,9 +21,9 @@ use crate::{
 pub trait Panel: Send + Sync + 'static {
     /// A name that no other panel has.
     fn id(&self) -> &'static str;
-    /// Its name for people.
+    /// The name for people.
     fn title(&self) -> &'static str;
-    /// Its place.
+    /// The place.
     fn place(&self) -> Place;
     /// A note on its tab beside the title, such as the number of errors.
     fn note(&self, _session: &Session) -> Option<(Severity, String)> {
@@ -156,7 +156,7 @@ impl<P: Panel> Panel for Guarded<P> {
 #[derive(Default, Resource)]
 pub struct Panels {
     list: Vec<Listed>,
-    /// What they queued when they were shown last.
+    /// The commands queued when the panels were last shown.
     queue: Vec<Command>,
 }
 
@@ -198,7 +198,7 @@ impl Panels {
         }
     }
 
-    /// Their entries in menus.
+    /// The menu entries of the panels.
     pub fn infos(&self) -> impl Iterator<Item = PanelInfo> {
         self.list.iter().map(Listed::info)
     }

@@ -15,7 +15,7 @@ use crate::{
 /// Size of exported pictures, in pixels.
 pub const SIZE: (u32, u32) = (1280, 720);
 
-/// What an export makes, of what, as a sentence.
+/// The tooltip of an export form: the result and its subject, as a sentence.
 pub(super) fn help(session: &Session, form: &Form) -> String {
     match form.of_object.then(|| object(session)).flatten() {
         Some(i) => format!("{} The object is {}.", sentence(form), name(session, i)),

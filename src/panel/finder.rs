@@ -20,7 +20,7 @@ use crate::{
     registry::Registry,
 };
 
-/// Its width, points, and the room at its sides in a narrower window.
+/// The width, points, and the room at its sides in a narrower window.
 const WIDTH: f32 = 620.0;
 const MARGIN: f32 = 24.0;
 /// The room around what is in it, points.
@@ -47,7 +47,7 @@ fn id() -> Id {
 struct Found {
     id: String,
     title: String,
-    /// Its place among the headings.
+    /// The place among the headings.
     order: u8,
     heading: &'static str,
     note: String,
@@ -75,7 +75,7 @@ impl Found {
     }
 }
 
-/// What happens to what is chosen.
+/// The effect of the chosen entry.
 enum Does {
     Act(Action),
     /// The knob of this name has the focus.

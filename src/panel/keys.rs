@@ -18,7 +18,7 @@ pub struct Binding {
     pub shortcut: Shortcut,
     /// The heading in the list of keys.
     pub group: Group,
-    /// Its action, in words.
+    /// The action, in words.
     pub label: String,
     /// The action.
     pub action: Action,
@@ -37,7 +37,7 @@ impl Binding {
         }
     }
 
-    /// Its usual spelling: `Ctrl+Shift+S`.
+    /// The usual spelling: `Ctrl+Shift+S`.
     #[must_use]
     pub fn keys(&self) -> String {
         self.shortcut.to_string()
@@ -189,7 +189,7 @@ fn with_key(text: &str, key: Option<Shortcut>) -> String {
     key.map_or_else(|| text.to_owned(), |key| format!("{text} ({})", key.with_signs()))
 }
 
-/// The same beside the panels.
+/// The keys that work beside the panels.
 #[must_use]
 pub fn hint_beside(session: &Session, registry: &Registry, text: &str, id: &str) -> String {
     let root = command::all(session, registry, false);

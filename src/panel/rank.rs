@@ -1,4 +1,4 @@
-//! How well a few letters fit a name: whole words first, then beginnings of words, initials, parts of words, and letters
+//! Ranking of names by a few letters: whole words first, then beginnings of words, initials, parts of words, and letters
 //! with gaps. Search by such letters takes one function; crates for it bring tables for files and shells.
 
 /// More words of a search than a name has are left out.
@@ -29,7 +29,7 @@ fn with_gaps(text: &[char], word: &[char]) -> Option<i32> {
     Some((18 - 3 * gaps - spread / 2).max(1))
 }
 
-/// How well one word fits the words of a name.
+/// The score of one word against the words of a name.
 fn fit(name: &[String], word: &str) -> Option<i32> {
     let early = |at: usize| 4 - (at as i32).min(4);
     let first = |is: &dyn Fn(&str) -> bool| name.iter().position(|own| is(own));
@@ -53,7 +53,7 @@ fn fit(name: &[String], word: &str) -> Option<i32> {
     with_gaps(&name.join(" ").chars().collect::<Vec<_>>(), &letters)
 }
 
-/// How well a search fits a name, or else what more there is to say; below 0 if it takes letters with gaps, `None` if a
+/// The score of a search against a name, or else what more there is to say; below 0 if it takes letters with gaps, `None` if a
 /// word of the search fits nothing.
 pub(super) fn rank(name: &str, more: &str, search: &str) -> Option<i32> {
     let (own, more) = (words(name), words(more));

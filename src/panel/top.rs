@@ -89,7 +89,7 @@ fn caption(ui: &mut Ui, text: &str) {
 /// The captions of the choices.
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
 
-/// What stands in the place of the scene's name while a lesson is open.
+/// The text in place of the scene's name while a lesson is open.
 const LESSON: &str = "Lesson";
 
 /// The part of the title that is left for the scene's name beside a long name of its file.

@@ -56,7 +56,7 @@ pub struct Journal {
 /// A copy left behind by a window.
 #[derive(Debug)]
 pub struct Abandoned {
-    /// Its folder, held: no other window offers it meanwhile.
+    /// The folder, held: no other window offers it meanwhile.
     pub journal: Journal,
     /// The copied document.
     pub about: About,

@@ -70,7 +70,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Its word in files, JSON and web pages.
+    /// The word in files, JSON and web pages.
     #[must_use]
     pub const fn id(self) -> &'static str {
         match self {
@@ -81,7 +81,7 @@ impl Term {
         }
     }
 
-    /// Its symbol in equations: `I_d`.
+    /// The symbol in equations: `I_d`.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
         match self {

@@ -42,7 +42,7 @@ const K_S: f64 = 0.444;
 struct Pictured {
     id: &'static str,
     name: &'static str,
-    /// What stands behind the name where there is room.
+    /// The addition to the name where there is room.
     variety: &'static str,
 }
 

@@ -321,7 +321,7 @@ fn tonemapping(tone: ToneMapping) -> &'static str {
     }
 }
 
-/// What the program adds for a material type.
+/// The statements of the program for a material type.
 fn plugin(program: &Program) -> String {
     format!(
         "    app.add_plugins(MaterialPlugin::<{}>::default())

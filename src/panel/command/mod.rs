@@ -93,9 +93,9 @@ pub enum Mark {
 /// A command.
 #[derive(Clone, Debug)]
 pub struct Command {
-    /// Its id in the settings, such as `save` or `channel.depth`.
+    /// The id in the settings, such as `save` or `channel.depth`.
     pub id: Cow<'static, str>,
-    /// Its name in menus.
+    /// The name in menus.
     pub name: Cow<'static, str>,
     says: Option<Cow<'static, str>>,
     row: Option<&'static str>,
@@ -103,7 +103,7 @@ pub struct Command {
     pub glyph: &'static str,
     /// True if the name comes from another crate, which may use any character.
     pub foreign: bool,
-    /// Its keys.
+    /// The keys.
     pub keys: Vec<Shortcut>,
     group: Option<Group>,
     rank: i8,
@@ -113,7 +113,7 @@ pub struct Command {
     pub why_not: Option<Cow<'static, str>>,
     /// The form of its menu entry.
     pub mark: Mark,
-    /// Its action.
+    /// The action.
     pub action: Action,
     /// The action of its key, where that is another.
     pub by_key: Option<Action>,
@@ -166,7 +166,7 @@ pub(super) fn command(
 }
 
 impl Command {
-    /// Its usual keys, with spaces between them.
+    /// The default keys, separated by spaces.
     fn keys(self, keys: &str) -> Self {
         Self { keys: keys.split_whitespace().filter_map(|key| Shortcut::read(key).ok()).collect(), ..self }
     }
@@ -177,19 +177,19 @@ impl Command {
     }
 
     with! {
-        /// Its name where no menu is around it.
+        /// The name where no menu is around it.
         says(says: impl Into<Cow<'static, str>>) = Some(says.into());
-        /// Its name in the list of keys, where the rows around it say the rest.
+        /// The name in the list of keys, where the rows around it say the rest.
         row(row: &'static str) = Some(row);
-        /// Its heading in the list of keys, if not that of its menu.
+        /// The heading in the list of keys, if not that of its menu.
         group(group: Group) = Some(group);
-        /// Its place below the heading, where the order is not that of the declarations.
+        /// The place below the heading, where the order is not that of the declarations.
         rank(rank: i8) = rank;
         /// The tooltip of its menu entry.
         tip(tip: impl Into<Cow<'static, str>>) = tip.into();
         /// The form of its menu entry.
         mark(mark: Mark) = mark;
-        /// Its keys work while text is typed, as far as they are no text.
+        /// The keys work while text is typed, as far as they are no text.
         anywhere() = true;
         /// A presentation does not have it.
         at_desk() = true;
@@ -197,19 +197,19 @@ impl Command {
         absent(absent: bool) = absent;
     }
 
-    /// Its heading in the list of keys.
+    /// The heading in the list of keys.
     #[must_use]
     pub fn heading(&self) -> Group {
         self.group.unwrap_or_default()
     }
 
-    /// Its name in the list of keys; `path` is that of the menu it is in.
+    /// The name in the list of keys; `path` is that of the menu it is in.
     #[must_use]
     pub fn in_list(&self, path: &[&str]) -> String {
         self.row.map_or_else(|| self.title(path), str::to_owned)
     }
 
-    /// Its name where no menu is around it; `path` is that of the menu it is in.
+    /// The name where no menu is around it; `path` is that of the menu it is in.
     #[must_use]
     pub fn title(&self, path: &[&str]) -> String {
         match (&self.says, path) {
@@ -234,11 +234,11 @@ pub enum Item {
 /// A menu.
 #[derive(Clone, Debug, Default)]
 pub struct Menu {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// Its name with what is chosen in it, if that is said.
+    /// The name with what is chosen in it, if that is said.
     pub shown: Option<String>,
-    /// Its entries.
+    /// The entries.
     pub items: Vec<Item>,
     group: Option<Group>,
     width: f32,
@@ -257,7 +257,7 @@ impl Menu {
         group(group: Group) = Some(group);
         /// A width that depends on nothing, points.
         width(width: f32) = width;
-        /// Where it does not fit the window, it scrolls.
+        /// Scrolls if it does not fit the window.
         scrolls() = true;
         /// Enter leaves it open, so that choices can be tried.
         stays() = true;
@@ -265,7 +265,7 @@ impl Menu {
         empty(empty: &'static str) = empty;
     }
 
-    /// Its commands and those of the menus in it, each with the names of the menus it is in.
+    /// The commands and those of the menus in it, each with the names of the menus it is in.
     #[must_use]
     pub fn commands(&self) -> Vec<(Vec<&'static str>, &Command)> {
         let mut all = Vec::new();
@@ -302,7 +302,7 @@ impl Menu {
     }
 }
 
-/// What declarations may look at, and where they are put.
+/// The state that declarations may read, and the list they are added to.
 struct List<'a> {
     session: &'a Session,
     registry: &'a Registry,
@@ -347,7 +347,7 @@ pub fn all(session: &Session, registry: &Registry, has_sides: bool) -> Menu {
     root
 }
 
-/// The same with the usual keys; scenes, lessons and models only if they are asked for.
+/// All commands with their default keys; scenes, lessons and models only if they are asked for.
 #[must_use]
 pub fn declared(session: &Session, registry: &Registry, has_sides: bool, library: bool) -> Menu {
     let mut list = List { session, registry, has_sides, now: Menu::default() };

@@ -17,7 +17,7 @@ const MOST: usize = 12;
 /// A command has no more keys of its own.
 const MOST_KEYS: usize = 8;
 
-/// What is done by keys that belong to no command.
+/// Keys that belong to no command, with their effects.
 fn reserved(shortcut: Shortcut) -> Option<&'static str> {
     let Shortcut { ctrl, shift, alt, key } = shortcut;
     match key {
@@ -178,7 +178,7 @@ mod tests {
         registry::Registry,
     };
 
-    /// What is in force for some settings, and what is reported.
+    /// The keys in force for some settings, and the problems to be reported.
     fn checked(json: &str) -> (Vec<(String, String)>, Vec<String>) {
         let given: GivenKeys = serde_json::from_str(json).expect("JSON");
         let mut session = Session::default();

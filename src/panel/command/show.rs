@@ -31,7 +31,7 @@ pub(in crate::panel) fn entries(
     }
 }
 
-/// What hangs at the name of a menu.
+/// The content of a menu.
 pub(in crate::panel) fn content(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) {
     if menu.width > 0.0 {
         ui.set_width(menu.width);

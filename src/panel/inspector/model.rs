@@ -26,7 +26,7 @@ pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
     ui.label(name).on_hover_ui(|ui| about(ui, model));
 }
 
-/// Its authors and the year, below the name.
+/// The authors and the year, below the name.
 pub(super) fn model_author(ui: &mut Ui, model: &ModelEntry) {
     let author = model.declaration.author;
     if !author.is_empty() {

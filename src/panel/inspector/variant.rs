@@ -1,4 +1,4 @@
-//! What the active view of a comparison overrides: a list at the top, and marks beside the knobs.
+//! Overrides of the active view of a comparison: a list at the top, and marks beside the knobs.
 
 use bevy_egui::egui::{
     Align, Color32, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,

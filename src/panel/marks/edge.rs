@@ -30,7 +30,7 @@ pub(super) struct Outside {
     pub(super) light: usize,
     /// The direction from the middle of the picture.
     pub(super) way: Vec2,
-    /// Its place, if it is in the picture and something is written over it.
+    /// The place, if it is in the picture and something is written over it.
     pub(super) covered: Option<Pos2>,
 }
 

@@ -37,7 +37,7 @@ mod tests {
         Lens::of(&session, Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 600.0)))
     }
 
-    /// How far a point is within a convex polygon, points; negative outside.
+    /// Distance of a point from the edges of a convex polygon, in points; negative outside.
     fn depth(hull: &[Pos2], at: Pos2) -> f32 {
         let side = |k: usize| {
             let (way, to) = ((hull[(k + 1) % hull.len()] - hull[k]).normalized(), at - hull[k]);

@@ -15,7 +15,7 @@ use crate::{
     reflection::ModelEntry,
 };
 
-/// If a symbol changes a curve: calculated once for each.
+/// True if a symbol changes a curve: calculated once for each.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Influence {
     of: (Key, Setup, &'static str),

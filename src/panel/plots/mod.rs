@@ -45,7 +45,7 @@ pub struct PlotPanel {
     worker: Worker,
     /// The last curve of each place in the list.
     known: Vec<Done>,
-    /// What was asked for last.
+    /// The last request.
     asked: Option<(Setup, Vec<(Slot, Key)>)>,
     /// The number of curves that have come.
     news: u64,
@@ -150,7 +150,7 @@ impl PlotPanel {
         self.asked = Some(asked);
     }
 
-    /// What is known of a place in the list for the quantity that is shown; while a knob is dragged it may be a moment
+    /// The result known for a place in the list for the quantity that is shown; while a knob is dragged it may be a moment
     /// old.
     fn known(&self, slot: Slot, kind: Kind) -> Option<&Result<Arc<Drawn>, String>> {
         let done = self.known.iter().find(|done| done.slot == slot && done.setup.kind == kind)?;

@@ -1,4 +1,4 @@
-//! What the plots are to show: the curves, each with everything that is needed to calculate it.
+//! Requests of the plots: the curves, each with everything that is needed to calculate it.
 
 use crate::{
     curves::{
@@ -30,19 +30,19 @@ pub struct Request {
 /// A curve of a plot.
 #[derive(Clone)]
 pub struct Entry {
-    /// Its place in the list.
+    /// The place in the list.
     pub slot: Slot,
     /// False if it is in the list only.
     pub shown: bool,
-    /// Its colour and its dash.
+    /// The colour and its dash.
     pub style: Style,
     /// Equal keys have equal curves.
     pub key: Key,
-    /// What it is calculated from.
+    /// The source of its values.
     pub recipe: Recipe,
 }
 
-/// What a curve depends on besides quantity and angles.
+/// The inputs of a curve besides quantity and angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     of: Of,
@@ -50,7 +50,7 @@ pub struct Key {
     version: Option<u64>,
 }
 
-/// What a curve is calculated from.
+/// The source of the values of a curve.
 #[derive(Clone)]
 pub enum Recipe {
     /// A model with its parameters.
@@ -71,7 +71,7 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// Its name in the legend.
+    /// The name in the legend.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -103,7 +103,7 @@ impl Recipe {
     /// Calculates it. `registry` knows the models that have what this one lacks.
     ///
     /// # Errors
-    /// If there is no such curve, or nobody wants it any more.
+    /// Returns an error if the curve does not exist, or if nobody wants it any more.
     pub fn draw(
         &self,
         setup: &Setup,

@@ -84,7 +84,7 @@ impl PlotPanel {
         near.map(|(_, slot)| *slot)
     }
 
-    /// What stands in a plot without curves.
+    /// The text of a plot without curves.
     fn nothing(&self, request: &Request) -> Option<String> {
         let kind = request.setup.kind;
         let shown: Vec<_> = request.entries.iter().filter(|entry| entry.shown).collect();

@@ -100,7 +100,7 @@ impl Worker {
         self.0.lock().working
     }
 
-    /// What was calculated since the last call.
+    /// The results since the last call.
     pub(super) fn take(&self) -> Vec<Done> {
         std::mem::take(&mut self.0.lock().done)
     }

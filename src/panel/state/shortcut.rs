@@ -112,7 +112,7 @@ impl Shortcut {
             && (plus || (self.key, self.shift) == (other.key, other.shift))
     }
 
-    /// The same with arrows as signs, for sentences: `Alt+→`.
+    /// The keys with arrows as signs, for sentences: `Alt+→`.
     #[must_use]
     pub fn with_signs(self) -> String {
         let sign = OTHER_NAMES[..4].iter().find(|(_, key)| *key == self.key);
