@@ -3,7 +3,7 @@
 //! While the document has unsaved changes, [`Keeper`] keeps a copy of it in a separate folder for each window
 //! ([`Journal`]), written by a background thread about a second after an edit. Only saving and closing remove
 //! it. Whatever ends the window, be it a signal, a crash or a lost display, at most that second is lost, and
-//! [`Store::left`] finds the copy at the next start.
+//! [`Store::abandoned`] finds the copy at the next start.
 //!
 //! `writer` decides what is written and when, `store` manages the folder. A copy is an ordinary scene file,
 //! `scene.json`, next to [`About`]. Independent of Bevy.

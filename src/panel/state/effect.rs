@@ -27,7 +27,7 @@ pub enum Effect {
     },
     /// Forget everything that belonged to the previous document.
     DocumentChanged,
-    /// Check whether the document's file changed on disk; see [`reload::look`](crate::panel::reload::look).
+    /// Check whether the document's file changed on disk; see [`reload::check`](crate::panel::reload::check).
     CheckFile {
         /// True to discard unsaved changes if so, after asking the user.
         discard: bool,
