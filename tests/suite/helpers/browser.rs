@@ -29,6 +29,9 @@ const ARGUMENTS: [&str; 9] = [
     "--hide-scrollbars",
 ];
 
+/// Software draws a page with all models under softboxes in a minute, and in several on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(240);
+
 /// A browser, closed when dropped.
 pub struct Browser {
     driver: Child,
@@ -69,7 +72,7 @@ impl Browser {
     fn ask(&self, method: &str, path: &str, body: &Value) -> Value {
         let body = if method == "POST" { body.to_string() } else { String::new() };
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
-        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a timeout");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
         let length = body.len();
         let session = &self.session;
         write!(
@@ -132,7 +135,7 @@ impl Browser {
             if wanted(&value) {
                 return value;
             }
-            assert!(begin.elapsed() < Duration::from_secs(90), "{script}: {value}");
+            assert!(begin.elapsed() < PATIENCE, "{script}: {value}");
             thread::sleep(Duration::from_millis(20));
         }
     }
