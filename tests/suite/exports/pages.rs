@@ -159,14 +159,22 @@ fn difference(a: &[u8], b: &[u8]) -> Difference {
 const MEAN: f64 = 0.15;
 const BEYOND: f64 = 0.004;
 
+/// The size of pictures. Software draws frames of 64 samples in seconds; larger ones would outlast the patience of the
+/// browser on a busy machine.
+fn size_of(scene: &Scene) -> [u32; 2] {
+    let share = if has_extent(scene.shining(), &Registry::builtin()) { 2 } else { 1 };
+    [WIDTH / share, HEIGHT / share]
+}
+
 fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
     let file = folder.join("rendered.png");
-    let size = format!("{WIDTH}x{HEIGHT}");
     let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
-    let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
     // A page takes 64 samples of light with extent, and only the CPU renderer can be set to that.
     let lit = load::file(Path::new(scene), &Registry::builtin(), Defaults::Refuse).expect("valid").scene;
     let extended = has_extent(lit.shining(), &Registry::builtin());
+    let [across, down] = size_of(&lit);
+    let size = format!("{across}x{down}");
+    let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
     arguments.extend(match extended {
         true => &["--renderer", "cpu", "--light-samples", "64"][..],
         false => &["--renderer", "gpu"],
@@ -176,7 +184,7 @@ fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
     assert_eq!(run.status, Some(0), "{}", run.err);
     let (pixels, width) = rgb(&fs::read(&file).expect("a picture"));
     fs::remove_file(&file).expect("gone");
-    assert_eq!(width, WIDTH as usize);
+    assert_eq!(width, across as usize);
     pixels
 }
 
@@ -209,7 +217,6 @@ const fn case(scene: &'static str) -> Case {
 #[test]
 fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
     let Some(browser) = Browser::start() else { return };
-    browser.resize(WIDTH, HEIGHT);
     let folder = tempfile::tempdir().expect("a folder");
     let knob =
         |scene, name, value: Value, control| Case { knob: Some((name, value, control)), ..case(scene) };
@@ -264,9 +271,11 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         fs::write(&changed, text.to_string()).expect("written");
         let shading = case.shading.map(|s| ["--shading", s]);
         let expected = rendered(&changed, folder.path(), shading.as_ref().map_or(&[], |s| s.as_slice()));
+        let [across, down] = size_of(&original);
+        browser.resize(across, down);
         for renderer in ["webgpu", "webgl"] {
             let what = format!("{} {:?} {:?} {renderer}", case.scene, case.shading, case.knob);
-            browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+            browser.open(&page_file, &format!("renderer={renderer}&picture={across}x{down}&samples=1"));
             if let Some(shading) = case.shading {
                 set(&browser, &format!("input[value={shading}]"), "");
             }
@@ -279,7 +288,7 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
                 set(&browser, &format!("[data-name={name}] input[type=number]"), control);
             }
             let (shown, width) = browser.look();
-            assert_eq!(width, WIDTH as usize, "{what}");
+            assert_eq!(width, across as usize, "{what}");
             let off = difference(&shown, &expected);
             println!("{what}: {off:?}");
             assert!(off.mean < MEAN && off.beyond < BEYOND, "{what}: {off:?}");
@@ -301,10 +310,6 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
 #[test]
 fn pages_have_light_with_extent() {
     let Some(browser) = Browser::start() else { return };
-    // Software draws a frame of 64 samples in seconds; a larger one would outlast the patience of the browser on a busy machine.
-    const SIZE: [u32; 2] = [WIDTH / 2, HEIGHT / 2];
-    let [width, height] = SIZE;
-    browser.resize(width, height);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.json");
     let text = json!({
@@ -321,6 +326,8 @@ fn pages_have_light_with_extent() {
     fs::write(&file, text.to_string()).expect("written");
     let registry = Registry::builtin();
     let read = scene(&file);
+    let [width, height] = size_of(&read);
+    browser.resize(width, height);
     let rendered = |count: u32, scene: &Scene| {
         let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
         let samples = LightSamples { first: 0, count };
