@@ -1,5 +1,6 @@
 //! The text of a model's file: its declaration, its definitions, and the names that are allowed.
 
+use crate::text::capitalised;
 pub(super) use crate::{
     shader::definitions::{allowed_in_wgsl, block_comment, definition},
     text::identifier::{LONGEST_ID, identifier},
@@ -53,7 +54,5 @@ pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
 
 /// An id as a name: `charlie_sheen` becomes Charlie sheen.
 pub(super) fn humanised(id: &str) -> String {
-    let spaced = id.replace('_', " ");
-    let mut letters = spaced.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    capitalised(&id.replace('_', " "))
 }

@@ -16,6 +16,7 @@ use crate::{
     scene::{
         Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check, variant::LETTERS,
     },
+    text::capitalised,
 };
 
 /// A change of the scene.
@@ -283,11 +284,7 @@ pub(super) fn put_in_variant(scene: &mut Scene, i: usize, field: VariantField) {
 fn step(label: &str, part: &str) -> String {
     match label {
         "Show" | "Hide" | "Switch on" | "Switch off" => format!("{label} {part}"),
-        _ => {
-            let mut letters = label.chars();
-            let first = letters.next().into_iter().flat_map(char::to_uppercase);
-            format!("{}{} of {part}", first.collect::<String>(), letters.as_str())
-        }
+        _ => format!("{} of {part}", capitalised(label)),
     }
 }
 

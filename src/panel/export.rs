@@ -10,6 +10,7 @@ use crate::{
     document::Selection,
     export::{FORMS, Form, Request, shaders},
     registry::Registry,
+    text::capitalised,
 };
 
 /// Size of exported pictures, in pixels.
@@ -25,9 +26,7 @@ pub(super) fn help(session: &Session, form: &Form) -> String {
 
 /// The summary of a format as a sentence.
 fn sentence(form: &Form) -> String {
-    let mut letters = form.summary.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", letters.as_str())
+    format!("{}.", capitalised(form.summary))
 }
 
 /// The object whose shader is exported: the selected one, or the first visible one.

@@ -18,6 +18,7 @@ use crate::{
     parameter::{Parameter, ParameterKind, Values},
     reflection::usage,
     registry::Registry,
+    text::capitalised,
 };
 
 /// The width, points, and the room at its sides in a narrower window.
@@ -256,11 +257,9 @@ fn parameters(session: &Session, registry: &Registry) -> Vec<Found> {
 
 fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -> Found {
     let knob = format!("{beginning}{}", p.name);
-    let mut letters = p.label.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     Found {
         id: format!("knob {of} {knob}"),
-        title: first + letters.as_str(),
+        title: capitalised(p.label),
         order: 2,
         heading: "Parameters",
         off: unused.is_some(),

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     reflection::law_report::{LawReport, Sampling},
     registry::Registry,
+    text::capitalised,
 };
 
 /// The button, and a note about a check that runs or is out of date, laid out from right to left.
@@ -93,8 +94,7 @@ fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[St
                 ui.painter().line(tick, egui::Stroke::new(1.6, palette.accent));
             }
         }
-        let mut rest = what.chars();
-        let what: String = rest.next().into_iter().flat_map(char::to_uppercase).chain(rest).collect();
+        let what = capitalised(what);
         let colour = if bad { palette.error } else { palette.text };
         ui.add(egui::Label::new(RichText::new(what).color(colour)).wrap().selectable(true));
         if !how.is_empty() {

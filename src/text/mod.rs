@@ -12,8 +12,8 @@ pub mod xml;
 
 pub use list::items;
 pub use words::{
-    detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence, shortened,
-    with_article,
+    capitalised, detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence,
+    shortened, with_article,
 };
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.

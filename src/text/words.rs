@@ -69,6 +69,13 @@ pub fn sentence(message: &str) -> String {
     format!("{message}{}", if ended { "" } else { "." })
 }
 
+/// A text with a capital letter at its beginning.
+#[must_use]
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// The rule that a value must be one of several words.
 #[must_use]
 pub fn one_of<'a>(what: &str, words: impl Iterator<Item = &'a str>) -> String {

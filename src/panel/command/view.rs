@@ -9,6 +9,7 @@ use crate::{
         PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
     },
     scene::comparison::Layout,
+    text::capitalised,
 };
 
 /// A command that changes what is shown.
@@ -109,10 +110,8 @@ fn compare(to: &mut List) {
     let now = to.session.document.comparison.layout;
     to.menu(Menu::new("Compare").group(Group::Comparison), |to| {
         for layout in Layout::ALL {
-            let mut letters = layout.name().chars();
-            let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
             let action = Action::Compare(CompareCommand::Layout(*layout));
-            let show = command(format!("layout.{}", layout.id()), first + letters.as_str(), action);
+            let show = command(format!("layout.{}", layout.id()), capitalised(layout.name()), action);
             to.add(show.mark(Mark::Radio(now == *layout)).tip(layout.summary()));
         }
         to.line();

@@ -4,13 +4,14 @@ use bevy_egui::egui::{self, Color32, Id, Sense, Stroke, Ui, WidgetInfo, WidgetTy
 
 use super::{
     field::{complaint, field, text_field},
-    line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, tooltip, unit},
     picker::picker,
     vector::axis_letter,
 };
 use crate::{
     panel::{lesson::point, linked, theme::Palette},
     scene::limits::Limits,
+    text::capitalised,
 };
 
 /// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.

@@ -8,6 +8,7 @@ use crate::{
         theme::{self, Palette},
     },
     scene::limits::{Limits, number},
+    text::capitalised,
 };
 
 /// Symbol and texts of a knob.
@@ -136,11 +137,6 @@ pub(super) fn range(limits: &Limits) -> String {
 /// Adds a tooltip to a widget that may be disabled.
 pub(super) fn explain(response: Response, tip: impl Fn(&mut Ui)) {
     response.on_hover_ui(&tip).on_disabled_hover_ui(&tip);
-}
-
-pub(super) fn capitalised(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
 /// The unit, outside the field, in a separate column.

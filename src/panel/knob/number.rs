@@ -4,12 +4,13 @@ use bevy_egui::egui::{self, CursorIcon, Sense, Stroke, TextStyle, Ui, WidgetInfo
 
 use super::{
     field::{complaint, field},
-    line::{Caption, NUMBER, Words, capitalised, explain, head, range, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, range, tooltip, unit},
     slider::slider,
 };
 use crate::{
     panel::{lesson::point, linked, menu, theme::Palette},
     scene::limits::{Limits, number},
+    text::capitalised,
 };
 
 /// The unit as a choice: each option has a sign and a name. As wide as a plain unit, which keeps fields aligned.

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{
     field::{complaint, field, read, text_field},
-    line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, tooltip, unit},
     slider::round_to,
 };
 use crate::{
@@ -17,6 +17,7 @@ use crate::{
         theme::{self, Palette},
     },
     scene::limits::{Limits, number},
+    text::capitalised,
 };
 
 /// The letter in front of a field; dragging it sideways changes the value.
