@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
     Options, Outcome, gauged,
-    light_samples::Sampling,
+    light_samples::{self, Sampling},
     outputs, pictures, print_json,
     render::{self, Size, cpu_can_draw, samples},
     scenes::Source,
@@ -381,13 +381,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     // The numbers matter even if the picture cannot be written.
     if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {
         let about = about(&read, comparison, registry);
-        let rests_on: Vec<_> = [reached_a, reached_b]
-            .into_iter()
-            .flatten()
-            .map(|Reached { samples, noise }| Sampled { samples, noise })
-            .collect();
+        let rests_on: Vec<_> = [reached_a, reached_b].into_iter().flatten().map(Sampled::from).collect();
         let light = caption::line(&caption::sampled(&rests_on));
-        let about = if light.is_empty() { about } else { about.with("Light", light) };
+        let about = light_samples::noted(about, &light);
         write(output, size, &rgb8, &about)?;
         options.tell(format_args!("wrote {}", output.shown()));
     }

@@ -5,6 +5,7 @@ use clap::Args;
 use crate::{
     reference::{Reached, Until},
     registry::Registry,
+    render::capture::png::About,
     scene::{Scene, has_extent},
 };
 
@@ -76,6 +77,11 @@ impl Sampling {
             )),
         }
     }
+}
+
+/// What a picture says of itself, with the light that it rests on in words, if there are any.
+pub(super) fn noted(about: About, light: &str) -> About {
+    if light.is_empty() { about } else { about.with("Light", light) }
 }
 
 fn light_samples(text: &str) -> Result<u32, String> {

@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 
 use super::{
     FINE, Options, Outcome, finite, gauged,
-    light_samples::Sampling,
+    light_samples::{self, Sampling},
     outputs, progress,
     scenes::Source,
     style,
@@ -492,7 +492,7 @@ impl Painter {
             let outlined = all.is_empty() && job.plan.is_map();
             all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
             remarks.extend(of_part);
-            rests_on.extend(reached.map(|Reached { samples, noise }| Sampled { samples, noise }));
+            rests_on.extend(reached.map(Sampled::from));
         }
         let mut shown = all;
         let light = caption::line(&caption::sampled(&rests_on));
@@ -518,7 +518,7 @@ impl Painter {
             Some(setting) => about.with("Channel", setting.channel.id()),
             None => about,
         };
-        let about = if light.is_empty() { about } else { about.with("Light", &*light) };
+        let about = light_samples::noted(about, &light);
         let about = if job.with_scene { about } else { about.without_scene() };
         let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
         outputs::write_picture(job.file, size, &rgb8, &about)?;

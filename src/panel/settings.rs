@@ -122,7 +122,7 @@ pub fn load(folder: &Path) -> (Settings, Option<String>) {
     match read(&path) {
         Ok(found) => (found.unwrap_or_default().tidy(), None),
         Err(Unreadable::File(e)) => (Settings::default(), Some(unreadable(&e))),
-        Err(Unreadable::Text(e)) => {
+        Err(Unreadable::Text(e, _)) => {
             let kept = format!("{} The file is kept as {KEPT} when they are written.", unreadable(&e));
             (Settings::default(), Some(kept))
         }
@@ -132,13 +132,14 @@ pub fn load(folder: &Path) -> (Settings, Option<String>) {
 /// Why there are no settings in a file.
 enum Unreadable {
     File(FileError),
-    Text(serde_json::Error),
+    /// The mistake, and the content of the file.
+    Text(serde_json::Error, Vec<u8>),
 }
 
 /// The settings in a file, if there is one.
 fn read(path: &Path) -> Result<Option<Settings>, Unreadable> {
     match files::read(path, MAX_BYTES) {
-        Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(Unreadable::Text),
+        Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(|e| Unreadable::Text(e, bytes)),
         Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(e) => Err(Unreadable::File(e)),
     }
@@ -156,7 +157,7 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
         let mut settings = settings.clone();
         match read(&path) {
             Ok(Some(found)) => settings.keys = found.keys,
-            Err(Unreadable::Text(_)) => files::write(&folder.join(KEPT), &files::read(&path, MAX_BYTES)?)?,
+            Err(Unreadable::Text(_, bytes)) => files::write(&folder.join(KEPT), &bytes)?,
             Ok(None) | Err(Unreadable::File(_)) => {}
         }
         let mut text = serde_json::to_string_pretty(&settings).map_err(io::Error::from)?;

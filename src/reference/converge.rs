@@ -6,6 +6,7 @@ use glam::Vec4;
 
 use super::{LightSamples, Picture, Settings, render_noting, render_samples};
 use crate::{
+    caption::Sampled,
     optics::colour::luminance,
     progress::{Cancelled, Progress},
     registry::Registry,
@@ -37,6 +38,12 @@ pub struct Reached {
     /// since these are more evenly distributed together than alone, it is an overestimate. `None` with fewer
     /// than [`Until::FEWEST_FOR_NOISE`] samples.
     pub noise: Option<f32>,
+}
+
+impl From<Reached> for Sampled {
+    fn from(Reached { samples, noise }: Reached) -> Self {
+        Self { samples, noise }
+    }
 }
 
 /// Number of samples in a block: a power of two, so that each block is evenly distributed.

@@ -1,9 +1,6 @@
 //! The light loop: the sum over all lights, common to all models.
 
-use std::sync::{
-    OnceLock,
-    atomic::{AtomicBool, AtomicU32, Ordering},
-};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use glam::Vec3;
 
@@ -79,8 +76,8 @@ impl Lights {
     }
 
     /// The lights shining on one surface.
-    pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface) -> LightsOn<'a> {
-        LightsOn { lights: self, surface, lobes: OnceLock::new(), seed: AtomicU32::new(0) }
+    pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface, lobes: Lobes) -> LightsOn<'a> {
+        LightsOn { lights: self, surface, lobes, seed: AtomicU32::new(0) }
     }
 }
 
@@ -88,8 +85,7 @@ impl Lights {
 pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
-    /// The lobes of the surface, once they are needed.
-    lobes: OnceLock<Lobes>,
+    lobes: Lobes,
     /// The seed of the pixel, or that of all vertices and polygons: with one seed neighbours get the same points, so that what
     /// is interpolated between them is smooth, and every corner of a polygon the same colour.
     seed: AtomicU32,
@@ -134,8 +130,7 @@ impl LightsOn<'_> {
         }
         if !self.lights.extended.is_empty() {
             let seed = self.seed.load(Ordering::Relaxed);
-            let lobes = *self.lobes.get_or_init(|| self.surface.lobes());
-            sum += self.lights.extended.sum((self.surface, lobes), position, v, frame, terms, seed);
+            sum += self.lights.extended.sum((self.surface, self.lobes), position, v, frame, terms, seed);
         }
         sum
     }
@@ -209,7 +204,8 @@ pub(super) fn light_by_light(
     point: &Point,
 ) -> Loop {
     let all = Lights::new(scene, registry, terms);
-    let lights = all.on(surface).seeded(point.seed);
+    let lobes = surface.lobes();
+    let lights = all.on(surface, lobes).seeded(point.seed);
     let [eye, v] = lights.view(point.position, point.normal);
     let frame = Frame::new(point.normal, point.tangent);
     let encoding = scene.display.encoding;
@@ -241,7 +237,7 @@ pub(super) fn light_by_light(
                     Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
                 }
             };
-            (response, alone.on(surface).sum(point.position, v, &frame), None)
+            (response, alone.on(surface, lobes).sum(point.position, v, &frame), None)
         };
         let factors = emitter.factors(&record, point.position);
         Some(LitBy { index, record, incident, factors, response, contribution, integral })

@@ -350,7 +350,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                     }
                     let draw = &draws[object as usize];
                     let triangle = &triangles[object as usize][triangle as usize];
-                    let lighting = lights.on(&*draw.surface);
+                    let lighting = draw.under(&lights);
                     let tile = tile.get_or_insert_with(Tile::new);
                     tile.draw(triangle, &*draw.shading, &lighting, origin(i, &screen), &screen);
                 }

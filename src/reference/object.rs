@@ -6,11 +6,12 @@ use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
-    lighting::Lights,
+    lighting::{Lights, LightsOn},
     meshes::Prepared,
     raster::{Placed, Screen, Triangle, set_up},
 };
 use crate::{
+    optics::lobes::Lobes,
     reflection::Surface,
     registry::Registry,
     scene::{Object, Scene},
@@ -33,6 +34,8 @@ pub(super) struct Draw<'a> {
     pub(super) stage: Stage,
     pub(super) shading: Box<dyn Shading>,
     pub(super) surface: Arc<dyn Surface>,
+    /// The lobes of the surface.
+    pub(super) lobes: Lobes,
     /// True if the model needs tangents.
     pub(super) anisotropic: bool,
 }
@@ -65,14 +68,21 @@ impl<'a> Draw<'a> {
         let model = registry.model(scene.model_of(object))?;
         let shading = registry.shading_model(scene.shading_model_of(object))?;
         let encoding = scene.display.encoding;
+        let surface = model.instantiate(&object.material, encoding);
         Some(Self {
             object,
             shape,
             stage: shading.declaration.stage,
             shading: (shading.instantiate)(&object.material, encoding),
-            surface: model.instantiate(&object.material, encoding),
+            lobes: surface.lobes(),
+            surface,
             anisotropic: model.declaration.anisotropic,
         })
+    }
+
+    /// Some lights as they shine on the object.
+    pub(super) fn under<'l>(&'l self, lights: &'l Lights) -> LightsOn<'l> {
+        lights.on(&*self.surface, self.lobes)
     }
 
     fn per_polygon(&self) -> bool {
@@ -157,7 +167,7 @@ impl<'a> Draw<'a> {
     /// The triangles that may be visible, shaded as far as the shading model works at corners.
     pub(super) fn triangles(&self, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
         let posed = self.posed(clip_from_room, screen);
-        let lighting = lights.on(&*self.surface);
+        let lighting = self.under(lights);
 
         // The values of corners are calculated once per polygon or once per vertex, and only where needed.
         let mut needed: Vec<u32> = if self.per_polygon() {

@@ -231,7 +231,7 @@ fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings
     let Found { object, draw, posed, face, weights } = found;
     let (object, face) = (*object, *face);
     let lights = Lights::new(scene, registry, settings.terms);
-    let lighting = &Asked { lighting: lights.on(&*draw.surface), points: RefCell::default() };
+    let lighting = &Asked { lighting: draw.under(&lights), points: RefCell::default() };
     let (polygon, corners) = face;
     let per_polygon = draw.stage == Stage::Polygon;
     let mut at_corners: Vec<(usize, Point)> = Vec::new();
@@ -260,6 +260,7 @@ fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings
             stage: Stage::Pixel,
             shading: Box::new(PhongShading::default()),
             surface: draw.surface.clone(),
+            lobes: draw.lobes,
             anisotropic: draw.anisotropic,
         };
         let varyings =

@@ -48,7 +48,7 @@ pub fn brightest_vertex(
     // Only the corners in the room matter, not those in a picture.
     let posed = draw.posed(&Mat4::IDENTITY, &Screen::new(1, 1, 1));
     let lights = Lights::new(scene, registry, terms);
-    let lighting = lights.on(&*draw.surface);
+    let lighting = draw.under(&lights);
     let faces = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|i| posed.positions[i as usize]);
         (b - a).cross(c - a).dot(eye - a) > 0.0

@@ -262,7 +262,7 @@ impl View<'_> {
         let gouraud = draw.stage == Stage::Vertex;
         // Corners are vertices, wherever the shading model runs.
         let draw = Draw { stage: if gouraud { Stage::Vertex } else { Stage::Pixel }, ..draw };
-        let lighting = lights.on(&*draw.surface);
+        let lighting = draw.under(lights);
         for vertex in vertices {
             let corner = draw.corner(posed, vertex as usize);
             let clip = self.clip_from_room * corner.position.extend(1.0);

@@ -61,12 +61,9 @@ impl Hemisphere {
         let white = self.white(disc.of);
         let values = self.pixels.iter().flatten().map(|above| (disc.of)(above).max_element());
         let largest = values.filter(|v| v.is_finite()).fold(white, f32::max);
-        let more = if rounded(largest, 3) == rounded(white, 3) {
-            String::new()
-        } else {
-            format!("; brightest: {}", rounded(largest, 3))
-        };
-        format!("{} {}{more}", rounded(white, 3), disc.unit).replace(" ;", ";").trim_end().to_owned()
+        let [white, largest] = [white, largest].map(|v| rounded(v, 3));
+        let end = format!("{white} {}", disc.unit).trim_end().to_owned();
+        if largest == white { end } else { format!("{end}; brightest: {largest}") }
     }
 
     /// The three discs beside each other with their names, scales and marks.

@@ -57,6 +57,8 @@ struct Discs {
     position: Vec3,
     hemisphere: Hemisphere,
     textures: Vec<TextureHandle>,
+    /// The ends of the scales.
+    scales: [String; DISCS.len()],
 }
 
 #[derive(Default)]
@@ -78,7 +80,8 @@ impl Work {
             match receiver.try_recv() {
                 Ok(hemisphere) => {
                     let textures = textures(ctx, &hemisphere);
-                    let discs = Discs { position: *position, hemisphere, textures };
+                    let scales = DISCS.each_ref().map(|disc| hemisphere.end_of_scale(disc));
+                    let discs = Discs { position: *position, hemisphere, textures, scales };
                     self.shown = Some((asked.clone(), Arc::new(discs)));
                     self.running = None;
                 }
@@ -153,7 +156,7 @@ pub(super) fn hemisphere(
                 ui.set_width(width);
                 rows::note(ui, disc.name);
                 one(ui, &discs, i, width);
-                rows::note(ui, &format!("white: {}", discs.hemisphere.end_of_scale(disc)));
+                rows::note(ui, &format!("white: {}", discs.scales[i]));
             });
         }
     });
