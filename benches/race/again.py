@@ -15,6 +15,8 @@ import numpy as np
 
 path, mask, last = sys.argv[1], sys.argv[2], int(sys.argv[3])
 mi.set_variant("llvm_ad_rgb")
+# Warnings would stand among the numbers, in colour.
+mi.set_log_level(mi.LogLevel.Error)
 scene = mi.load_file(path)
 
 

@@ -158,10 +158,10 @@ pub(super) struct Part<'a> {
 }
 
 impl Part<'_> {
-    /// Prepares for [`pixel`](Self::pixel): surrounding light that is nearly uniform is evaluated once for
+    /// Prepares for [`even`](Self::even): surrounding light that is nearly uniform is evaluated once for
     /// each pixel, not for each sample.
     fn prepare(&mut self) {
-        if self.around.is_empty() || !self.centres.is_empty() {
+        if !self.centres.is_empty() {
             return;
         }
         let side = self.edge + 2;
@@ -178,7 +178,6 @@ impl Part<'_> {
         [x, y]: [usize; 2],
         samples: [[f32; 2]; S],
     ) -> [Option<(Vec3, f32)>; S] {
-        self.prepare();
         let even = if S > 1 && !self.around.is_empty() { self.even(x, y) } else { None };
         let at = |axis: usize, place: usize| (self.origin[axis] + place) as f32;
         samples.map(|[right, down]| {
@@ -190,9 +189,10 @@ impl Part<'_> {
     }
 
     /// The surrounding light at the centre of a pixel, if it is nearly the same at its neighbours.
-    fn even(&self, x: usize, y: usize) -> Option<Sight> {
+    fn even(&mut self, x: usize, y: usize) -> Option<Sight> {
         /// Maximum relative difference.
         const EVEN: f32 = 1.0 / 64.0;
+        self.prepare();
         let side = self.edge + 2;
         let i = (y + 1) * side + x + 1;
         let here = self.centres[i]?;
