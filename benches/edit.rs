@@ -7,8 +7,11 @@ use bevy::{ecs::prelude::*, prelude::Transform};
 use glam::Vec3;
 use lights_camera_models::{
     custom,
-    document::{Document, Edit, ObjectField, Selection},
-    panel::{follow::follow_registry, state::Session},
+    document::{Document, Edit, Selection},
+    panel::{
+        follow::follow_registry,
+        state::{Action, CompareCommand, Session},
+    },
     parameter::Value,
     registry::Registry,
     render::{
@@ -17,7 +20,10 @@ use lights_camera_models::{
         parts::{Animated, Surface},
         schedule::LabFrame,
     },
-    scene::{Object, Scene},
+    scene::{
+        Comparison, Display, Key, Light, Object, Observer, Part, Scene, SceneSize, Variant,
+        comparison::Layout,
+    },
 };
 
 const OBJECTS: usize = 10_000;
@@ -59,15 +65,76 @@ fn main() {
         follow.run(world);
         world.run_schedule(LabFrame);
     };
-    let edit = |document: &mut Document, field: ObjectField| {
-        document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
+    let edit = |document: &mut Document, edit: Edit| {
+        document.edit(edit, Selection::Room, &registry).expect("legal");
     };
     report("a parameter of one object", |i| {
-        let field = || ObjectField::Material("k_d", Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32));
+        let field = || {
+            Edit::material(
+                Part::Object(OBJECTS / 2),
+                "k_d",
+                Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32),
+            )
+        };
         change(world, &|document| edit(document, field()));
     });
     report("the size of one object", |i| {
-        change(world, &|document| edit(document, ObjectField::Size(0.05 + i as f32 * 1e-4)));
+        change(world, &|document| {
+            edit(document, Edit::set(Part::Object(OBJECTS / 2), Object::size, 0.05 + i as f32 * 1e-4))
+        });
+    });
+    let set = |part: Part, key: Key, value: Value| Edit::set(part, key, value);
+    report("the position of a light", |i| {
+        let place = Vec3::new(5.0, 8.0, 5.0 + i as f32 * 1e-3);
+        change(world, &|document| edit(document, set(Part::Light(0), Light::position.into(), place.into())));
+    });
+    report("the observer", |i| {
+        let angle = Value::from(40.0 + i as f32 * 0.1);
+        change(world, &|document| {
+            edit(document, set(Part::Observer, Observer::field_of_view.into(), angle.clone()))
+        });
+    });
+    report("the size of the room", |i| {
+        let depth = Value::from(11.0 + i as f32 * 1e-2);
+        change(world, &|document| edit(document, set(Part::Size, SceneSize::depth.into(), depth.clone())));
+    });
+    report("the exposure", |i| {
+        let ev = Value::from(i as f32 * 1e-2);
+        change(world, &|document| edit(document, set(Part::Display, Display::exposure.into(), ev.clone())));
+    });
+    let views = Edit::Views {
+        variants: ["b", "c", "d"]
+            .map(|name| Variant { name: Some(name.to_owned()), ..Variant::default() })
+            .to_vec(),
+        comparison: Comparison { layout: Layout::SideBySide, ..Comparison::default() },
+        step: "Add views",
+    };
+    change(world, &|document| edit(document, views.clone()));
+    report("the exposure of view B", |i| {
+        let ev = Value::from(i as f32 * 1e-2);
+        change(world, &|document| {
+            edit(document, set(Part::Variant(0), Variant::exposure.into(), ev.clone()))
+        });
+    });
+    report("a parameter of view C", |i| {
+        let k_d = Value::from(0.5 + 0.5 * i as f32 / ROUNDS as f32);
+        change(world, &|document| edit(document, set(Part::Variant(1), Key::Material("k_d"), k_d.clone())));
+    });
+    report("the model of view D", |i| {
+        let id = Value::from(["phong", "ward"][i % 2]);
+        change(world, &|document| {
+            edit(document, set(Part::Variant(2), Variant::reflection_model.into(), id.clone()))
+        });
+    });
+    report("the arrangement of views", |i| {
+        let split = Value::from(i as f32 / ROUNDS as f32);
+        change(world, &|document| {
+            edit(document, set(Part::Comparison, Comparison::split.into(), split.clone()))
+        });
+    });
+    report("one object, with views", |i| {
+        let size = Value::from(0.05 + i as f32 * 1e-4);
+        change(world, &|document| edit(document, set(Part::Object(17), Object::size.into(), size.clone())));
     });
     report("one object removed", |_| {
         change(world, &|document| document.remove(Selection::Object(OBJECTS / 2), &registry));
@@ -109,6 +176,16 @@ fn main() {
     });
     let mut scene = Scene { reflection_model: "mine".to_owned(), ..scene };
     scene.objects.iter_mut().for_each(|object| object.material.set("gloss", Value::Number(0.75)));
+    let mut seen = Session::new(Scene { reflection_model: "phong".to_owned(), ..scene.clone() });
+    seen.apply(Action::Compare(CompareCommand::Add), &registry);
+    report("view B in the window", |i| {
+        let edit = Edit::set(Part::Display, Display::exposure, i as f32 * 1e-2);
+        seen.apply(Action::Edit(edit), &registry);
+    });
+    report("an object in view B", |i| {
+        let edit = Edit::set(Part::Object(17), Object::size, 0.05 + i as f32 * 1e-4);
+        seen.apply(Action::Edit(edit), &registry);
+    });
     let mut session = Session::new(scene);
     report("a parameter of a model", |i| follow_registry(&mut session, &registries[(i + 1) % 2]));
 }

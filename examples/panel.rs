@@ -6,7 +6,6 @@
 use lights_camera_models::{
     bevy::prelude::*,
     bevy_egui::egui::{Slider, Ui},
-    document::LightField,
     prelude::*,
 };
 
@@ -43,7 +42,7 @@ impl Panel for Dimmer {
             if ui.button("Dim all lights").clicked() {
                 for (i, light) in lights.iter().enumerate() {
                     let intensity = light.intensity * self.0 / 100.0;
-                    context.edit(Edit::Light(i, LightField::Intensity(intensity)));
+                    context.edit(Edit::set(Part::Light(i), Light::intensity, intensity));
                 }
                 context.say(format!("All lights have {} % of what they had.", self.0));
             }

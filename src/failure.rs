@@ -25,7 +25,7 @@ impl fmt::Display for Failure {
             Self::Invalid(what) | Self::Usage(what) | Self::NoRenderer(what) | Self::Write(what) => {
                 f.write_str(what)
             }
-            Self::Closed => f.write_str("nobody reads the output"),
+            Self::Closed => f.write_str("no process reads the output"),
         }
     }
 }

@@ -20,7 +20,7 @@ pub use crate::{
         schedule::{LabFrame, LabSystems},
     },
     scene::{
-        Light, Object, Scene,
+        Light, Object, Part, Scene,
         formats::{SceneFormat, SceneFormats},
     },
     shader::Source,

@@ -126,7 +126,7 @@ impl Watcher {
             thread::Builder::new().name("file watcher".to_owned()).spawn(move || worker.run(&received));
         if let Err(error) = started {
             lock(&reported).complaint =
-                Some(format!("Changes of files on disk will not be noticed: {error}."));
+                Some(format!("Changes to files on disk will not be detected: {error}."));
         }
         Self { orders, reported }
     }

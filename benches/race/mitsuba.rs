@@ -193,7 +193,8 @@ fn theirs(
     if let Some(bsdf) = bsdf {
         let text = fs::read_to_string(&file).expect("it was written");
         // The last one is that of the sphere; lamps have one before it.
-        let (begin, end) = (text.rfind("<bsdf").expect("it has one"), text.rfind("</bsdf>").expect("it ends"));
+        let (begin, end) =
+            (text.rfind("<bsdf").expect("it has one"), text.rfind("</bsdf>").expect("it ends"));
         fs::write(&file, format!("{}{bsdf}{}", &text[..begin], &text[end + "</bsdf>".len()..]))
             .expect("the same place");
     }

@@ -63,8 +63,8 @@ fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
             };
             let path = Path::root().key("objects").index(i);
             said.push(format!(
-                "{name}: {path} has the reflection model {id}, which the CPU renderer cannot run ({why}): only the GPU \
-                 draws it, and explain cannot explain it"
+                "{name}: {path} has the reflection model {id}, which the CPU renderer cannot run ({why}): only \
+                 the GPU renderer draws it, and lcm explain does not support it"
             ));
         }
     }

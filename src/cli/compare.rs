@@ -100,7 +100,7 @@ fn limit(text: &str, of_likeness: bool) -> Result<Limit, String> {
         return Err(format!("{id} {moves} as pictures differ more; use --fail-{flag} {text}"));
     }
     if matches!(metric.way, Way::Largest(_)) && covered {
-        return Err(format!("{id} is that of all pixels; omit covered."));
+        return Err(format!("{id} is always that of all pixels; omit covered."));
     }
     match value.trim().parse() {
         Ok(value) if f64::is_finite(value) => Ok(Limit { metric, covered, value }),
@@ -287,10 +287,10 @@ impl From<Largest> for Place {
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let paths: Vec<_> = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten().collect();
     if paths.iter().filter(|path| path.as_path() == Path::new("-")).count() > 1 {
-        return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
+        return Err(Failure::Usage("- can be given only once: standard input holds one scene".to_owned()));
     }
     if arguments.b.is_some() && arguments.choice.with.is_some() {
-        return Err(Failure::Usage("two files are compared by view A of each; omit --with".to_owned()));
+        return Err(Failure::Usage("with two files, view A of each is compared; omit --with".to_owned()));
     }
     if let Some(output) = &arguments.output {
         render::one_picture(output)?;
@@ -414,7 +414,7 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
         && let Some(picture) = pictures
     {
         return Err(Failure::Invalid(format!(
-            "{}: the light of a picture is not known; --values codes compares what it displays",
+            "{}: the linear light of a picture file is unknown; --values codes compares the display codes",
             picture.name()
         )));
     }
@@ -430,7 +430,7 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
     };
     if scene.variants.is_empty() {
         return Err(Failure::Invalid(format!(
-            "{} has no variants to be compared with; add one to it, or name another file",
+            "{} has no variants to compare with; add one, or name another file",
             input.name()
         )));
     }
@@ -438,7 +438,7 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
         let view = find(scene, name).map_err(|why| Failure::Invalid(format!("{}: {why}", input.name())))?;
         if view == 0 {
             return Err(Failure::Usage(
-                "--with is the view that A is compared with; it must not be A".to_owned(),
+                "--with must be a view other than A, which it is compared with".to_owned(),
             ));
         }
         comparison.with = view;
@@ -499,7 +499,7 @@ fn side_by_side(
         Some(size)
     };
     let no_room =
-        || Failure::Usage(format!("{}x{} pixels have no room for the views side by side", size[0], size[1]));
+        || Failure::Usage(format!("{}x{} pixels are too few for the views side by side", size[0], size[1]));
     let whole = whole.ok_or_else(no_room)?;
     let places = places(whole).ok_or_else(no_room)?;
     let shown = views.iter().zip(&places).enumerate().map(|(i, (view, cell))| {
@@ -520,7 +520,7 @@ fn broken(
     for limit in arguments.fail_above.iter().chain(&arguments.fail_below) {
         let Limit { metric, covered, value } = *limit;
         let name = format!("{}{}", if covered { "covered." } else { "" }, metric.id);
-        let unknown = |why: &str| Failure::Invalid(format!("{name} is unknown: {why}"));
+        let unknown = |why: &str| Failure::Invalid(format!("{name} cannot be determined: {why}"));
         let metrics = match (covered, &measured.covered) {
             (false, _) => &measured.all,
             (true, Some(covered)) => covered,
@@ -528,9 +528,9 @@ fn broken(
         };
         let found = match metric.way {
             Way::Largest(of) => largest.as_ref().map_or(0.0, of),
-            Way::Pixels(..) => {
-                metrics.of(metric.id).ok_or_else(|| unknown("the light of a picture is not known"))?
-            }
+            Way::Pixels(..) => metrics
+                .of(metric.id)
+                .ok_or_else(|| unknown("the linear light of a picture file is unknown"))?,
         };
         let likeness = metric.of_likeness;
         // NaN satisfies no limit.
@@ -564,7 +564,7 @@ mod tests {
             (above("rmse=small"), "the limit must be a number, e.g. rmse=0.01"),
             (above("rmse=nan"), "the limit must be a number, e.g. rmse=0.01"),
             (above("rmse=inf"), "the limit must be a number, e.g. rmse=0.01"),
-            (above("covered.largest=1"), "largest is that of all pixels; omit covered."),
+            (above("covered.largest=1"), "largest is always that of all pixels; omit covered."),
         ] {
             assert_eq!(said.map(parts), Err(expected.to_owned()));
         }

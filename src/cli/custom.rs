@@ -110,7 +110,7 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
         print_text(&report.to_string())?;
     }
     if !report.is_finite() {
-        complain(format_args!("{id} gives values that are no numbers"));
+        complain(format_args!("{id} returns values that are not numbers"));
     }
     match report.broken().as_slice() {
         [] if report.is_finite() => Ok(()),

@@ -21,7 +21,7 @@ use crate::{
     reflection::{ModelEntry, Surface, brdf, brdf_of},
     registry::Registry,
     render::capture::evaluate::Evaluator,
-    scene::check,
+    scene::field::Ids,
     text::{nearest, quoted},
 };
 
@@ -206,7 +206,8 @@ impl Answers {
 
 /// The model with this id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
-    check::reflection_model(registry, id)
+    Ids::ReflectionModel
+        .check(registry, id)
         .map_err(|rule| unknown(registry, id, format!("MODEL is {}, but {rule}", quoted(id))))?;
     registry.model(id).ok_or_else(|| Failure::Usage(format!("there is no model {}", quoted(id))))
 }

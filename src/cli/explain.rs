@@ -151,7 +151,7 @@ fn explained(
     if !passed.is_empty() {
         let passed: Vec<_> = passed.iter().map(String::as_str).collect();
         options.tell(format_args!(
-            "the CPU renderer, which is explained, ignores the edited {}",
+            "explanations follow the CPU renderer, which ignores the edited {}",
             listed(&passed, "and")
         ));
     }
@@ -181,7 +181,7 @@ fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcom
     let spot = seen.and_then(|seen| Some((seen, seen.spots.get(seen.main_spot()?)?)));
     let (seen, spot) = spot.ok_or_else(|| {
         Failure::Usage(
-            "--hemisphere: no reflection model was evaluated for this pixel; choose one on an object"
+            "--hemisphere: no reflection model was evaluated for this pixel; choose a pixel on an object"
                 .to_owned(),
         )
     })?;

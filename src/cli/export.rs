@@ -60,12 +60,15 @@ fn help() -> String {
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let Some(form) = export::form(&arguments.form) else {
-        return Err(Failure::Usage(format!("there is no form {}", quoted(&arguments.form))));
+        return Err(Failure::Usage(format!(
+            "unknown form {}; lcm export --help lists the forms",
+            quoted(&arguments.form)
+        )));
     };
     let size = [arguments.size.width, arguments.size.height];
     let point = match arguments.explain {
         Some(_) if !form.explains() => {
-            let said = format!("{} explains no pixel, only html does; omit --explain", form.id);
+            let said = format!("{} does not explain pixels, only html does; omit --explain", form.id);
             return Err(Failure::Usage(said));
         }
         Some(Pixel(pixel)) => {
@@ -87,7 +90,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         Some(name) if form.of_object => {
             find(&scene, name).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?
         }
-        Some(_) => return Err(Failure::Usage(format!("{} holds all objects; omit --object", form.id))),
+        Some(_) => {
+            return Err(Failure::Usage(format!("{} always contains all objects; omit --object", form.id)));
+        }
         None => scene.objects.iter().position(|object| object.visible).unwrap_or_default(),
     };
     let bar = progress(100, options);

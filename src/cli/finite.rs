@@ -27,7 +27,7 @@ pub(super) fn remark(part: &Part, registry: &Registry, rgb8: &[u8]) -> Option<St
         n => (format!("{n} pixels"), "are"),
     };
     Some(format!(
-        "{count} of {}×{} {are} not finite light, which is drawn black or white; --channel not_a_number shows where:{whose}",
+        "{count} of {}×{} {are} not finite, and drawn black or white; --channel not_a_number shows where:{whose}",
         settings.width, settings.height,
     ))
 }
@@ -44,7 +44,7 @@ pub(super) fn remark_on_gpu(
         let found = probe(&part.scene, registry, Scope::Untested, tried);
         (!found.is_empty()).then(|| {
             format!(
-                "the GPU draws finite light alone, but by the CPU some is not finite, here or seen from elsewhere:{}",
+                "the picture of the GPU is finite, but on the CPU some light is not, here or seen from elsewhere:{}",
                 listed(&found)
             )
         })

@@ -101,5 +101,5 @@ fn noise(text: &str) -> Result<f32, String> {
         .ok()
         .filter(|percent: &f32| (0.01..=100.0).contains(percent))
         .map(|percent| percent / 100.0)
-        .ok_or_else(|| "it must be a number of per cent from 0.01 to 100, e.g. 1 or 0.5%".to_owned())
+        .ok_or_else(|| "it must be a percentage from 0.01 to 100, e.g. 1 or 0.5%".to_owned())
 }

@@ -145,12 +145,12 @@ fn unwritten(error: &save::SaveError) -> Failure {
 /// The view with a letter or a name, other than A.
 fn view(scene: &Scene, wanted: &str) -> Result<usize, Failure> {
     if scene.variants.is_empty() {
-        let why = "the scene has no variants, so there is no view to be matched to view A";
+        let why = "the scene has no variants, so there is no view to match to view A";
         return Err(Failure::Invalid(why.to_owned()));
     }
     match find(scene, wanted) {
         Ok(0) => {
-            Err(Failure::Usage("--view is A, to which another view is matched; name that one".to_owned()))
+            Err(Failure::Usage("--view is A, but it must be another view, to be matched to A".to_owned()))
         }
         found => found.map_err(|why| Failure::Invalid(format!("--view: {why}"))),
     }

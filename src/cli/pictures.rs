@@ -31,7 +31,7 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     }
     let broken = |error: DecodingError| match error {
         DecodingError::LimitsExceeded => "the picture is too large".to_owned(),
-        error => format!("the picture is damaged: {}; copy it once more from where it came", damage(&error)),
+        error => format!("the picture is damaged: {}; copy it again from its source", damage(&error)),
     };
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::normalize_to_color8());
@@ -66,8 +66,8 @@ fn damage(error: &DecodingError) -> &'static str {
         ("Corrupt deflate stream", "its compressed data cannot be read"),
         ("not have enough data", "it has fewer pixels than its header says"),
         ("IDAT or fdAT chunk is missing", "it has no pixels"),
-        ("Unknown filter method", "its pixels are filtered in a way that PNG does not know"),
-        ("Unknown compression method", "it is compressed in a way that PNG does not know"),
+        ("Unknown filter method", "its pixels have a filter that PNG does not define"),
+        ("Unknown compression method", "it has a compression method that PNG does not define"),
         ("palette", "it has no palette for its colours"),
         ("Invalid image dimensions", "its header gives it no pixels"),
         ("Invalid bit depth", "its header is wrong"),
@@ -79,7 +79,7 @@ fn damage(error: &DecodingError) -> &'static str {
         DecodingError::Format(error) => {
             let said = error.to_string();
             let known = KINDS.iter().find(|(theirs, _)| said.contains(*theirs));
-            known.map_or("one of its parts is not as it must be in PNG", |(_, ours)| *ours)
+            known.map_or("one of its parts is not valid", |(_, ours)| *ours)
         }
         _ => "it cannot be read",
     }

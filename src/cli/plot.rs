@@ -166,7 +166,8 @@ fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Ve
                 continue;
             }
             if !is_setting {
-                problems.push(format!("{place}: after a colon must stand NAME=VALUE, e.g. phong:alpha=20"));
+                problems
+                    .push(format!("{place}: a colon must be followed by NAME=VALUE, e.g. phong:alpha=20"));
                 continue;
             }
             match setting(model, name, value) {

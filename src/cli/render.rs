@@ -45,7 +45,7 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Scene, check, comparison::Layout, has_extent, variant::LETTERS},
+    scene::{Display, Scene, comparison::Layout, field::Ids, has_extent, variant::LETTERS},
     text::quoted,
 };
 
@@ -253,7 +253,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         scenes => scenes.iter().map(|s| Source::named(s)).collect(),
     };
     if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
-        return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
+        return Err(Failure::Usage("- can be given only once: standard input holds one scene".to_owned()));
     }
     if let Some(id) = &arguments.reflection {
         workshop.need(id);
@@ -394,7 +394,7 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
         let known = DebugChannel::ALL.into_iter().filter(|known| rests_on_samples(*known));
         let known: Vec<_> = known.map(DebugChannel::id).collect();
         return Err(Failure::Usage(format!(
-            "{given} cannot be used with --channel {}, which shows no light of lamps; channels that do are {}",
+            "{given} cannot be used with --channel {}, which does not depend on light samples; channels that do are {}",
             channel.id(),
             crate::text::listed(&known, "and")
         )));
@@ -473,7 +473,7 @@ impl Painter {
         let gpu = self.takes_gpu(job.plan, registry);
         if gpu && job.plan.needs_light() {
             return Err(Failure::NoRenderer(format!(
-                "{}: the GPU renderer draws no difference in linear light; use --renderer cpu, or compare codes",
+                "{}: the GPU renderer cannot draw the difference in linear light; use --renderer cpu, or compare display codes",
                 job.source.name()
             )));
         }
@@ -669,7 +669,7 @@ fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registr
     let mut comparison = scene.comparison;
     if let Some(layout) = arguments.layout {
         if layout != Layout::Single && scene.variants.is_empty() {
-            return Err(Failure::Invalid(format!("there are no variants for --layout {}", layout.id())));
+            return Err(Failure::Invalid(format!("the scene has no variants for --layout {}", layout.id())));
         }
         comparison.layout = layout;
     }
@@ -694,8 +694,7 @@ fn setting(
     let Some(channel) = arguments.channel else { return Ok(None) };
     if plan.needs_light() {
         return Err(
-            "the difference in linear light has no channels; --channel shows one with another --layout, or \
-                    with the comparison in codes"
+            "the difference in linear light has no channels; use another --layout, or compare display codes"
                 .to_owned(),
         );
     }
@@ -704,7 +703,7 @@ fn setting(
     let place = chosen.map(|chosen| scene.lights[..chosen].iter().filter(|light| light.enabled).count());
     if place.is_some() && channel.has_light() && setting.light != place {
         return Err(format!(
-            "--light is {}, which shines from no direction, and {} needs one",
+            "--light is {}, which has no direction, but {} needs one",
             quoted(arguments.light.as_deref().unwrap_or_default()),
             channel.name()
         ));
@@ -744,20 +743,20 @@ impl Changes {
             Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
         };
         if let Some(id) = &arguments.reflection {
-            check::reflection_model(registry, id).map_err(|rule| {
+            Ids::ReflectionModel.check(registry, id).map_err(|rule| {
                 super::evaluate::unknown(registry, id, format!("--reflection is {}, but {rule}", quoted(id)))
             })?;
         }
         if let Some(id) = &arguments.shading {
-            check::shading_model(registry, id).map_err(|rule| usage("shading", id, rule))?;
+            Ids::ShadingModel.check(registry, id).map_err(|rule| usage("shading", id, rule))?;
         }
         if let Some(ev) = arguments.exposure {
-            check::exposure(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
+            Display::exposure.check_number(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
         }
         let tone_mapping = match &arguments.tone_mapping {
             None => None,
             Some(id) => {
-                check::tone_mapping(id).map_err(|rule| usage("tone-mapping", id, rule))?;
+                Display::tone_mapping.check_text(id).map_err(|rule| usage("tone-mapping", id, rule))?;
                 ToneMapping::from_id(id)
             }
         };

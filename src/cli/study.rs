@@ -86,7 +86,7 @@ fn report(arguments: &Arguments, options: Options, registry: &Registry) -> Outco
     bar.finish_and_clear();
     if !had_report && free(folder, false).is_err() {
         return Err(Failure::Write(format!(
-            "somebody else wrote to {} meanwhile; theirs was kept, and this report was not written",
+            "another program wrote to {} in the meantime; its files were kept, and this report was not written",
             folder.shown()
         )));
     }

@@ -8,8 +8,9 @@ use crate::{
     optics::TermSelection,
     registry::Registry,
     scene::{
-        Comparison, Scene, check,
+        Comparison, Field, Scene,
         comparison::{Channel, Compared, Edge, Layout, Sign},
+        held::Word,
         variant::LETTERS,
     },
     text::{did_you_mean, listed, quoted},
@@ -44,39 +45,43 @@ pub(super) struct Choice {
     edge: Option<Edge>,
 }
 
-/// Reads one of several words.
-fn word<T>(text: &str, rule: Result<(), String>, find: fn(&str) -> Option<T>) -> Result<T, String> {
-    rule.and_then(|()| find(text).ok_or_else(|| "it is unknown".to_owned()))
+/// Reads the word of a field.
+fn word<T: Word>(text: &str, field: Field) -> Result<T, String> {
+    field.check_text(text).and_then(|()| T::of_word(text).ok_or_else(|| "it is unknown".to_owned()))
 }
 
 pub(super) fn layout(text: &str) -> Result<Layout, String> {
-    word(text, check::layout(text), Layout::from_id)
+    word(text, Comparison::layout)
 }
 
 fn sign(text: &str) -> Result<Sign, String> {
-    word(text, check::sign(text), Sign::from_id)
+    word(text, Comparison::sign)
 }
 
 fn channel(text: &str) -> Result<Channel, String> {
-    word(text, check::channel(text), Channel::from_id)
+    word(text, Comparison::channel)
 }
 
 fn values(text: &str) -> Result<Compared, String> {
-    word(text, check::compared(text), Compared::from_id)
+    word(text, Comparison::values)
 }
 
 fn edge(text: &str) -> Result<Edge, String> {
-    word(text, check::edge(text), Edge::from_id)
+    word(text, Comparison::edge)
+}
+
+/// Reads the number of a field.
+fn number(text: &str, field: Field) -> Result<f32, String> {
+    let number = text.parse().unwrap_or(f32::NAN);
+    field.check_number(number).map(|()| number)
 }
 
 fn amplification(text: &str) -> Result<f32, String> {
-    let factor = text.parse().unwrap_or(f32::NAN);
-    check::amplification(factor).map(|()| factor)
+    number(text, Comparison::amplification)
 }
 
 fn split(text: &str) -> Result<f32, String> {
-    let place = text.parse().unwrap_or(f32::NAN);
-    check::split(place).map(|()| place)
+    number(text, Comparison::split)
 }
 
 impl Choice {
@@ -145,7 +150,7 @@ impl Plan {
     ) -> Result<Self, Failure> {
         let cells = cells(&comparison, scene.variants.len(), size).ok_or_else(|| {
             Failure::Usage(format!(
-                "a picture of {}x{} pixels has no room for the views side by side",
+                "a picture of {}x{} pixels is too small for the views side by side",
                 size[0], size[1]
             ))
         })?;

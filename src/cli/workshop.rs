@@ -142,7 +142,7 @@ impl Workshop {
         let ids: Vec<_> = self.registry.custom_models().map(|(model, _)| model.declaration.id).collect();
         if ids.len() > MOST {
             self.options.tell(format_args!(
-                "of {} custom models the declarations alone were read; `lcm models check ID` checks all of one",
+                "only the declarations of {} custom models were read; `lcm models check ID` checks a whole model",
                 ids.len()
             ));
             return false;
@@ -280,7 +280,7 @@ pub(super) fn files_inside(inside: &Payload) -> Result<Option<PathBuf>, Failure>
     let within = assets::data_folder().map_or_else(std::env::temp_dir, |data| data.join("inside"));
     inside.folder(&within).map_err(|error| match error {
         PayloadError::Packed { .. } => {
-            Failure::Write(format!("{error}; {} names another folder", assets::DATA_VARIABLE))
+            Failure::Write(format!("{error}; set {} to use another folder", assets::DATA_VARIABLE))
         }
         error => Failure::Invalid(error.to_string()),
     })

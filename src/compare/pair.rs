@@ -18,7 +18,7 @@ pub enum Unequal {
     )]
     Sizes([u32; 2], [u32; 2]),
     /// Light is to be compared, but the light of one picture is unknown.
-    #[error("the light of a picture is not known; compare display codes")]
+    #[error("the linear light of a picture is unknown; compare display codes")]
     NoLight,
 }
 

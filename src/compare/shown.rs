@@ -22,7 +22,7 @@ pub struct Shown {
 
 /// A number of bytes, or of pixels, that does not match the size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("a picture of {width} × {height} pixels has not {found} of them")]
+#[error("{found} bytes or pixels do not match a picture of {width} × {height} pixels")]
 pub struct WrongSize {
     /// The width, pixels.
     pub width: u32,

@@ -164,7 +164,7 @@ pub enum CurveError {
         what: &'static str,
     },
     /// The measured points do not give this quantity.
-    #[error("{name} was measured at single directions only: there is no {what} of it")]
+    #[error("{name} was measured only at single directions, so it has no {what}")]
     NotMeasured {
         /// The paint.
         name: String,

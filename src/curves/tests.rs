@@ -267,9 +267,7 @@ fn measured_data_is_what_was_measured() {
         at(Kind::Brdf, 45.0),
         "Krylon blue was measured with the light at 10°, 20°, 30°, 40°, 50°, 60°, 70° and 80°, not at 45°"
     );
-    assert!(
-        at(Kind::Albedo, 45.0).contains("at single directions only: there is no directional albedo E of it")
-    );
+    assert!(at(Kind::Albedo, 45.0).contains("only at single directions, so it has no directional albedo E"));
     assert!(at(Kind::Fresnel, 45.0).contains("has no Fresnel factor F"));
     let gold = Subject::measured("gold-metallic-paint").expect("fitted");
     assert_eq!(gold.name, "gold metallic paint (fit to MERL)");

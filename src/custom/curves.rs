@@ -141,7 +141,7 @@ impl Reader<'_> {
             } else if curves.iter().any(|c| c.name == name) {
                 Some("is given twice".to_owned())
             } else if taken.iter().any(|c| c.name == name) {
-                Some("is a curve of the model of \"lobe\"; it needs another name".to_owned())
+                Some("is the name of a curve of the \"lobe\" model; choose another name".to_owned())
             } else if curves.len() == MOST {
                 Some(format!("is one too many: at most {MOST} fit"))
             } else {
@@ -166,11 +166,14 @@ impl Reader<'_> {
         let Some(model) = properties.iter().find(|p| p.name.as_str() == "model") else {
             self.mistake(
                 property.start(),
-                format!("curves: {}: it needs a \"model\", a built-in one whose albedo it is", quoted(name)),
+                format!(
+                    "curves: {}: it needs a \"model\": the built-in model whose albedo it is",
+                    quoted(name)
+                ),
             );
             return None;
         };
-        let id = self.word(of.holding(&model.value), "the model whose albedo the curve is", &known)?;
+        let id = self.word(of.holding(&model.value), "the model of a curve", &known)?;
         let model = self.registry.model(id)?.clone();
         let mut settings: Vec<(&'static Parameter, Setting)> = Vec::new();
         if let Some(twice) = properties.iter().filter(|p| p.name.as_str() == "model").nth(1) {
@@ -181,7 +184,7 @@ impl Reader<'_> {
             let Some(parameter) = model.parameter(&written.replace("color", "colour")) else {
                 let hint = did_you_mean(written, model.parameters.iter().map(|p| (p.name, p.name)));
                 let what =
-                    format!("curves: {}: {} is no parameter of {id}{hint}", quoted(name), quoted(written));
+                    format!("curves: {}: {} is not a parameter of {id}{hint}", quoted(name), quoted(written));
                 self.mistake(setting.start(), what);
                 continue;
             };

@@ -191,8 +191,10 @@ impl Reader<'_> {
         let Some(value) = fields.get("laws") else { return laws };
         let Some(list) = value.list() else {
             let names = laws.list().map(|(name, _)| quoted(name));
-            let rule =
-                format!("it must be a list of the laws that the model keeps, of {}", listed(&names, "and"));
+            let rule = format!(
+                "it must be a list of the laws that the model keeps, any of {}",
+                listed(&names, "and")
+            );
             self.wrong(value, &rule);
             return laws;
         };
@@ -234,7 +236,7 @@ impl Reader<'_> {
             let Some(parameter) = parameter else { continue };
             let what = |what: String| format!("{}: {what}", element.path());
             if parameters.iter().any(|p| p.name == parameter.name) {
-                let twice = format!("there are two parameters {}", parameter.name);
+                let twice = format!("{} is declared twice", parameter.name);
                 self.mistake(element.start(), what(twice));
                 continue;
             }

@@ -77,7 +77,7 @@ impl Reader<'_> {
         let rule = match identifier(name) {
             Err(rule) => Some(format!("it {rule}")),
             Ok(()) if name.contains("color") => {
-                Some(format!("scene files spell {}", name.replace("color", "colour")))
+                Some(format!("in scene files it must be spelt {}", name.replace("color", "colour")))
             }
             Ok(()) if !allowed_in_wgsl(name) => {
                 Some("that is a reserved word in WGSL; choose another".to_owned())
@@ -125,7 +125,7 @@ impl Reader<'_> {
         });
         if let Some((id, own, theirs)) = other {
             let rule = format!(
-                "it is {own} here and {theirs} in {id}, and parameters are shared by name; use that unit or another name"
+                "it is {own} here, but {theirs} in {id}; parameters are shared by name, so use that unit or another name"
             );
             self.wrong(named, &rule);
         }
@@ -140,7 +140,7 @@ impl Reader<'_> {
         });
         if let Some((model, parameter)) = other {
             let rule = format!(
-                "{} has a parameter of that name with type {}, and parameters are shared by name; use that type or another name",
+                "{} has a parameter of that name with type {}; parameters are shared by name, so use that type or another name",
                 model.declaration.id,
                 parameter.kind.name(),
             );
@@ -399,7 +399,7 @@ impl Reader<'_> {
             let predicate = if let Err(rule) = identifier(id) {
                 format!("has {}, but a choice {rule}", quoted(id))
             } else if id.parse::<bool>().is_ok() {
-                format!("has {}, but true and false are the values of the type \"flag\"", quoted(id))
+                format!("has {}, but true and false are only for the type \"flag\"", quoted(id))
             } else if options.iter().any(|(known, _)| *known == id) {
                 format!("has {} twice", quoted(id))
             } else {
@@ -420,7 +420,7 @@ impl Reader<'_> {
                 let fits = |name: &&str| !name.trim().is_empty() && name.chars().count() <= LONGEST_NAME;
                 match named.text().filter(fits) {
                     Some(name) => add(self, property.start(), property.name.as_str(), name),
-                    None => self.wrong(named, "the name of a choice must be a short text"),
+                    None => self.wrong(named, "the name of a choice must be a short, non-empty text"),
                 }
             }
         } else {

@@ -149,7 +149,7 @@ impl Reader<'_> {
         }
         let fields = self.fields(value, KEYS, "a lobe")?;
         let Some(shape) = fields.get("shape") else {
-            self.lacking(&fields, "shape", "it is \"cosine\", \"ggx\" or \"power\"");
+            self.lacking(&fields, "shape", "it must be \"cosine\", \"ggx\" or \"power\"");
             return None;
         };
         let shape = self.word(shape, "the shape of a lobe", SHAPES)?;
@@ -227,7 +227,7 @@ impl Reader<'_> {
             } else {
                 format!(", or one of the parameters {}", listed(&names, "and"))
             };
-            self.wrong(value, &format!("it must be a number, at least 0{or}"));
+            self.wrong(value, &format!("it must be a number, 0 or more{or}"));
         }
         found
     }

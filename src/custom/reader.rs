@@ -80,7 +80,7 @@ impl Reader<'_> {
         let fits = |text: &&str| text.chars().count() <= longest && !text.contains(char::is_control);
         match value.text().filter(fits) {
             Some(text) if key == "name" && text.trim().is_empty() => {
-                self.wrong(value, "a name must have letters");
+                self.wrong(value, "a name must not be blank");
                 None
             }
             Some(text) => Some(intern::text(text)),

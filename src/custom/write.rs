@@ -33,8 +33,8 @@ pub enum NotDuplicated {
 /// A name without a valid identifier.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a name must begin with a letter, and have letters a–z, digits and spaces alone, at most {LONGEST_ID}{}",
-    .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do"))
+    "a name must begin with a letter and have only letters a–z, digits and spaces, at most {LONGEST_ID}{}",
+    .instead.as_ref().map_or_else(String::new, |id| format!("; for example {id}"))
 )]
 pub struct BadName {
     /// A similar, valid identifier.

@@ -6,15 +6,17 @@ use glam::Vec3;
 
 use super::{
     Document, Extent, Selection,
-    history::Patch,
+    history::{Patch, rest_of},
     names::{light_type, object_type},
 };
 use crate::{
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Value,
     registry::Registry,
     scene::{
-        Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check, variant::LETTERS,
+        Comparison, Display, Field, Key, Light, Object, Observer, Part, Scene, SceneSize, Variant,
+        check::{self, Change},
+        field::{Ids, Kind},
+        part::Fields,
     },
     text::capitalised,
 };
@@ -22,26 +24,15 @@ use crate::{
 /// A change of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// The name of the scene; empty for none.
-    SceneName(String),
-    /// The description of the scene; empty for none.
-    SceneDescription(String),
-    /// The extent of the room.
-    SceneSize(SceneSize),
-    /// Tone mapping, exposure and encoding.
-    Display(Display),
-    /// The reflection model of the scene.
-    Model(String),
-    /// The shading model of the scene.
-    ShadingModel(String),
-    /// The observer.
-    Observer(Observer),
-    /// A field of a light.
-    Light(usize, LightField),
-    /// A field of an object.
-    Object(usize, ObjectField),
-    /// A field of a variant.
-    Variant(usize, VariantField),
+    /// New values within one part.
+    Set {
+        /// The part.
+        part: Part,
+        /// The values; `None` removes one that need not be there.
+        values: Vec<(Key, Option<Value>)>,
+        /// What was changed, for the name of the step, if not one field: "Measured material".
+        what: Option<&'static str>,
+    },
     /// All variants, if some are added, removed or reordered, together with the resulting comparison of the
     /// views.
     Views {
@@ -52,241 +43,79 @@ pub enum Edit {
         /// The name of the step.
         step: &'static str,
     },
-    /// The way in which views are compared.
-    Comparison(Comparison),
 }
 
-/// A field of a variant with its new value; `None` if it is inherited.
-#[derive(Clone, Debug, PartialEq)]
-pub enum VariantField {
-    /// The name; empty for none.
-    Name(String),
-    /// The reflection model of every object.
-    Model(Option<String>),
-    /// The shading model of every object.
-    ShadingModel(Option<String>),
-    /// A parameter of the material of every object.
-    Material(&'static str, Option<Value>),
-    /// Several parameters at once: those of a match, or of a measured material.
-    Materials(Vec<(&'static str, Value)>, &'static str),
-    /// The displayed terms.
-    Terms(Option<TermSelection>),
-    /// The tone mapping.
-    ToneMapping(Option<ToneMapping>),
-    /// The exposure.
-    Exposure(Option<f32>),
-    /// The encoding.
-    Encoding(Option<Encoding>),
-    /// The tessellation of every object.
-    Tessellation(Option<u32>),
-}
+impl Edit {
+    /// Sets a field of a part.
+    ///
+    /// ```
+    /// use lights_camera_models::{document::Edit, scene::{Object, Part}};
+    /// let edit = Edit::set(Part::Object(0), Object::size, 1.5);
+    /// assert_eq!(edit, Edit::put(Part::Object(0), Object::size, Some(1.5)));
+    /// ```
+    #[must_use]
+    pub fn set(part: Part, key: impl Into<Key>, value: impl Into<Value>) -> Self {
+        Self::put(part, key, Some(value))
+    }
 
-impl VariantField {
-    /// The name of the field within the name of a step.
-    fn label(&self, registry: &Registry) -> String {
+    /// Sets or removes one value of a part.
+    #[must_use]
+    pub fn put(part: Part, key: impl Into<Key>, value: Option<impl Into<Value>>) -> Self {
+        Self::Set { part, values: vec![(key.into(), value.map(Into::into))], what: None }
+    }
+
+    /// Sets a parameter that the type of a light or an object declares.
+    #[must_use]
+    pub fn parameter(part: Part, name: &'static str, value: impl Into<Value>) -> Self {
+        Self::set(part, Key::Own(name), value)
+    }
+
+    /// Sets a parameter of a material: of an object, or of a variant.
+    #[must_use]
+    pub fn material(part: Part, name: &'static str, value: Value) -> Self {
+        Self::set(part, Key::Material(name), value)
+    }
+
+    /// Sets several parameters of a material. `what` is what they are together.
+    #[must_use]
+    pub fn materials(part: Part, values: Vec<(&'static str, Value)>, what: &'static str) -> Self {
+        let values = values.into_iter().map(|(name, value)| (Key::Material(name), Some(value))).collect();
+        Self::Set { part, values, what: Some(what) }
+    }
+
+    /// The part that is changed, and its new values, if they are given one by one.
+    #[must_use]
+    pub fn values(&self) -> (Part, &[(Key, Option<Value>)]) {
         match self {
-            Self::Name(_) => "Name",
-            Self::Model(_) => "Reflection model",
-            Self::ShadingModel(_) => "Shading model",
-            Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
-            Self::Materials(_, what) => what,
-            Self::Terms(_) => "Terms",
-            Self::ToneMapping(_) => "Tone mapping",
-            Self::Exposure(_) => "Exposure",
-            Self::Encoding(_) => "Encoding",
-            Self::Tessellation(_) => "Tessellation",
+            Self::Set { part, values, .. } => (*part, values),
+            Self::Views { .. } => (Part::Comparison, &[]),
         }
-        .to_owned()
     }
 
-    /// Sets this field of a variant.
-    pub(super) fn put(self, variant: &mut Variant) {
-        match self {
-            Self::Name(name) => variant.name = named(&name),
-            Self::Model(id) => variant.reflection_model = id,
-            Self::ShadingModel(id) => variant.shading_model = id,
-            Self::Material(name, Some(value)) => variant.material.set(name, value),
-            Self::Material(name, None) => _ = variant.material.0.remove(name),
-            Self::Materials(all, _) => {
-                all.into_iter().for_each(|(name, value)| variant.material.set(name, value));
+    /// The part and the value, if one value is set.
+    #[must_use]
+    pub fn one(&self) -> Option<(Part, Key, Option<&Value>)> {
+        match self.values() {
+            (part, [(key, value)]) => Some((part, *key, value.as_ref())),
+            _ => None,
+        }
+    }
+}
+
+/// Edits of whole parts.
+macro_rules! whole {
+    ($($Part:ident: $part:ident;)+) => {
+        $(impl From<$Part> for Edit {
+            fn from(part: $Part) -> Self {
+                let mut values = Vec::new();
+                part.each(&mut |field, held, _| values.push((Key::Own(field.key), held.value())));
+                Self::Set { part: Part::$part, values, what: None }
             }
-            Self::Terms(terms) => variant.terms = terms,
-            Self::ToneMapping(tone) => variant.tone_mapping = tone,
-            Self::Exposure(ev) => variant.exposure = ev,
-            Self::Encoding(encoding) => variant.encoding = encoding,
-            Self::Tessellation(count) => variant.tessellation = count,
-        }
-    }
+        })+
+    };
 }
 
-/// A field of a light with its new value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightField {
-    /// The name; empty for none.
-    Name(String),
-    /// False if the light is switched off.
-    Enabled(bool),
-    /// The type.
-    Type(String),
-    /// The position.
-    Position(Vec3),
-    /// The direction in which the light shines.
-    Direction(Vec3),
-    /// The colour, instead of a colour temperature.
-    Colour([u8; 3]),
-    /// The colour temperature in kelvin, instead of a colour.
-    ColourTemperature(f32),
-    /// The intensity, instead of a luminous flux.
-    Intensity(f32),
-    /// The luminous flux in lumen, instead of an intensity.
-    LuminousFlux(f32),
-    /// A parameter of the type.
-    Parameter(&'static str, Value),
-}
-
-/// A field of an object with its new value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ObjectField {
-    /// The name; empty for none.
-    Name(String),
-    /// False if the object is hidden.
-    Visible(bool),
-    /// The type.
-    Type(String),
-    /// The position of the centre.
-    Position(Vec3),
-    /// The largest extent.
-    Size(f32),
-    /// Euler angles XYZ, degrees.
-    Rotation(Vec3),
-    /// The tessellation; `None` for the default of the type.
-    Tessellation(Option<u32>),
-    /// The override of the reflection model; `None` for the scene's.
-    Model(Option<String>),
-    /// The override of the shading model; `None` for the scene's.
-    ShadingModel(Option<String>),
-    /// A parameter of the type.
-    Shape(&'static str, Value),
-    /// A parameter of the material.
-    Material(&'static str, Value),
-    /// Several parameters of the material at once: a measured material.
-    Preset(Vec<(&'static str, Value)>),
-}
-
-/// A text as a name; `None` if it is blank.
-fn named(text: &str) -> Option<String> {
-    Some(text.trim().to_owned()).filter(|text| !text.is_empty())
-}
-
-impl LightField {
-    /// The name of the field within the name of a step.
-    fn label(&self, light: &Light, registry: &Registry) -> String {
-        match self {
-            Self::Name(_) => "Name",
-            Self::Enabled(true) => "Switch on",
-            Self::Enabled(false) => "Switch off",
-            Self::Type(_) => "Type",
-            Self::Position(_) => "Position",
-            Self::Direction(_) => "Direction",
-            Self::Colour(_) => "Colour",
-            Self::ColourTemperature(_) => "Colour temperature",
-            Self::Intensity(_) => "Intensity",
-            Self::LuminousFlux(_) => "Luminous flux",
-            Self::Parameter(id, _) => {
-                let declared = registry.light(&light.light_type).and_then(|entry| entry.parameter(id));
-                return declared.map_or(*id, |p| p.label).to_owned();
-            }
-        }
-        .to_owned()
-    }
-
-    fn put(self, light: &mut Light, registry: &Registry, room: SceneSize) {
-        // A missing field gets the value that it has when the file is reloaded.
-        match self {
-            Self::Name(name) => light.name = named(&name),
-            Self::Enabled(on) => light.enabled = on,
-            Self::Type(id) => {
-                registry.light(&id).into_iter().for_each(|entry| light.set_type(entry, registry, room));
-            }
-            Self::Position(p) => light.position = Some(p),
-            Self::Direction(d) => light.direction = Some(d),
-            Self::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
-            Self::ColourTemperature(kelvin) => {
-                (light.colour, light.colour_temperature) = (Light::default().colour, Some(kelvin));
-            }
-            Self::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
-            Self::LuminousFlux(v) => {
-                let entry = registry.light(&light.light_type);
-                light.intensity = entry.map_or(light.intensity, |e| e.declaration.default_intensity);
-                light.luminous_flux = Some(v);
-            }
-            Self::Parameter(name, value) => light.parameters.set(name, value),
-        }
-    }
-}
-
-impl ObjectField {
-    /// The name of the field within the name of a step.
-    fn label(&self, object: &Object, registry: &Registry) -> String {
-        match self {
-            Self::Name(_) => "Name",
-            Self::Visible(true) => "Show",
-            Self::Visible(false) => "Hide",
-            Self::Type(_) => "Type",
-            Self::Position(_) => "Position",
-            Self::Size(_) => "Size",
-            Self::Rotation(_) => "Rotation",
-            Self::Tessellation(_) => "Tessellation",
-            Self::Model(_) => "Reflection model",
-            Self::ShadingModel(_) => "Shading model",
-            Self::Shape(id, _) => {
-                let declared = registry.shape(&object.object_type).and_then(|shape| shape.parameter(id));
-                declared.map_or(*id, |p| p.label)
-            }
-            Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
-            Self::Preset(_) => "Measured material",
-        }
-        .to_owned()
-    }
-
-    fn put(self, o: &mut Object, registry: &Registry) {
-        match self {
-            Self::Name(name) => o.name = named(&name),
-            Self::Visible(on) => o.visible = on,
-            Self::Type(id) => registry.shape(&id).into_iter().for_each(|entry| o.set_type(entry)),
-            Self::Position(p) => o.position = p,
-            Self::Size(v) => o.size = v,
-            Self::Rotation(r) => o.rotation = r,
-            Self::Tessellation(n) => o.tessellation = n,
-            Self::Model(id) => o.reflection_model = id,
-            Self::ShadingModel(id) => o.shading_model = id,
-            Self::Shape(name, value) => o.shape.set(name, value),
-            Self::Material(name, value) => o.material.set(name, value),
-            Self::Preset(all) => all.into_iter().for_each(|(name, value)| o.material.set(name, value)),
-        }
-    }
-}
-
-/// Sets a field of a variant of a scene. Variants based on it follow a change of its name.
-pub(super) fn put_in_variant(scene: &mut Scene, i: usize, field: VariantField) {
-    let Some(variant) = scene.variants.get_mut(i) else { return };
-    let before = variant.name.clone();
-    field.put(variant);
-    let after = variant.name.clone();
-    if before != after && before.is_some() {
-        for other in scene.variants.iter_mut().filter(|other| other.based_on == before) {
-            other.based_on.clone_from(&after);
-        }
-    }
-}
-
-/// The name of a step: "Hide Sphere 1", "Size of Sphere 1".
-fn step(label: &str, part: &str) -> String {
-    match label {
-        "Show" | "Hide" | "Switch on" | "Switch off" => format!("{label} {part}"),
-        _ => format!("{} of {part}", capitalised(label)),
-    }
-}
+whole! { SceneSize: Size; Observer: Observer; Display: Display; Comparison: Comparison; }
 
 impl Document {
     /// Makes a change, if the rules of scenes allow it. `selection` is the current selection.
@@ -294,80 +123,125 @@ impl Document {
     /// # Errors
     /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
-        self.check(&edit, registry)?;
-        let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut Scene)| {
-            document.change(name, Extent::Rest, selection, change);
-        };
-        match edit {
-            Edit::SceneName(name) => rest(self, "Name of the scene", &mut |s| s.name = named(&name)),
-            Edit::SceneDescription(text) => {
-                rest(self, "Description of the scene", &mut |s| s.description = named(&text));
-            }
-            Edit::SceneSize(size) => rest(self, "Size of the room", &mut |s| s.scene_size = size),
-            Edit::Display(display) => {
-                let now = self.scene.display;
-                let name = if now.exposure != display.exposure {
-                    "Exposure"
-                } else if now.tone_mapping != display.tone_mapping {
-                    "Tone mapping"
-                } else {
-                    "Display"
-                };
-                rest(self, name, &mut |s| s.display = display);
-            }
-            Edit::Model(id) => {
-                let name = registry.model(&id).map_or(&*id, |m| m.declaration.name);
-                let step = format!("Reflection model: {name}");
-                rest(self, &step, &mut |s| s.reflection_model.clone_from(&id));
-            }
-            Edit::ShadingModel(id) => {
-                let name = registry.shading_model(&id).map_or(&*id, |m| m.declaration.name);
-                let step = format!("Shading model: {name}");
-                rest(self, &step, &mut |s| s.shading_model.clone_from(&id));
-            }
-            Edit::Observer(observer) => rest(self, "Observer", &mut |s| s.observer = observer),
-            Edit::Variant(i, field) => {
-                let name = step(&field.label(registry), &format!("view {}", LETTERS[i + 1]));
-                rest(self, &name, &mut |s| put_in_variant(s, i, field.clone()));
-            }
-            Edit::Views { variants, comparison, step } => rest(self, step, &mut |s| {
-                s.variants.clone_from(&variants);
-                s.comparison = comparison;
-            }),
-            Edit::Comparison(comparison) => rest(self, "Comparison", &mut |s| s.comparison = comparison),
-            Edit::Light(i, LightField::Type(id)) => {
-                self.change_light_type(i, &id, None, selection, registry)?;
-            }
-            Edit::Light(i, field) => {
-                let label = field.label(&self.scene.lights[i], registry);
-                let name = step(&label, &self.name_of(Selection::Light(i), registry));
+        if let Some((Part::Light(i), key, Some(Value::Choice(id)))) = edit.one()
+            && key == Light::light_type.into()
+        {
+            return self.change_light_type(i, id, None, selection, registry);
+        }
+        let change = self.check(&edit, registry)?;
+        let name = self.step_name(&edit, registry);
+        self.make(change, name, selection, registry);
+        Ok(())
+    }
+
+    /// Makes a change that was checked.
+    fn make(&mut self, change: Change, name: String, selection: Selection, registry: &Registry) {
+        match change {
+            Change::Light(i, light) => {
                 self.step(name, Extent::Light(i), selection, Some(registry), |document| {
-                    let room = document.scene_size;
-                    let before = document.scene.lights[i].name.clone();
-                    field.put(&mut document.scene.lights[i], registry, room);
-                    if document.scene.lights[i].name != before {
+                    let renamed = document.scene.lights[i].name != light.name;
+                    document.scene.lights[i] = light;
+                    if renamed {
                         document.number_again(Selection::Light(i), registry);
                     }
                 });
             }
-            Edit::Object(i, field) => {
-                let mut name = step(
-                    &field.label(&self.scene.objects[i], registry),
-                    &self.name_of(Selection::Object(i), registry),
-                );
-                if let ObjectField::Type(id) = &field {
-                    name += &format!(": {}", object_type(id, registry));
-                }
+            Change::Object(i, object) => {
                 self.step(name, Extent::Object(i), selection, Some(registry), |document| {
-                    let before = document.scene.objects[i].name.clone();
-                    field.put(&mut document.scene.objects[i], registry);
-                    if document.scene.objects[i].name != before {
+                    let renamed = document.scene.objects[i].name != object.name;
+                    document.scene.objects[i] = object;
+                    if renamed {
                         document.number_again(Selection::Object(i), registry);
                     }
                 });
             }
+            Change::Rest(rest) => {
+                self.change(name, Extent::Rest, selection, |scene| Extent::Rest.copy(&rest, scene))
+            }
+        }
+    }
+
+    /// The change that an edit makes.
+    pub(super) fn changed(&self, edit: &Edit, registry: &Registry) -> Result<Change, String> {
+        let (part, values) = edit.values();
+        let values = values.iter().cloned();
+        let none = |what: &str| format!("There is no such {what}.");
+        let mut good = true;
+        let change = match part {
+            Part::Light(i) => {
+                let mut light = self.scene.lights.get(i).cloned().ok_or("there is no such light")?;
+                let room = self.scene.scene_size;
+                values.for_each(|(key, value)| good &= light.set(key, value, registry, room));
+                Change::Light(i, light)
+            }
+            Part::Object(i) => {
+                let mut object = self.scene.objects.get(i).cloned().ok_or("there is no such object")?;
+                values.for_each(|(key, value)| good &= object.set(key, value, registry));
+                Change::Object(i, object)
+            }
+            _ => {
+                let mut rest = rest_of(&self.scene);
+                if let Edit::Views { variants, comparison, .. } = edit {
+                    (rest.variants, rest.comparison) = (variants.clone(), *comparison);
+                }
+                let fields = rest.part_mut(part).ok_or_else(|| none("variant"))?;
+                values.for_each(|(key, value)| good &= fields.put(key, value));
+                if let Part::Variant(i) = part {
+                    self.rename_base(i, &mut rest)?;
+                }
+                Change::Rest(Box::new(rest))
+            }
+        };
+        if good { Ok(change) } else { Err(none("field")) }
+    }
+
+    /// Lets the variants that are based on one follow a change of its name.
+    fn rename_base(&self, i: usize, rest: &mut Scene) -> Result<(), String> {
+        let (before, after) = (&self.scene.variants[i].name, rest.variants[i].name.clone());
+        if before.is_none() || *before == after {
+            return Ok(());
+        }
+        for other in rest.variants.iter_mut().filter(|other| other.based_on == *before) {
+            if after.is_none() {
+                return Err(
+                    "Other views are based on this one by name, so its name must not be empty.".to_owned()
+                );
+            }
+            other.based_on.clone_from(&after);
         }
         Ok(())
+    }
+
+    /// The name of the step of an edit: "Hide Sphere 1", "Size of Sphere 1".
+    fn step_name(&self, edit: &Edit, registry: &Registry) -> String {
+        let (what, (part, values)) = match edit {
+            Edit::Set { what, .. } => (*what, edit.values()),
+            Edit::Views { step, .. } => return (*step).to_owned(),
+        };
+        let Some(fields) = self.scene.part(part) else { return String::new() };
+        let differs = |(key, value): &&(Key, Option<Value>)| fields.value(*key) != *value;
+        let Some((key, value)) = values.iter().find(differs).or(values.first()) else { return String::new() };
+        let field = fields.field(key.name()).filter(|_| matches!(key, Key::Own(_)));
+        let parameter = || match key {
+            Key::Own(name) => fields.parameters(registry).iter().find(|p| p.name == *name),
+            Key::Material(name) => registry.material_parameter(name),
+        };
+        let label = what.or(field.map(Field::label)).or_else(|| parameter().map(|p| p.label));
+        let label = capitalised(label.unwrap_or(key.name()));
+        let name = self.name_of_part(part, registry);
+        match (part, field.map(|field| field.kind), value) {
+            (_, Some(Kind::Flag(words)), Some(on)) => {
+                format!("{} {name}", words[usize::from(*on == Value::flag(true))])
+            }
+            (Part::Scene, Some(Kind::Id(ids)), Some(Value::Choice(id))) => {
+                let listed = ids.find(registry, id);
+                format!("{label}: {}", listed.map_or(id.as_ref(), |listed| listed.name))
+            }
+            (Part::Object(_), Some(Kind::Id(Ids::ObjectType)), Some(Value::Choice(id))) => {
+                format!("{}: {}", part.step(&label, &name), object_type(id, registry))
+            }
+            _ => part.step(&label, &name),
+        }
     }
 
     /// Changes the type of a light and adds everything that the new type requires. `place` is the position
@@ -384,10 +258,9 @@ impl Document {
         selection: Selection,
         registry: &Registry,
     ) -> Result<(), String> {
-        let field = LightField::Type(id.to_owned());
-        self.check(&Edit::Light(i, field.clone()), registry)?;
+        self.check(&Edit::set(Part::Light(i), Light::light_type, id), registry)?;
         let part = self.name_of(Selection::Light(i), registry);
-        let name = format!("{}: {}", step("Type", &part), light_type(id, registry));
+        let name = format!("{}: {}", Part::Light(i).step("Type", &part), light_type(id, registry));
         self.step(name, Extent::Light(i), selection, Some(registry), |document| {
             let room = document.scene.scene_size;
             let light = &mut document.scene.lights[i];
@@ -396,14 +269,14 @@ impl Document {
                 light.position.get_or_insert(position);
                 light.direction.get_or_insert(direction);
             }
-            field.put(light, registry, room);
+            light.set(Light::light_type.into(), Some(id.into()), registry, room);
             if let Some(position) = light.position.filter(|_| !has_place) {
                 // Distinct heights, however many other lights are in the way.
                 let height = |k: usize| (k as f64 * GOLDEN_RATIO).fract() as f32 * room.height;
                 let column =
                     (1..document.scene.objects.len() + 3).map(|k| (0.5 * room.corner()).with_y(height(k)));
                 let is_free =
-                    |p: &Vec3| document.check(&Edit::Light(i, LightField::Position(*p)), registry).is_ok();
+                    |p: &Vec3| document.allows(&Edit::set(Part::Light(i), Light::position, *p), registry);
                 let free = iter::once(position).chain(column).find(is_free);
                 document.scene.lights[i].position = free;
             }

@@ -10,7 +10,10 @@ use std::{
     },
 };
 
-use crate::{registry::Registry, scene::Scene};
+use crate::{
+    registry::Registry,
+    scene::{Part, Scene},
+};
 
 mod edit;
 mod history;
@@ -20,7 +23,7 @@ pub mod names;
 mod rules;
 mod submit;
 
-pub use edit::{Edit, LightField, ObjectField, VariantField};
+pub use edit::Edit;
 pub(crate) use history::difference;
 use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};
@@ -45,6 +48,18 @@ pub enum Selection {
     Light(usize),
     /// An object, by its index in the scene.
     Object(usize),
+}
+
+/// The part that has the fields of a selection; for the room, the scene itself.
+impl From<Selection> for Part {
+    fn from(selection: Selection) -> Self {
+        match selection {
+            Selection::Room => Self::Scene,
+            Selection::Observer => Self::Observer,
+            Selection::Light(i) => Self::Light(i),
+            Selection::Object(i) => Self::Object(i),
+        }
+    }
 }
 
 /// The part of a scene to which a change is confined.

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     registry::Registry,
-    scene::{Observer, Scene, check, error::Problem},
+    scene::{Observer, Part, Scene, check, error::Problem},
     text::sentence,
 };
 
@@ -82,7 +82,7 @@ impl Document {
         change: impl FnOnce(&mut Self),
     ) -> Result<(), String> {
         if let Some(problem) = self.problem_in(scene, parts, registry) {
-            return Err(sentence(&format!("A change of a component was refused: {problem}")));
+            return Err(sentence(&format!("A change to a component was refused: {problem}")));
         }
         let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
         change(self);
@@ -103,11 +103,11 @@ impl Document {
         let mut check = check::Parts::of(scene, registry);
         let mut problems = |part: &Extent| match *part {
             Extent::Rest if scene.observer == self.observer => Vec::new(),
-            Extent::Rest => check.observer(),
+            Extent::Rest => check.problems(Part::Observer),
             Extent::Light(i) if scene.lights.get(i) == self.lights.get(i) => Vec::new(),
-            Extent::Light(i) => check.light(i),
+            Extent::Light(i) => check.problems(Part::Light(i)),
             Extent::Object(i) if scene.objects.get(i) == self.objects.get(i) => Vec::new(),
-            Extent::Object(i) => check.object(i),
+            Extent::Object(i) => check.problems(Part::Object(i)),
             Extent::All => Vec::new(),
         };
         if !parts.contains(&Extent::All) {

@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_point_behind_the_observer_is_in_no_pixel() {
-        let observer = Observer { position: Vec3::ZERO, direction: Vec3::NEG_Z, field_of_view: 90.0 };
+        let observer = Observer { position: Vec3::ZERO, field_of_view: 90.0, ..Observer::default() };
         assert_eq!(pixel_of(&observer, [8, 4], Vec3::new(0.1, 0.1, -1.0)), ([4, 1], true));
         assert_eq!(pixel_of(&observer, [8, 4], Vec3::new(9.0, -9.0, -1.0)), ([7, 3], false));
         assert!(!pixel_of(&observer, [8, 4], Vec3::new(0.1, 0.1, 1.0)).1);

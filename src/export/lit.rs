@@ -270,7 +270,7 @@ impl<'a> Lit<'a> {
     pub fn notes(&self) -> Vec<String> {
         let edited =
             self.request.registry.sources().get(WRAPPER.path).is_some_and(|text| text != WRAPPER.text);
-        let note = "The edited wrapper.wgsl is no part of the export, which has entry points of its own.";
+        let note = "The edited wrapper.wgsl is not exported: the export has its own entry points.";
         let mut notes: Vec<_> = edited.then(|| note.to_owned()).into_iter().collect();
         if self.lights.has_extent() {
             notes.push(format!(

@@ -87,14 +87,14 @@ pub enum PayloadError {
         file: String,
     },
     /// The program contains no place for a scene.
-    #[error("the file of this program was changed so that no scene can be put into it")]
+    #[error("this program's file was modified, so no scene can be added to it")]
     NoPlace,
 }
 
 /// The remedy for damaged files in a program's folder.
 #[must_use]
 pub fn unpacking(folder: &Path) -> String {
-    format!("delete the folder {}, and it is unpacked anew", folder.shown())
+    format!("delete the folder {} to have it unpacked again", folder.shown())
 }
 
 /// Path of the scene file within the payload.
@@ -155,7 +155,7 @@ fn read(place: Place, content: &[u8]) -> Result<Payload, PayloadError> {
         return Err(PayloadError::Damaged("its content was changed"));
     }
     let mut payload = Payload { checksum: place.checksum, ..Payload::default() };
-    for (path, bytes) in unpack(content).ok_or(PayloadError::Damaged("its files have no ends"))? {
+    for (path, bytes) in unpack(content).ok_or(PayloadError::Damaged("its files are cut off"))? {
         match path.as_str() {
             SCENE => payload.scene = bytes,
             ABOUT => {

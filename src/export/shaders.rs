@@ -78,7 +78,7 @@ pub fn alone(request: &Request) -> Result<Host, ExportError> {
         tone if tone.is_table() => {
             let formulas = ToneMapping::ALL.into_iter().filter(|t| !t.is_table()).map(ToneMapping::id);
             Err(ExportError::refused(format!(
-                "display.tone_mapping: {} is a table of colours, and shaders that stand alone hold formulas; \
+                "display.tone_mapping: {} is a table of colours, but a stand-alone shader has only formulas; \
                  these can be exported: {}",
                 tone.id(),
                 crate::text::listed(&formulas.collect::<Vec<_>>(), "and")

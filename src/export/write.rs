@@ -24,25 +24,25 @@ pub enum WriteError {
     #[error("{} {}; it was not overwritten", .0.shown(), .1)]
     OtherKind(PathBuf, &'static str),
     /// The place is the working folder of this program, or contains it.
-    #[error("{} is the folder in which this program runs, or around it; name a new folder in it", .0.shown())]
+    #[error("{} is the current folder, or contains it; name a new folder", .0.shown())]
     Here(PathBuf),
     /// The place is a folder of something else.
-    #[error("{} has no {}, so it is no export of this form; it was not overwritten", .0.shown(), .1)]
+    #[error("{} has no {}, so it is not an export of this form; it was not overwritten", .0.shown(), .1)]
     Foreign(PathBuf, String),
     /// The folder contains something that no export of this form has.
-    #[error("{} has {}, which is of no export of this form; it was not overwritten", .0.shown(), .1.shown())]
+    #[error("{} has {}, which is not part of an export of this form; it was not overwritten", .0.shown(), .1.shown())]
     Stranger(PathBuf, PathBuf),
     /// The place holds a file of another kind.
-    #[error("{} is a file of another kind than the export; it was not overwritten", .0.shown())]
+    #[error("{} is a file of a different kind from the export; it was not overwritten", .0.shown())]
     OtherFile(PathBuf),
     /// The name exceeds the limit of file systems.
-    #[error("{} cannot be written: its name has {} bytes, and {NAME} is the limit", .0.shown(), .1)]
+    #[error("{} cannot be written: its name has {} bytes, but at most {NAME} are allowed", .0.shown(), .1)]
     Name(PathBuf, usize),
     /// The place is, or contains, an input of this command.
     #[error(transparent)]
     Input(#[from] Refused),
     /// The place changed after it was examined.
-    #[error("somebody else wrote {} while this export was made; theirs was kept, and this one was not written", .0.shown())]
+    #[error("another program wrote {} during this export; its version was kept, and this one was not written", .0.shown())]
     Taken(PathBuf),
     /// The operating system reported an error.
     #[error("{} could not be written: {}", .0.shown(), .1)]

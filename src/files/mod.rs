@@ -148,7 +148,7 @@ pub enum FileError {
         error: io::Error,
     },
     /// The place has changed since it was examined.
-    #[error("somebody else wrote there meanwhile")]
+    #[error("another program wrote there in the meantime")]
     Taken,
     /// The path is not in the folder in which it must be.
     #[error("it is outside the folder {}", .0.shown())]

@@ -174,7 +174,7 @@ fn stream(path: &Path, kind: Kind) -> Result<File, FileError> {
             #[cfg(unix)]
             Err(e) if kind == Kind::Pipe && e.raw_os_error() == Some(libc::ENXIO) => {
                 if begin.elapsed() > PATIENCE {
-                    return Err(io::Error::other("nobody reads from it").into());
+                    return Err(io::Error::other("no process reads from it").into());
                 }
                 thread::sleep(PAUSE);
             }

@@ -34,7 +34,7 @@ pub(super) fn read(
     let Some(kind) = KINDS.into_iter().find(|kind| *kind == info) else {
         let near = did_you_mean(info, KINDS.iter().map(|k| (*k, *k)));
         let found = if info.is_empty() {
-            "a block of no kind".to_owned()
+            "a block without a kind".to_owned()
         } else {
             format!("a block {}", quoted(info))
         };
@@ -42,15 +42,12 @@ pub(super) fn read(
         return;
     };
     if kind != "equation" && draft.kinds.contains(&kind) {
-        problems.at(
-            at,
-            format!("the step has two blocks {kind}; write all into one, or begin another step with ##"),
-        );
+        problems.at(at, format!("the step has two {kind} blocks; merge them, or begin another step with ##"));
         return;
     }
     draft.kinds.push(kind);
     if body.text.trim().is_empty() {
-        problems.at(at, format!("the block {kind} is empty"));
+        problems.at(at, format!("the {kind} block is empty"));
         return;
     }
     match kind {
@@ -77,10 +74,7 @@ pub(super) fn read(
         "point" => {
             for line in settings(body, problems) {
                 let Some((key, value)) = pair(&line) else {
-                    problems.at(
-                        line.piece().at,
-                        "this is not KIND: NAME, as every line of a point block must be",
-                    );
+                    problems.at(line.piece().at, "each line of a point block must be KIND: NAME");
                     continue;
                 };
                 match controls::control(key, value, registry, problems) {
@@ -189,7 +183,7 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
         _ if answers.len() < 2 => {
             problems.at(
                 at,
-                "a question has two answers at least; begin each with [ ], and the right one with [x]",
+                "a question needs at least two answers; begin each with [ ], and the right one with [x]",
             );
         }
         0 => problems.at(at, "the question has no right answer; mark it with [x] instead of [ ]"),
@@ -241,7 +235,7 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
     };
     let text = piece("").map_or_else(Vec::new, |text| inline(text, problems));
     if text.is_empty() {
-        problems.at(at, "the task is missing; write what the learner shall do before until:");
+        problems.at(at, "the task is missing; before until:, write what the learner should do");
     }
     let mut hint: Option<Vec<Run>> = None;
     if let Some(written) = piece("hint") {
@@ -267,7 +261,10 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
     // Conditions contain no colon: a line with one was meant for another part.
     if let Some((key, _)) = lines(written.text, written.at).skip(1).find_map(|line| pair(&line)) {
         let meant = part_meant(key.text).map_or_else(String::new, |part| format!("; did you mean {part}:?"));
-        problems.at(key.at, format!("a task has no {}; it has until and hint{meant}", quoted(key.text)));
+        problems.at(
+            key.at,
+            format!("a task has no key {}; its keys are until and hint{meant}", quoted(key.text)),
+        );
         return None;
     }
     draft.until = Some(written.at);

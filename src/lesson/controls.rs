@@ -204,7 +204,7 @@ pub(super) fn control(
             problems.at(
                 key.at,
                 format!(
-                    "a lesson cannot point at a {}; it points at {}{near}",
+                    "a lesson cannot point at a {}; it can point at {}{near}",
                     quoted(other),
                     listed(&known, "or")
                 ),

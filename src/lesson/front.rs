@@ -59,7 +59,7 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
             break;
         }
         let Some((key, value)) = pair(&line) else {
-            problems.at(line.at, "this is not KEY: VALUE, as every line of the front matter must be");
+            problems.at(line.at, "each line of the front matter must be KEY: VALUE");
             continue;
         };
         let Some(known) = KEYS.into_iter().find(|known| *known == key.text) else {
@@ -67,7 +67,7 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
             problems.at(
                 key.at,
                 format!(
-                    "the front matter has no {}; it has title, summary, minutes and scene{near}",
+                    "the front matter has no key {}; its keys are title, summary, minutes and scene{near}",
                     quoted(key.text)
                 ),
             );

@@ -90,7 +90,7 @@ pub(super) fn steps(
         problems.at(whole.len(), "the lesson has no step; begin one with ## and its name");
     }
     for draft in steps.iter().filter(|draft| draft.is_empty) {
-        problems.at(draft.at, "the step is empty; write what the learner shall see or do");
+        problems.at(draft.at, "the step is empty; write what the learner should see or do");
     }
     for draft in &steps {
         if draft.step.title.chars().nth(LONGEST_TITLE).is_some() {
@@ -256,7 +256,7 @@ impl Reader<'_, '_, '_> {
     /// Reads a code block.
     fn block(&mut self, kind: &pulldown_cmark::CodeBlockKind, at: usize, end: usize) {
         let pulldown_cmark::CodeBlockKind::Fenced(info) = kind else {
-            self.problems.at(at, "text with four spaces before it is a block of no kind; remove the spaces");
+            self.problems.at(at, "text indented by four spaces is a block without a kind; remove the spaces");
             return;
         };
         if !self.items.is_empty() {

@@ -54,7 +54,7 @@ impl Runs {
             if self.row.1 {
                 let names =
                     if sign == "*" { "emphasis is *word*, bold is **word**" } else { "code is `word`" };
-                let what = format!("this {sign} has no counterpart: {names}, and \\{sign} the sign itself");
+                let what = format!("this {sign} is not paired: {names}; write \\{sign} for the sign itself");
                 problems.at(whole.at + at, what);
                 return;
             }

@@ -137,7 +137,9 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
             if json.is_null() {
                 *json = Json::Array(Vec::new());
             }
-            let Json::Array(list) = json else { return Err("leads into a value that is no list".to_owned()) };
+            let Json::Array(list) = json else {
+                return Err("leads into a value that is not a list".to_owned());
+            };
             if *index > list.len() {
                 let count = list.len();
                 return Err(format!(
@@ -162,7 +164,7 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
 pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
     let outside = || {
         let name = quoted(name);
-        Err(format!("{name} leads out of the folder of the lesson; put the scene itself beside the lesson"))
+        Err(format!("{name} is outside the folder of the lesson; put the scene itself beside the lesson"))
     };
     let joined = folder.map(|folder| folder.join(name)).unwrap_or_default();
     let beside = match folder.map(|folder| files::inside(folder, &joined)) {
@@ -201,7 +203,10 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
     let mut at = 0;
     while at < text.len() {
         if path.segments().len() == MAX_DEPTH {
-            return Err((at, format!("a path has at most {MAX_DEPTH} steps; those in a scene have five")));
+            return Err((
+                at,
+                format!("a path has at most {MAX_DEPTH} steps; no path in a scene has more than five"),
+            ));
         }
         let rest = &text[at..];
         if let Some(inside) = rest.strip_prefix('[') {
@@ -210,7 +215,7 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
                 (
                     at + 1,
                     format!(
-                        "{} is no place in a list; places are whole numbers from 0",
+                        "{} is not an index; an index is a whole number, 0 or more",
                         quoted(&inside[..end])
                     ),
                 )
@@ -225,7 +230,8 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
         if length == 0 || dot == 0 && at > 0 {
             return Err((
                 at,
-                "a path is keys with dots between them and [places] in lists: objects[0].size".to_owned(),
+                "a path consists of keys with dots between them, and of [indices] in lists: objects[0].size"
+                    .to_owned(),
             ));
         }
         path = path.then(Segment::Key(word[..length].to_owned().into()));
@@ -292,15 +298,14 @@ pub(super) fn read(
             let value = piece.text[colon + 1..].trim();
             let value = if value.is_empty() { "VALUE" } else { value };
             let meant = format!("{} = {value}", piece.text[..colon].trim_end());
-            problems
-                .at(piece.at + colon, format!("a scene block sets values by =; write {}", shortened(&meant)));
+            problems.at(
+                piece.at + colon,
+                format!("a scene block sets values with =; write {}", shortened(&meant)),
+            );
             continue;
         }
         let Some(equals) = equals else {
-            problems.at(
-                piece.at,
-                "this is neither PATH = VALUE nor open: FILE, as every line of a scene block must be",
-            );
+            problems.at(piece.at, "each line of a scene block must be PATH = VALUE or open: FILE");
             continue;
         };
         let written = piece.part(0, equals).trimmed();

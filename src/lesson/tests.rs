@@ -174,28 +174,28 @@ const MISTAKES: &[(&str, &str)] = &[
     ("## S\n\n> a\n", "8:1: quotations are not shown"),
     ("## S\n\nt\n\n---\n\nu\n", "10:1: rules are not shown"),
     ("## S\n\nA ~~b~~.\n", "8:3: struck text is not shown"),
-    ("## S\n\n    indented\n", "8:5: text with four spaces before it"),
+    ("## S\n\n    indented\n", "8:5: text indented by four spaces"),
     ("## S\n\n- a\n\n  b\n", "10:3: an item of a list is one paragraph"),
     ("## S\n\n- a\n  - b\n    - c\n      - d\n", "11:7: lists within lists are at most 3 deep"),
     ("## S\n\n-\n- b\n", "8:1: this item of a list is empty"),
     ("## S\n\n- a\n  ```view\n  terms: all\n  ```\n", "9:3: a block cannot be in a list"),
     // Blocks.
-    ("## S\n\n```\nx\n```\n", "8:1: this is a block of no kind; a block is equation"),
+    ("## S\n\n```\nx\n```\n", "8:1: this is a block without a kind; a block is equation"),
     (
         "## S\n\n```sceen\nx\n```\n",
         "8:1: this is a block \"sceen\"; a block is equation, scene, view, point, predict, do or find; did you mean \"scene\"?",
     ),
-    ("## S\n\n```view\n\n```\n", "8:1: the block view is empty"),
+    ("## S\n\n```view\n\n```\n", "8:1: the view block is empty"),
     ("## S\n\n```view\nterms: all\n", "8:1: this block is never closed; end it with a line ```"),
-    ("## S\n\n```view\nterms: all\n```\n\n```view\nactive: A\n```\n", "12:1: the step has two blocks view"),
+    ("## S\n\n```view\nterms: all\n```\n\n```view\nactive: A\n```\n", "12:1: the step has two view blocks"),
     (
         "## S\n\n```do\nX.\nuntil: probe.pinned\n```\n\n```find\nX.\nuntil: probe.pinned\n```\n",
         "13:1: the step has two tasks",
     ),
     // The window.
-    ("## S\n\n```view\nchanel: n_dot_l\n```\n", "9:1: a view block has no \"chanel\""),
+    ("## S\n\n```view\nchanel: n_dot_l\n```\n", "9:1: a view block has no setting \"chanel\""),
     ("## S\n\n```view\nchannel: n_dot_q\n```\n", "9:10: channel is \"n_dot_q\", but it must be"),
-    ("## S\n\n```view\nnonsense\n```\n", "9:1: this is not SETTING: VALUE"),
+    ("## S\n\n```view\nnonsense\n```\n", "9:1: each line of a view block must be SETTING: VALUE"),
     ("## S\n\n```view\nterms: all\nterms: all\n```\n", "10:1: terms is given twice"),
     (
         "## S\n\n```view\npin: NaN, 0\n```\n",
@@ -216,19 +216,19 @@ const MISTAKES: &[(&str, &str)] = &[
     // Near misses.
     (
         "## S\n\n```scene\nobjects[0].size = 3\nshading_model: \"phong\"\n```\n",
-        "10:14: a scene block sets values by =; write shading_model = \"phong\"",
+        "10:14: a scene block sets values with =; write shading_model = \"phong\"",
     ),
     (
         "## S\n\n```scene\nshading_model:\n```\n",
-        "9:14: a scene block sets values by =; write shading_model = VALUE",
+        "9:14: a scene block sets values with =; write shading_model = VALUE",
     ),
     (
         "## S\n\n```do\nX.\nuntil: probe.pinned\ntip: Press **E**.\n```\n",
-        "11:1: a task has no \"tip\"; it has until and hint; did you mean hint:?",
+        "11:1: a task has no key \"tip\"; its keys are until and hint; did you mean hint:?",
     ),
     (
         "## S\n\n```do\nX.\nuntil: probe.pinned\nfoo: Press **E**.\n```\n",
-        "11:1: a task has no \"foo\"; it has until and hint",
+        "11:1: a task has no key \"foo\"; its keys are until and hint",
     ),
     (
         "## S\n\n```do\nX.\nuntill: probe.pinned\n```\n",
@@ -251,13 +251,16 @@ const MISTAKES: &[(&str, &str)] = &[
     ("## S\n\n```equation\nI = max(0, N·L I(p)\n```\n", "9:8: this bracket is never closed"),
     ("## S\n\n```equation\nI = k_d\n  + a) b\n```\n", "10:6: there is no opening bracket for this one"),
     ("## S\n\n```equation\nI = {a]\n```\n", "9:7: there is no opening bracket for this one"),
-    ("## S\n\nA **bold* word.\n", "8:3: this * has no counterpart"),
-    ("## S\n\nA **bold word.\n", "8:3: this * has no counterpart"),
-    ("## S\n\nA word* here.\n", "8:7: this * has no counterpart"),
-    ("## S\n\nA `word here.\n", "8:3: this ` has no counterpart: code is `word`, and \\` the sign itself"),
-    ("## S\n\n```do\nPress **E*.\nuntil: probe.pinned\n```\n", "9:7: this * has no counterpart"),
+    ("## S\n\nA **bold* word.\n", "8:3: this * is not paired"),
+    ("## S\n\nA **bold word.\n", "8:3: this * is not paired"),
+    ("## S\n\nA word* here.\n", "8:7: this * is not paired"),
+    ("## S\n\nA `word here.\n", "8:3: this ` is not paired: code is `word`; write \\` for the sign itself"),
+    ("## S\n\n```do\nPress **E*.\nuntil: probe.pinned\n```\n", "9:7: this * is not paired"),
     // Scenes.
-    ("## S\n\n```scene\nnonsense\n```\n", "9:1: this is neither PATH = VALUE nor open: FILE"),
+    (
+        "## S\n\n```scene\nnonsense\n```\n",
+        "9:1: each line of a scene block must be PATH = VALUE or open: FILE",
+    ),
     (
         "## S\n\n```scene\nopen: nowhere.json\n```\n",
         "9:7: the scene \"nowhere.json\" is not among the shipped scenes",
@@ -266,12 +269,12 @@ const MISTAKES: &[(&str, &str)] = &[
         "## S\n\n```scene\nopen: defalt.json\n```\n",
         "9:7: the scene \"defalt.json\" is not among the shipped scenes; did you mean \"default.json\"?",
     ),
-    ("## S\n\n```scene\nopen: ../x.json\n```\n", "9:7: \"../x.json\" leads out of the folder"),
+    ("## S\n\n```scene\nopen: ../x.json\n```\n", "9:7: \"../x.json\" is outside the folder"),
     ("## S\n\n```scene\nshading_model = phong\n```\n", "9:17: "),
     ("## S\n\n```scene\nobjects[0].size = NaN\n```\n", "9:19: NaN is not a number in JSON"),
     ("## S\n\n```scene\nobjects[0].size =\n```\n", "9:18: the value is missing"),
     ("## S\n\n```scene\nobjects[0].size = [1,\n```\n", "9:22: the value ends too early"),
-    ("## S\n\n```scene\nobjects[x].size = 1\n```\n", "9:9: \"x\" is no place in a list"),
+    ("## S\n\n```scene\nobjects[x].size = 1\n```\n", "9:9: \"x\" is not an index"),
     (
         "## S\n\n```scene\nobjects[5].size = 1\n```\n",
         "9:1: objects[5].size does not exist: the list has 1 entries",
@@ -282,7 +285,7 @@ const MISTAKES: &[(&str, &str)] = &[
     // Questions.
     ("## S\n\n```predict\nQ?\n[ ] a | b\n[ ] c | d\n```\n", "8:1: the question has no right answer"),
     ("## S\n\n```predict\nQ?\n[x] a | b\n[x] c | d\n```\n", "8:1: the question has no wrong answer"),
-    ("## S\n\n```predict\nQ?\n[x] a | b\n```\n", "8:1: a question has two answers at least"),
+    ("## S\n\n```predict\nQ?\n[x] a | b\n```\n", "8:1: a question needs at least two answers"),
     ("## S\n\n```predict\n[x] a | b\n[ ] c | d\n```\n", "8:1: the question is missing"),
     ("## S\n\n```predict\nQ?\n[x] a\n[ ] c | d\n```\n", "10:1: this answer has no feedback"),
     ("## S\n\n```predict\nQ?\n[x] a | b\n[ ] | d\n```\n", "11:1: this answer is empty"),
@@ -421,9 +424,12 @@ fn mistakes_of_the_whole_text_are_said_too() {
         (&format!("---\ntitle: T\nsummary: S.\nminutes: 0\n---\n{step}"), &["4:10: minutes is \"0\", but"]),
         (
             &format!("---\ntitle: T\nsummary: S.\nsumary: 0\n---\n{step}"),
-            &["4:1: the front matter has no \"sumary\""],
+            &["4:1: the front matter has no key \"sumary\""],
         ),
-        (&format!("---\ntitle: T\nsummary: S.\nnonsense\n---\n{step}"), &["4:1: this is not KEY: VALUE"]),
+        (
+            &format!("---\ntitle: T\nsummary: S.\nnonsense\n---\n{step}"),
+            &["4:1: each line of the front matter must be KEY: VALUE"],
+        ),
         (
             &format!("---\ntitle: T\nsummary: S.\nscene: x.json\n---\n{step}"),
             &["4:8: the scene \"x.json\" is not among"],

@@ -56,7 +56,7 @@ pub(super) fn setting(
     let Draft { settings: places, misnamed, step, .. } = draft;
     let window = &mut step.window;
     let Some((key, value)) = pair(line) else {
-        problems.at(line.piece().at, "this is not SETTING: VALUE, as every line of a view block must be");
+        problems.at(line.piece().at, "each line of a view block must be SETTING: VALUE");
         return;
     };
     let Some((known, ..)) = SETTINGS.iter().find(|(known, ..)| *known == key.text) else {
@@ -64,7 +64,11 @@ pub(super) fn setting(
         let near = did_you_mean(key.text, keys.iter().map(|k| (*k, *k)));
         problems.at(
             key.at,
-            format!("a view block has no {}; it has {}{near}", quoted(key.text), listed(&keys, "and")),
+            format!(
+                "a view block has no setting {}; its settings are {}{near}",
+                quoted(key.text),
+                listed(&keys, "and")
+            ),
         );
         return;
     };

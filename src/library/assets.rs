@@ -293,7 +293,7 @@ pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     written.map_err(|error| match made {
         true => error.into(),
         // A file in place of the folder must not be reported as if the file itself existed.
-        false => io::Error::other(format!("the folder {} could not be made: {error}", folder.shown())),
+        false => io::Error::other(format!("the folder {} could not be created: {error}", folder.shown())),
     })
 }
 
@@ -358,7 +358,7 @@ mod tests {
         assert!(write_new(&long, "").is_err() && !root.join("new").exists());
         fs::write(root.join("file"), "")?;
         let said = write_new(&root.join("file/models/a.wgsl"), "").expect_err("a file").to_string();
-        assert!(said.contains("could not be made") && said.ends_with("file is not a folder"), "{said}");
+        assert!(said.contains("could not be created") && said.ends_with("file is not a folder"), "{said}");
         write_new(&root.join("new/models/a.wgsl"), "")?;
         let again = write_new(&root.join("new/models/a.wgsl"), "").expect_err("there");
         assert_eq!(again.kind(), io::ErrorKind::AlreadyExists);

@@ -41,7 +41,7 @@ impl Library {
             source: last.to_owned(),
             message: match text.trim().is_empty() {
                 true => format!("the file is empty; {}", problem.message),
-                false => format!("behind the end of the file: {}", problem.message),
+                false => format!("after the end of the file: {}", problem.message),
             },
         })
     }
@@ -76,7 +76,7 @@ mod tests {
             said(&[terms], "evaluate.wgsl"),
             "evaluate.wgsl:9:9: wrong; introduced by the change in terms.wgsl"
         );
-        assert_eq!(said(&[terms], "(row)"), "terms.wgsl:2:9: behind the end of the file: wrong");
+        assert_eq!(said(&[terms], "(row)"), "terms.wgsl:2:9: after the end of the file: wrong");
         assert_eq!(
             said(&[terms, ("reflection/lambert.wgsl", "\n")], "evaluate.wgsl"),
             "reflection/lambert.wgsl:1:1: the file is empty; wrong"

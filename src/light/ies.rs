@@ -49,17 +49,15 @@ impl<'a> Numbers<'a> {
         };
         self.line = line;
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number
-            .ok_or_else(|| self.problem(format!("{what} must be a number, and it is {}", shown(word, true))))
+        number.ok_or_else(|| self.problem(format!("{what} must be a number, not {}", shown(word, true))))
     }
 
     /// The next number, a count.
     fn count(&mut self, what: &str, least: usize) -> Result<usize, FileProblem> {
         let number = self.next(what)?;
         if number.fract() != 0.0 || number < least as f64 || number > MAX_CANDELAS as f64 {
-            let rule = format!(
-                "{what} must be a whole number between {least} and {MAX_CANDELAS}, and it is {number}"
-            );
+            let rule =
+                format!("{what} must be a whole number between {least} and {MAX_CANDELAS}, not {number}");
             return Err(self.problem(rule));
         }
         Ok(number as usize)
@@ -69,7 +67,7 @@ impl<'a> Numbers<'a> {
     fn factor(&mut self, what: &str) -> Result<f64, FileProblem> {
         let number = self.next(what)?;
         if number <= 0.0 {
-            return Err(self.problem(format!("{what} must be greater than 0, and it is {number}")));
+            return Err(self.problem(format!("{what} must be greater than 0, not {number}")));
         }
         Ok(number)
     }
@@ -81,11 +79,11 @@ impl<'a> Numbers<'a> {
             let angle = self.next(&format!("{what} angle {} of {count}", i + 1))?;
             if !(0.0..=most).contains(&angle) {
                 return Err(
-                    self.problem(format!("a {what} angle must be between 0 and {most}°, and it is {angle}"))
+                    self.problem(format!("a {what} angle must be between 0 and {most}°, not {angle}"))
                 );
             }
             if let Some(before) = angles.last().filter(|before| **before >= angle) {
-                let rule = format!("{what} angles must increase, and after {before} comes {angle}");
+                let rule = format!("{what} angles must increase, but {before} is followed by {angle}");
                 return Err(self.problem(rule));
             }
             angles.push(angle);
@@ -101,7 +99,7 @@ impl<'a> Numbers<'a> {
 /// A part of the file in a message; bytes that are not text are described in words.
 fn shown(part: &str, in_quotes: bool) -> String {
     if part.contains(|c: char| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
-        return "not text".to_owned();
+        return "binary data".to_owned();
     }
     let part = shortened(part);
     if in_quotes { format!("“{part}”") } else { part }
@@ -111,7 +109,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = (1..).zip(text.lines());
     let Some((at, tilt)) = lines.by_ref().find(|(_, line)| line.trim_start().starts_with("TILT=")) else {
-        let message = "this is no IES LM-63 file: no line begins with TILT=".to_owned();
+        let message = "this is not an IES LM-63 file: no line begins with TILT=".to_owned();
         return Err(FileProblem { line: None, message });
     };
     let mut numbers = Numbers::new(lines);
@@ -121,7 +119,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         "INCLUDE" => upright(&mut numbers)?,
         other => {
             let message = format!(
-                "TILT= must be NONE or INCLUDE, and it is {}: tables in other files are not read",
+                "TILT= must be NONE or INCLUDE, not {}: tables in other files are not read",
                 shown(other, false)
             );
             return Err(numbers.problem(message));
@@ -141,7 +139,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         } else {
             ""
         };
-        let message = format!("the type of photometry must be 1, type C, and it is {kind}{name}");
+        let message = format!("the type of photometry must be 1, type C, not {kind}{name}");
         return Err(numbers.problem(message));
     }
     for what in ["the type of units", "the width", "the length", "the height"] {
@@ -153,9 +151,8 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let planes = numbers.angles("horizontal", horizontal, 360.0)?;
     let circle = circle(&planes).map_err(|message| numbers.problem(message))?;
     if vertical * circle.len() > MAX_CANDELAS {
-        return Err(
-            numbers.problem(format!("the file has more than the {MAX_CANDELAS} candela values that fit"))
-        );
+        return Err(numbers
+            .problem(format!("the file has more than {MAX_CANDELAS} candela values, the most allowed")));
     }
     let total = vertical * horizontal;
     let mut candelas = Vec::with_capacity(total);
@@ -166,17 +163,17 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         );
         let candela = numbers.next(&what)?;
         if candela < 0.0 {
-            return Err(numbers.problem(format!("{what}, must be 0 or more, and it is {candela}")));
+            return Err(numbers.problem(format!("{what}, must be 0 or more, not {candela}")));
         }
         candelas.push((candela * multiplier * ballast * tilted) as f32);
     }
     let more = numbers.words.by_ref().count();
     if more > 0 {
         let values = plural(more, "value");
-        return Err(numbers.problem(format!("after the {total} candela values come {values} more")));
+        return Err(numbers.problem(format!("the {total} candela values are followed by {values} too many")));
     }
     if candelas.iter().all(|candela| *candela == 0.0) {
-        return Err(numbers.problem("all candela values are 0: the lamp would give no light"));
+        return Err(numbers.problem("all candela values are 0: the lamp would emit no light"));
     }
     let head = [vertical as f32, circle.len() as f32];
     let angles = gammas.iter().chain(circle.iter().map(|(angle, _)| angle)).map(|angle| *angle as f32);
@@ -210,7 +207,7 @@ fn circle(planes: &[f64]) -> Result<Vec<(f64, usize)>, String> {
         (0.0, 360.0) => &[(0.0, 1.0)],
         _ => {
             return Err(format!(
-                "horizontal angles must go from 0 to 0, 90, 180 or 360°, or from 90 to 270°, and these go from {first} to {last}"
+                "horizontal angles must go from 0 to 0, 90, 180 or 360°, or from 90 to 270°, but these go from {first} to {last}"
             ));
         }
     };
@@ -414,45 +411,41 @@ mod tests {
         };
         assert!(read(good.as_bytes()).is_ok());
         for (from, to, expected) in [
-            ("TILT=NONE", "tilted", "0: this is no IES LM-63 file: no line begins with TILT="),
-            ("TILT=NONE", "TILT=lamp.tlt", "3: TILT= must be NONE or INCLUDE, and it is lamp.tlt"),
-            (
-                "1000 1 3",
-                "1000 zero 3",
-                "4: the multiplier of the candelas must be a number, and it is “zero”",
-            ),
-            (
-                "1000 1 3",
-                "1000 \0 3",
-                "4: the multiplier of the candelas must be a number, and it is not text",
-            ),
-            ("1000 1 3", "1000 0 3", "4: the multiplier of the candelas must be greater than 0, and it is 0"),
+            ("TILT=NONE", "tilted", "0: this is not an IES LM-63 file: no line begins with TILT="),
+            ("TILT=NONE", "TILT=lamp.tlt", "3: TILT= must be NONE or INCLUDE, not lamp.tlt"),
+            ("1000 1 3", "1000 zero 3", "4: the multiplier of the candelas must be a number, not “zero”"),
+            ("1000 1 3", "1000 \0 3", "4: the multiplier of the candelas must be a number, not binary data"),
+            ("1000 1 3", "1000 0 3", "4: the multiplier of the candelas must be greater than 0, not 0"),
             (
                 "1 3 2 1 2",
                 "1 3.5 2 1 2",
                 "4: the number of vertical angles must be a whole number between 2 and",
             ),
-            ("1 3 2 1 2", "1 3 2 3 2", "4: the type of photometry must be 1, type C, and it is 3, type A"),
-            ("1 1 50", "0 1 50", "5: the ballast factor must be greater than 0, and it is 0"),
-            ("0 45 90", "0 95 90", "6: vertical angles must increase, and after 95 comes 90"),
-            ("0 45 90", "0 45 190", "6: a vertical angle must be between 0 and 180°, and it is 190"),
+            ("1 3 2 1 2", "1 3 2 3 2", "4: the type of photometry must be 1, type C, not 3, type A"),
+            ("1 1 50", "0 1 50", "5: the ballast factor must be greater than 0, not 0"),
+            ("0 45 90", "0 95 90", "6: vertical angles must increase, but 95 is followed by 90"),
+            ("0 45 90", "0 45 190", "6: a vertical angle must be between 0 and 180°, not 190"),
             (
                 "\n0 90\n",
                 "\n0 100\n",
-                "7: horizontal angles must go from 0 to 0, 90, 180 or 360°, or from 90 to 270°, and these go from 0 to 100",
+                "7: horizontal angles must go from 0 to 0, 90, 180 or 360°, or from 90 to 270°, but these go from 0 to 100",
             ),
             (
                 "9 8 7\n9 8 7",
                 "9 8 7\n9 8",
                 "9: the file ends before candela value 6 of 6, 3 vertical × 2 horizontal angles",
             ),
-            ("9 8 7\n9 8 7", "9 8 7\n9 8 7\n6 6", "9: after the 6 candela values come 2 values more"),
+            (
+                "9 8 7\n9 8 7",
+                "9 8 7\n9 8 7\n6 6",
+                "9: the 6 candela values are followed by 2 values too many",
+            ),
             (
                 "9 8 7\n9 8 7",
                 "9 8 7\n9 -8 7",
                 "9: candela value 5 of 6, 3 vertical × 2 horizontal angles, must be 0 or more",
             ),
-            ("9 8 7\n9 8 7", "0 0 0\n0 0 0", "9: all candela values are 0: the lamp would give no light"),
+            ("9 8 7\n9 8 7", "0 0 0\n0 0 0", "9: all candela values are 0: the lamp would emit no light"),
         ] {
             let said = said(from, to);
             assert!(said.starts_with(expected), "{said}\n{expected}");

@@ -150,7 +150,7 @@ pub struct Match {
 #[non_exhaustive]
 pub enum MatchError {
     /// The view does not exist, or is view A.
-    #[error("there is no view {view} to be matched; the scene has {}", views_in_words(*.views))]
+    #[error("there is no view {view} to match; the scene has {}", views_in_words(*.views))]
     NoView {
         /// Letter of the view.
         view: String,
@@ -192,7 +192,7 @@ pub enum MatchError {
         why: String,
     },
     /// The view's models share the parameter, but their ranges do not overlap.
-    #[error("{name} is free, but no value of it is legal for all models of view {view}")]
+    #[error("{name} is free, but no value of it is valid for all models of view {view}")]
     NoRange {
         /// Name of the parameter.
         name: &'static str,
@@ -203,7 +203,7 @@ pub enum MatchError {
     #[error("no object is visible, so there is nothing to compare")]
     NothingVisible,
     /// A view has no highlight to compare.
-    #[error("view {view} has no highlight with a width: {why}")]
+    #[error("view {view} has no highlight of measurable width: {why}")]
     NoHighlight {
         /// Letter of the view.
         view: &'static str,
@@ -211,7 +211,7 @@ pub enum MatchError {
         why: String,
     },
     /// The CPU cannot run a custom model.
-    #[error("{model} cannot be matched, since the CPU does not run it: {why}")]
+    #[error("{model} cannot be matched, since the CPU cannot run it: {why}")]
     NotOnCpu {
         /// Id of the model.
         model: &'static str,

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
-    document::{Document, Edit, Selection, VariantField},
-    scene::{Object, Variant},
+    document::{Document, Edit, Selection},
+    scene::{Object, Part, Scene, Variant},
 };
 
 /// A sphere with one model and some values in view A, and another model in view B.
@@ -191,7 +191,7 @@ fn a_match_is_one_step_that_undo_brings_back() {
     let mut document = Document::new(scene(("phong", &PHONG), ("blinn_phong", &[])));
     let before = document.variants.clone();
     let found = matched(&document, What::Highlight, &["alpha", "k_s"]).expect("a match");
-    let edit = Edit::Variant(0, VariantField::Materials(found.values.clone(), "Match"));
+    let edit = Edit::materials(Part::Variant(0), found.values.clone(), "Match");
     document.edit(edit, Selection::default(), &registry).expect("legal");
     assert_eq!(document.steps().collect::<Vec<_>>(), ["Match of view B"]);
     let after = matched(&document, What::Highlight, &["alpha", "k_s"]).expect("a match");
@@ -224,12 +224,12 @@ fn what_cannot_be_matched_is_said() {
     );
     assert_eq!(
         error(&lambert, What::Highlight, &["base_colour"]),
-        "view B has no highlight with a width: Lambert does not fall to half its brightness"
+        "view B has no highlight of measurable width: Lambert does not fall to half its brightness"
     );
     let back = scene(("lambert", &[]), ("phong", &[]));
     assert!(
         error(&back, What::Highlight, &["alpha"])
-            .starts_with("view A has no highlight with a width: Lambert")
+            .starts_with("view A has no highlight of measurable width: Lambert")
     );
     let phong = scene(("lambert", &[]), ("phong", &[]));
     assert_eq!(
@@ -249,8 +249,8 @@ fn what_cannot_be_matched_is_said() {
         let request = Request { scene: &phong, view, what: What::Lobe, parameters: &["alpha"] };
         match_view(&request, &Registry::builtin(), &Progress::NONE).expect_err("refused").to_string()
     };
-    assert_eq!(view(2), "there is no view C to be matched; the scene has 2 views: A and B");
-    assert_eq!(view(0), "there is no view A to be matched; the scene has 2 views: A and B");
+    assert_eq!(view(2), "there is no view C to match; the scene has 2 views: A and B");
+    assert_eq!(view(0), "there is no view A to match; the scene has 2 views: A and B");
     let mut hidden = phong.clone();
     hidden.objects[0].visible = false;
     assert_eq!(
@@ -266,7 +266,7 @@ fn what_cannot_be_matched_is_said() {
     let alone = Scene { variants: Vec::new(), ..phong };
     assert_eq!(
         error(&alone, What::Lobe, &["alpha"]),
-        "there is no view B to be matched; the scene has only view A"
+        "there is no view B to match; the scene has only view A"
     );
     let cancelled = Progress { tell: &|_, _| (), cancelled: &|| true };
     let scene = scene(("phong", &[]), ("blinn_phong", &[]));

@@ -2,15 +2,11 @@
 
 use std::ops::DerefMut;
 
-use bevy_egui::egui::{
-    self, Align, Button, Id, Key, Layout, RichText, TextEdit, Ui, WidgetInfo, Window, vec2,
-};
+use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, RichText, TextEdit, Ui, vec2};
 
 use super::{
-    icon,
-    state::{
-        Action, BUILT_IN, ModelCommand, ModelDraft, NameProblem, PictureArea, Session, Severity, check_name,
-    },
+    Panel, PanelContext, Place, draft, icon, is_panel,
+    state::{Action, BUILT_IN, ModelCommand, ModelDraft, NameProblem, Over, Session, Severity, check_name},
     theme::{self, Palette},
 };
 use crate::files::Shown as _;
@@ -75,37 +71,36 @@ pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Actio
     actions
 }
 
-/// The dialog that asks for the name of a new model, shown while there is a draft. It does not block the window.
-pub fn show(ctx: &egui::Context, session: &Session, area: &PictureArea, registry: &Registry) -> Vec<Action> {
-    let Some(draft) = &session.draft else {
-        ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
-        return Vec::new();
-    };
-    let mut actions = Vec::new();
-    let title = match &draft.of {
-        Some(of) => {
-            let name = registry.model(of).map_or(of.as_str(), |m| m.declaration.name);
-            format!("{name} as a custom model")
-        }
-        None => "A new reflection model".to_owned(),
-    };
-    let mut open = true;
-    Window::new(RichText::new(title).heading())
-        .id(Id::new("model draft"))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_width(440.0)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(area.rect.center())
-        .show(ctx, |ui| {
-            ui.set_width(440.0);
-            actions.extend(ask(ui, session, registry, draft));
-        });
-    if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {
-        actions.push(Action::Model(ModelCommand::Cancel));
+/// The dialog that asks for the name of a new model.
+pub(super) struct Draft;
+
+impl Panel for Draft {
+    is_panel!("model draft", "A new reflection model", Place::Over(Over::Window));
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.draft.is_some()
     }
-    actions
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry) = (context.session(), context.registry());
+        let Some(draft) = &session.draft else {
+            ui.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
+            return;
+        };
+        let title = match &draft.of {
+            Some(of) => {
+                let name = registry.model(of).map_or(of.as_str(), |m| m.declaration.name);
+                format!("{name} as a custom model")
+            }
+            None => self.title().to_owned(),
+        };
+        let mut actions = Vec::new();
+        let ask = |ui: &mut Ui| actions = ask(ui, session, registry, draft);
+        if !draft::window(ui, self.id(), title, context, ask) {
+            actions.push(Action::Model(ModelCommand::Cancel));
+        }
+        context.actions.extend(actions);
+    }
 }
 
 const FOCUSED: &str = "model draft focused";
@@ -165,21 +160,11 @@ fn name_field(ui: &mut Ui, draft: &ModelDraft, is_right: bool, actions: &mut Vec
         )
         .show(ui);
     let response = edit.response.response;
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, &draft.name, &text, "");
-        info.label = Some("Name of the model".to_owned());
-        info
-    });
+    theme::names_field(&response, "Name of the model", [&draft.name, &text, ""]);
     if !ui.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default(Id::new(FOCUSED)), true)) {
         response.request_focus();
         // Typing replaces the suggested name.
-        let mut state = edit.state;
-        let all = egui::text::CCursorRange::two(
-            egui::text::CCursor::new(0),
-            egui::text::CCursor::new(draft.name.chars().count()),
-        );
-        state.cursor.set_char_range(Some(all));
-        state.store(ui.ctx(), id);
+        theme::select_all(ui, id, &draft.name);
     }
     if response.changed() {
         actions.push(Action::Model(ModelCommand::Type(text)));

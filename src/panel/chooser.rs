@@ -8,10 +8,10 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    author,
+    Panel, PanelContext, Place, author,
     icon::{self, Icon},
-    keys,
-    state::{Action, Session, ViewChange},
+    is_panel, keys,
+    state::{Action, Over, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
@@ -155,34 +155,10 @@ pub fn list<'e, T>(
     let mut found = find(&search);
     let before: Option<usize> = ui.data(|d| d.get_temp(row_id));
     let start = found.iter().position(|t| entry(t).current).unwrap_or(0);
-    let mut row = before.unwrap_or(start).min(found.len().saturating_sub(1));
-    let mut moved = before.is_none();
-    let mut chosen = None;
-    // If Tab has reached a button below, Enter presses that button.
-    let elsewhere = ui.memory(|m| m.focused()).is_some_and(|focus| focus != id.with("text"));
-    // Consumed before the text field sees them.
-    ui.input_mut(|i| {
-        if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < found.len() {
-            (row, moved) = (row + 1, true);
-        }
-        if i.consume_key(Modifiers::NONE, Key::ArrowUp) && row > 0 {
-            (row, moved) = (row - 1, true);
-        }
-        if !elsewhere && i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
-            chosen = Some(row);
-        }
-    });
-    let edit = TextEdit::singleline(&mut search)
-        .id(id.with("text"))
-        .hint_text(words.hint)
-        .margin(if words.roomy { Margin::symmetric(10, 7) } else { Margin::symmetric(4, 2) })
-        .desired_width(f32::INFINITY);
-    let edit = ui.add(edit);
-    edit.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, "", &search, words.hint);
-        info.label = Some(words.label.to_owned());
-        info
-    });
+    let at = before.unwrap_or(start).min(found.len().saturating_sub(1));
+    let (mut row, mut chosen) = walked(ui, id, at, found.len());
+    let moved = before.is_none() || row != at;
+    let edit = search_field(ui, id, words, &mut search);
     if before.is_none() {
         edit.request_focus();
     }
@@ -212,19 +188,7 @@ pub fn list<'e, T>(
             if response.clicked() {
                 chosen = Some(i);
             }
-            // Beside the list: anywhere else it would hide the next entries.
-            let screen = ui.ctx().content_rect();
-            let room = (screen.right() - response.rect.right()).max(response.rect.left() - screen.left());
-            if room < TIP + 32.0 {
-                continue;
-            }
-            let mut tooltip = Tooltip::for_enabled(&response);
-            let popup = tooltip.popup.align(RectAlign::RIGHT_START);
-            tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0);
-            tooltip.show(|ui| {
-                ui.set_max_width(TIP);
-                tip(ui, item);
-            });
+            beside(ui, &response, |ui| tip(ui, item));
         }
     });
     ui.separator();
@@ -237,6 +201,50 @@ pub fn list<'e, T>(
         d.insert_temp(search_id, search);
     });
     chosen.filter(|i| !entry(&found[*i]).off).map(|i| found.swap_remove(i))
+}
+
+/// The row that the arrow keys reach from another, and the one that Enter chooses. The keys are consumed before the
+/// search field sees them.
+fn walked(ui: &Ui, id: Id, mut row: usize, count: usize) -> (usize, Option<usize>) {
+    // If Tab has reached a button below, Enter presses that button.
+    let elsewhere = ui.memory(|m| m.focused()).is_some_and(|focus| focus != id.with("text"));
+    ui.input_mut(|i| {
+        if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < count {
+            row += 1;
+        }
+        if i.consume_key(Modifiers::NONE, Key::ArrowUp) && row > 0 {
+            row -= 1;
+        }
+        let enters = !elsewhere && i.consume_key(Modifiers::NONE, Key::Enter) && row < count;
+        (row, enters.then_some(row))
+    })
+}
+
+fn search_field(ui: &mut Ui, id: Id, words: Words, search: &mut String) -> egui::Response {
+    let edit = TextEdit::singleline(search)
+        .id(id.with("text"))
+        .hint_text(words.hint)
+        .margin(if words.roomy { Margin::symmetric(10, 7) } else { Margin::symmetric(4, 2) })
+        .desired_width(f32::INFINITY);
+    let edit = ui.add(edit);
+    theme::names_field(&edit, words.label, ["", &*search, words.hint]);
+    edit
+}
+
+/// The tooltip of an entry, beside the list: anywhere else it would hide the next entries.
+fn beside(ui: &Ui, entry: &egui::Response, tip: impl FnOnce(&mut Ui)) {
+    let screen = ui.ctx().content_rect();
+    let room = (screen.right() - entry.rect.right()).max(entry.rect.left() - screen.left());
+    if room < TIP + 32.0 {
+        return;
+    }
+    let mut tooltip = Tooltip::for_enabled(entry);
+    let popup = tooltip.popup.align(RectAlign::RIGHT_START);
+    tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0);
+    tooltip.show(|ui| {
+        ui.set_max_width(TIP);
+        tip(ui);
+    });
 }
 
 /// The width of the column of keys, points.
@@ -367,13 +375,6 @@ pub const WIDTH: f32 = 160.0;
 /// Id of the list at the top of the window.
 const CHOOSER: &str = "reflection chooser";
 
-/// Resets the closed list so that it opens fresh, even if its button is hidden.
-pub(super) fn closed(ctx: &egui::Context, session: &Session) {
-    if !session.view.chooser_open {
-        forget(ctx, Id::new(CHOOSER));
-    }
-}
-
 /// Shows the button and, if open, the list. They refer to the selected object's model override if there is one,
 /// otherwise to the model of the scene.
 pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
@@ -415,14 +416,27 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
 }
 
 /// The list alone, in a corner of a presentation, which has no bar; the equation is in the opposite corner.
-pub(super) fn alone(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
-    if !session.view.chooser_open {
-        return Vec::new();
+pub(super) struct Alone;
+
+impl Panel for Alone {
+    is_panel!("models", "Reflection models", Place::Over(Over::List));
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.view.chooser_open
     }
-    let screen = ctx.content_rect();
-    let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
-    let popup = Popup::new(Id::new(CHOOSER), ctx.clone(), at, egui::LayerId::background());
-    opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, session, registry)
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry) = (context.session(), context.registry());
+        if !session.view.chooser_open {
+            forget(ui.ctx(), Id::new(CHOOSER));
+        } else if session.view.presenting {
+            let screen = ui.ctx().content_rect();
+            let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
+            let popup = Popup::new(Id::new(CHOOSER), ui.ctx().clone(), at, egui::LayerId::background());
+            let popup = popup.align(RectAlign::BOTTOM_END);
+            context.actions.extend(opened(popup, screen.height() - 172.0, session, registry));
+        }
+    }
 }
 
 /// Shows the list in its popup, at most `height` points high.

@@ -5,9 +5,6 @@ use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 use super::state::{Badge, Clipping, Session, Severity};
 use crate::scene::limits;
 
-/// Share of clipped pixels that raises no warning: sharp highlights. New lights stay within this share.
-pub const TOLERATED: f64 = 0.001;
-
 /// Formats a share as a percentage: "3 %", "under 0.1 %".
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -24,7 +21,7 @@ fn percent(share: f64) -> String {
 pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
     let clipping = session.facts.clipping.get(view)?.as_ref()?;
     let share = clipping.pixels() as f64 / pixels.max(1.0);
-    if share < TOLERATED && !session.view.show_clipping {
+    if share < Clipping::TOLERATED && !session.view.show_clipping {
         return None;
     }
     let share = percent(share);

@@ -131,21 +131,11 @@ fn header(
     let active = session.active() == view;
     ui.painter().rect_filled(rect, 0.0, palette.panel);
     let rule = if active && several { palette.accent } else { palette.line };
-    ui.painter().hline(
-        rect.x_range(),
-        rect.bottom() - 1.0,
-        Stroke::new(if active { 2.0 } else { 1.0 }, rule),
-    );
+    let stroke = Stroke::new(if active { 2.0 } else { 1.0 }, rule);
+    ui.painter().hline(rect.x_range(), rect.bottom() - 1.0, stroke);
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let parts = in_parts(session, view, registry);
     let text = line(&parts);
-    let comparison = &session.document.comparison;
-    // When views alternate, the visible one stands out.
-    let in_turn = comparison.layout.is_in_turn();
-    let hidden = in_turn && view != if session.view.blinking { comparison.with } else { 0 };
-    let lit = if in_turn { !hidden } else { active };
-    let ink = if hidden { palette.weak } else { palette.text };
-    let scale = rect.height() / HEADER;
     let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
     click.widget_info(|| {
         WidgetInfo::selected(WidgetType::RadioButton, true, active, format!("View {letter}: {text}"))
@@ -153,69 +143,84 @@ fn header(
     if click.clicked() {
         actions.push(Action::Compare(CompareCommand::Activate(view)));
     }
-    let inner = rect.shrink2(vec2(6.0, 2.0));
-    ui.scope_builder(
-        UiBuilder::new().max_rect(inner).layout(Direction::right_to_left(Align::Center)),
-        |ui| {
-            if !session.view.presenting {
-                menu(ui, view, session, actions);
-            }
-            if !several {
-                for other in (0..=session.document.variants.len()).rev() {
-                    let name = LETTERS[other];
-                    let on = other == view;
-                    let text =
-                        RichText::new(name).small().color(if on { palette.text } else { palette.weak });
-                    let button = ui.add(Button::new(text).selected(on).min_size(vec2(22.0, 20.0)));
-                    button.widget_info(|| {
-                        WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("Show view {name}"))
-                    });
-                    if button.clicked() {
-                        actions.push(Action::Compare(CompareCommand::Activate(other)));
-                    }
-                    button
-                        .on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
-                }
-            }
-            ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
-                let size = scale * TextStyle::Body.resolve(ui.style()).size;
-                let badge = egui::Rect::from_center_size(
-                    pos2(ui.max_rect().left() + 10.0 * scale, rect.center().y),
-                    vec2(20.0, 20.0) * scale,
-                );
-                let (fill, on) = if lit { (palette.accent, palette.panel) } else { (palette.field, ink) };
-                ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-                let font = egui::FontId::new(size, theme::semibold());
-                ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
-                let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
-                let at = badge.right_center() + vec2(8.0, 0.0) * scale;
-                // With symbols as in the equation, if there is room. A presentation says the rest below.
-                let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
-                let less = if session.view.presenting { 0.0 } else { dots.size().x };
-                let all = parts.len();
-                let parts = fitting(ui, parts, size, ink, room - less);
-                let cut = parts.len() < all && !session.view.presenting;
-                let lines = Lines::within(ui, parts, size, ink, room, 1);
-                if lines.size.y < 1.9 * size && lines.size.x <= room {
-                    let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
-                    if cut {
-                        ui.painter().galley(place.right_top(), dots, ink);
-                    }
-                    lines.paint(ui, place.min, ink);
-                } else {
-                    let galley = theme::elided(ui, &text, egui::FontId::proportional(size), ink, room);
-                    let at = Align2::LEFT_CENTER.anchor_size(at, galley.size());
-                    ui.painter().galley(at.min, galley, ink);
-                }
-            });
-        },
-    );
+    let inner = UiBuilder::new().max_rect(rect.shrink2(vec2(6.0, 2.0)));
+    ui.scope_builder(inner.layout(Direction::right_to_left(Align::Center)), |ui| {
+        if !session.view.presenting {
+            menu(ui, view, session, actions);
+        }
+        if !several {
+            switches(ui, view, session, registry, actions);
+        }
+        ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
+            title(ui, rect, view, parts, &text, session);
+        });
+    });
     click.on_hover_ui(|ui| {
         ui.set_max_width(320.0);
         ui.label(theme::strong(ui, format!("View {letter}")));
         ui.label(if view == 0 { "The scene itself.".to_owned() } else { text });
         ui.label(theme::small(ui, "Click: the panels show and change this view."));
     });
+}
+
+/// A button for each view, where one is shown at a time.
+fn switches(ui: &mut Ui, view: usize, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    for other in (0..=session.document.variants.len()).rev() {
+        let name = LETTERS[other];
+        let on = other == view;
+        let text = RichText::new(name).small().color(if on { palette.text } else { palette.weak });
+        let button = ui.add(Button::new(text).selected(on).min_size(vec2(22.0, 20.0)));
+        button.widget_info(|| {
+            WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("Show view {name}"))
+        });
+        if button.clicked() {
+            actions.push(Action::Compare(CompareCommand::Activate(other)));
+        }
+        button.on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
+    }
+}
+
+/// The letter of a view, and how it differs from A.
+fn title(ui: &mut Ui, header: Rect, view: usize, parts: Vec<Part>, text: &str, session: &Session) {
+    let palette = Palette::here(ui);
+    let comparison = &session.document.comparison;
+    // When views alternate, the visible one stands out.
+    let in_turn = comparison.layout.is_in_turn();
+    let hidden = in_turn && view != if session.view.blinking { comparison.with } else { 0 };
+    let lit = if in_turn { !hidden } else { session.active() == view };
+    let ink = if hidden { palette.weak } else { palette.text };
+    let scale = header.height() / HEADER;
+    let size = scale * TextStyle::Body.resolve(ui.style()).size;
+    let badge = Rect::from_center_size(
+        pos2(ui.max_rect().left() + 10.0 * scale, header.center().y),
+        vec2(20.0, 20.0) * scale,
+    );
+    let (fill, on) = if lit { (palette.accent, palette.panel) } else { (palette.field, ink) };
+    ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    let font = egui::FontId::new(size, theme::semibold());
+    let letter = LETTERS[view.min(MAX_VARIANTS)];
+    ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
+    let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
+    let at = badge.right_center() + vec2(8.0, 0.0) * scale;
+    // With symbols as in the equation, if there is room. A presentation says the rest below.
+    let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
+    let less = if session.view.presenting { 0.0 } else { dots.size().x };
+    let all = parts.len();
+    let parts = fitting(ui, parts, size, ink, room - less);
+    let cut = parts.len() < all && !session.view.presenting;
+    let lines = Lines::within(ui, parts, size, ink, room, 1);
+    if lines.size.y < 1.9 * size && lines.size.x <= room {
+        let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
+        if cut {
+            ui.painter().galley(place.right_top(), dots, ink);
+        }
+        lines.paint(ui, place.min, ink);
+    } else {
+        let galley = theme::elided(ui, text, egui::FontId::proportional(size), ink, room);
+        let at = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        ui.painter().galley(at.min, galley, ink);
+    }
 }
 
 /// The leading parts that fit into one line.

@@ -4,10 +4,10 @@ use bevy::{
     app::App,
     ecs::{resource::Resource, world::World},
 };
-use bevy_egui::egui::Ui;
+use bevy_egui::egui::{Rect, Ui};
 
 use super::{
-    state::{Action, PanelInfo, Place, Session, Severity},
+    state::{Action, Over, PanelInfo, PictureArea, Place, Session, Severity},
     theme::Palette,
 };
 use crate::{
@@ -25,6 +25,11 @@ pub trait Panel: Send + Sync + 'static {
     fn title(&self) -> &'static str;
     /// The place.
     fn place(&self) -> Place;
+    /// False while there is nothing to show. What is open over the rest hides the tooltips below it, or takes the input:
+    /// see [`Over`].
+    fn is_open(&self, _session: &Session) -> bool {
+        true
+    }
     /// A note on its tab beside the title, such as the number of errors.
     fn note(&self, _session: &Session) -> Option<(Severity, String)> {
         None
@@ -32,6 +37,24 @@ pub trait Panel: Send + Sync + 'static {
     /// Shows it.
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>);
 }
+
+/// Declares the id, the title and the place of a panel of the window.
+macro_rules! is_panel {
+    ($id:expr, $title:expr, $place:expr) => {
+        fn id(&self) -> &'static str {
+            $id
+        }
+
+        fn title(&self) -> &'static str {
+            $title
+        }
+
+        fn place(&self) -> Place {
+            $place
+        }
+    };
+}
+pub(super) use is_panel;
 
 /// A change of the world that waits until all panels have been shown.
 type Command = Box<dyn FnOnce(&mut World) + Send + Sync>;
@@ -41,13 +64,27 @@ pub struct PanelContext<'a> {
     session: &'a Session,
     registry: &'a Registry,
     world: &'a World,
+    area: &'a PictureArea,
+    /// The area of the picture in this frame, as far as it is known, and the places that can be clicked over it.
+    pub(super) picture: (PictureArea, Vec<Rect>),
     pub(super) actions: Vec<Action>,
     queue: Vec<Command>,
 }
 
 impl<'a> PanelContext<'a> {
-    pub(super) fn new(session: &'a Session, registry: &'a Registry, world: &'a World) -> Self {
-        Self { session, registry, world, actions: Vec::new(), queue: Vec::new() }
+    pub(super) fn new(
+        session: &'a Session,
+        registry: &'a Registry,
+        world: &'a World,
+        area: &'a PictureArea,
+    ) -> Self {
+        let (picture, actions, queue) = Default::default();
+        Self { session, registry, world, area, picture, actions, queue }
+    }
+
+    /// The area of the picture in the previous frame.
+    pub(super) fn area(&self) -> &'a PictureArea {
+        self.area
     }
 
     /// The state of the window: what is selected, what is shown, the messages.
@@ -103,9 +140,9 @@ impl<'a> PanelContext<'a> {
         self.queue.push(Box::new(command));
     }
 
-    /// The actions and commands of the panels.
-    pub(super) fn into_parts(self) -> (Vec<Action>, Vec<Command>) {
-        (self.actions, self.queue)
+    /// The actions and commands of the panels, and the picture.
+    pub(super) fn into_parts(self) -> (Vec<Action>, Vec<Command>, (PictureArea, Vec<Rect>)) {
+        (self.actions, self.queue, self.picture)
     }
 }
 
@@ -129,6 +166,10 @@ impl<P: Panel> Panel for Guarded<P> {
         self.panel.place()
     }
 
+    fn is_open(&self, session: &Session) -> bool {
+        self.panel.is_open(session)
+    }
+
     fn note(&self, session: &Session) -> Option<(Severity, String)> {
         self.panel.note(session)
     }
@@ -144,9 +185,7 @@ impl<P: Panel> Panel for Guarded<P> {
         let Err(payload) = catch(|| self.panel.show(ui, context)) else { return };
         let why = message(&*payload).to_owned();
         let (title, id) = (self.panel.title(), self.panel.id());
-        let text = format!(
-            "The panel “{title}” ({id}) stopped, since it panicked: {why}. The window goes on without it."
-        );
+        let text = format!("The panel “{title}” ({id}) crashed: {why}. The window continues without it.");
         context.act(Action::Say(Severity::Error, text));
         self.stopped = Some(why);
     }
@@ -213,6 +252,17 @@ impl Panels {
             .iter_mut()
             .map(|listed| (listed.info(), &mut *listed.panel))
             .filter(move |(info, _)| info.place == place && !(info.guest && session.view.hides(info.id)))
+    }
+
+    /// Shows the panels at a place.
+    pub(super) fn show(&mut self, ui: &mut Ui, place: Place, context: &mut PanelContext<'_>) {
+        self.at(place, context.session()).for_each(|(_, panel)| panel.show(ui, context));
+    }
+
+    /// True if an overlay of this kind is open.
+    pub(super) fn is_open(&self, over: Over, session: &Session) -> bool {
+        let is = |panel: &dyn Panel| panel.place() == Place::Over(over) && panel.is_open(session);
+        self.list.iter().any(|listed| is(&*listed.panel))
     }
 
     pub(super) fn queue(&mut self, commands: Vec<Command>) {

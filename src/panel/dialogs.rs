@@ -94,29 +94,16 @@ enum Field {
 
 impl Default for Dialogs {
     fn default() -> Self {
-        let dialog = |title: &str, id: &'static str| {
-            FileDialog::new()
-                .title(title)
-                .id(id)
-                .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
-                .labels(labels())
-                .default_file_name("scene.json")
-        };
-        let folder = FileDialog::new()
-            .title("Export the shaders to which folder?")
-            .id("folder dialog")
-            .labels(FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() })
-            .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
-        let mut open = dialog("Open a scene", "open dialog");
-        // A new folder never contains a file to open.
-        open.config_mut().show_new_folder_button = false;
-        open.config_mut().keybindings.new_folder.clear();
+        let own = FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() };
+        let lessons = "Lessons (*.md)";
         Self {
-            open,
-            save: dialog("Save the scene as", "save dialog"),
-            folder,
+            open: picker("Open a scene", "open dialog").default_file_name("scene.json"),
+            save: dialog("Save the scene as", "save dialog", labels()).default_file_name("scene.json"),
+            folder: dialog("Export the shaders to which folder?", "folder dialog", own),
             file: FileDialog::new(),
-            lesson: lesson_dialog(),
+            lesson: picker("Open a lesson", "lesson dialog")
+                .add_file_filter_extensions(lessons, vec!["md"])
+                .default_file_filter(lessons),
             export: FileDialog::new(),
             exporting: None,
             wanted: None,
@@ -132,15 +119,14 @@ fn labels() -> FileDialogLabels {
     FileDialogLabels { selected_file: "File:".to_owned(), ..FileDialogLabels::default() }
 }
 
-fn lesson_dialog() -> FileDialog {
-    let filter = "Lessons (*.md)";
-    let mut dialog = FileDialog::new()
-        .title("Open a lesson")
-        .labels(labels())
-        .id("lesson dialog")
-        .add_file_filter_extensions(filter, vec!["md"])
-        .default_file_filter(filter)
-        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
+/// A dialog in the middle of the window.
+fn dialog(title: &str, id: &'static str, labels: FileDialogLabels) -> FileDialog {
+    FileDialog::new().title(title).id(id).labels(labels).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+}
+
+/// A dialog that selects a file to read: a new folder never contains one.
+fn picker(title: &str, id: &'static str) -> FileDialog {
+    let mut dialog = dialog(title, id, labels());
     dialog.config_mut().show_new_folder_button = false;
     dialog.config_mut().keybindings.new_folder.clear();
     dialog
@@ -174,16 +160,9 @@ fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
 fn file_dialog(format: &FileFormat) -> FileDialog {
     let extensions: Vec<_> = format.extensions.iter().map(|extension| format!("*.{extension}")).collect();
     let filter = format!("Files ({})", extensions.join(", "));
-    let mut dialog = FileDialog::new()
-        .title(&format!("Choose {}", format.name))
-        .labels(labels())
-        .id("file dialog")
+    picker(&format!("Choose {}", format.name), "file dialog")
         .add_file_filter_extensions(&filter, format.extensions.to_vec())
         .default_file_filter(&filter)
-        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
-    dialog.config_mut().show_new_folder_button = false;
-    dialog.config_mut().keybindings.new_folder.clear();
-    dialog
 }
 
 /// The dialog that selects the destination of an export, a picture or a plot.
@@ -202,16 +181,9 @@ fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> Fi
         }
         Exported::Plot => ("Export the plot".to_owned(), "Export", super::plots::file_name(session)),
     };
-    let mut dialog = FileDialog::new()
-        .title(&title)
-        .id("export dialog")
-        .labels(FileDialogLabels {
-            save_button: button.to_owned(),
-            file_name: "Name:".to_owned(),
-            ..FileDialogLabels::default()
-        })
-        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
-        .default_file_name(&name);
+    let (save_button, file_name) = (button.to_owned(), "Name:".to_owned());
+    let labels = FileDialogLabels { save_button, file_name, ..FileDialogLabels::default() };
+    let mut dialog = dialog(&title, "export dialog", labels).default_file_name(&name);
     if matches!(what, Exported::Plot) {
         super::plots::offer(&mut dialog);
     }

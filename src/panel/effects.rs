@@ -18,11 +18,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
         Effect::OpenFile(path) => return open(session, registry, path, files),
         Effect::SaveFile { path, overwrite } => {
             session.settle_comparison();
-            return if session.lesson.is_some() {
-                save_copy(session, registry, path, overwrite, files)
-            } else {
-                save(session, registry, path, overwrite, files)
-            };
+            return save(session, registry, path, overwrite, files);
         }
         Effect::CheckFile { discard } => return reload::check(session, registry, discard, files),
         Effect::ExpectFile { path, version } => files.expect(&path, Some(version)),
@@ -67,23 +63,7 @@ fn open(session: &mut Session, registry: &Registry, path: PathBuf, files: &mut d
     Vec::new()
 }
 
-/// Saves a copy of the scene of a lesson.
-fn save_copy(
-    session: &mut Session,
-    registry: &Registry,
-    path: PathBuf,
-    overwrite: bool,
-    files: &mut dyn Files,
-) -> Vec<Effect> {
-    match files.save_copy(&path, &session.document.named(registry), registry, overwrite) {
-        Saved::Done => return session.copy_saved(&path),
-        Saved::ChangedOnDisk => session.questions.ask(Question::ReplaceScene { path }),
-        Saved::OtherFormat(why) => return other_format(session, why),
-        Saved::Failed(why) => session.say(Severity::Error, why),
-    }
-    Vec::new()
-}
-
+/// Saves the document, or a copy of the scene of the open lesson.
 fn save(
     session: &mut Session,
     registry: &Registry,
@@ -91,20 +71,26 @@ fn save(
     overwrite: bool,
     files: &mut dyn Files,
 ) -> Vec<Effect> {
-    match files.save(&path, &session.document.named(registry), registry, overwrite) {
+    let is_copy = session.lesson.is_some();
+    let scene = session.document.named(registry);
+    let saved = match is_copy {
+        true => files.save_copy(&path, &scene, registry, overwrite),
+        false => files.save(&path, &scene, registry, overwrite),
+    };
+    match saved {
+        Saved::Done if is_copy => return session.copy_saved(&path),
         Saved::Done => return session.saved(path, registry),
+        Saved::ChangedOnDisk if is_copy => session.questions.ask(Question::ReplaceScene { path }),
         Saved::ChangedOnDisk => session.questions.ask(Question::ChangedOnDisk { path }),
-        Saved::OtherFormat(why) => return other_format(session, why),
+        // Asks for a file that can be written. A pending action stays pending.
+        Saved::OtherFormat(why) => {
+            session.say(Severity::Warning, why);
+            return vec![Effect::PickSave];
+        }
         Saved::Failed(why) => {
             session.questions.not_saved();
             session.say(Severity::Error, why);
         }
     }
     Vec::new()
-}
-
-/// Asks for a file that can be written. A pending action stays pending.
-fn other_format(session: &mut Session, why: String) -> Vec<Effect> {
-    session.say(Severity::Warning, why);
-    vec![Effect::PickSave]
 }

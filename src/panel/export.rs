@@ -70,28 +70,23 @@ pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, act
         "Copy the shader of {}, lit by the lights of this scene: alone, without what it does not use",
         name(session, object)
     );
-    ui.menu_button("Copy as…", |ui| {
+    let menu = ui.menu_button("Copy as…", |ui| {
         for form in FORMS.iter().filter(|form| shaders::is_text(form)) {
             if ui.button(form.name).clicked() {
-                let request = Request {
-                    scene: &session.document,
-                    registry,
-                    stem: "scene",
-                    size: SIZE,
-                    object,
-                    point: None,
-                };
-                match shaders::text(form, &request) {
-                    Ok(text) => {
-                        actions.push(Action::Copy(text));
-                        actions.push(Action::Say(Severity::Info, format!("Copied: {}.", form.name)));
-                    }
-                    Err(error) => actions.push(Action::Say(Severity::Error, format!("Not copied: {error}."))),
-                }
+                actions.extend(copied(form, object, session, registry));
                 ui.close();
             }
         }
-    })
-    .response
-    .on_hover_text(help);
+    });
+    menu.response.on_hover_text(help);
+}
+
+/// The shader of an object for the clipboard, and what is said of it.
+fn copied(form: &Form, object: usize, session: &Session, registry: &Registry) -> Vec<Action> {
+    let scene = &session.document;
+    let request = Request { scene, registry, stem: "scene", size: SIZE, object, point: None };
+    match shaders::text(form, &request) {
+        Ok(text) => vec![Action::Copy(text), Action::Say(Severity::Info, format!("Copied: {}.", form.name))],
+        Err(error) => vec![Action::Say(Severity::Error, format!("Not copied: {error}."))],
+    }
 }

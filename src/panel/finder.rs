@@ -3,15 +3,17 @@
 
 use std::cell::Cell;
 
-use bevy_egui::egui::{Context, Frame, Id, LayerId, Popup, PopupCloseBehavior, RectAlign, pos2};
+use bevy_egui::egui::{Context, Frame, Id, LayerId, Popup, PopupCloseBehavior, RectAlign, Ui, pos2};
 
 use super::{
+    Panel, PanelContext, Place,
     chooser::{self, Entry, Words},
     command::{self, Command, Mark, Menu},
     explain::has_sides,
+    is_panel,
     lesson::point,
     rank::rank,
-    state::{Action, Session, ViewChange},
+    state::{Action, Over, Session, ViewChange},
 };
 use crate::{
     document::Selection,
@@ -83,12 +85,26 @@ enum Does {
     Seek(String),
 }
 
-/// Shows it while it is open.
-pub(super) fn show(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
-    if !session.view.finder_open {
-        chooser::forget(ctx, id());
-        return Vec::new();
+/// See the module.
+pub(super) struct Finder;
+
+impl Panel for Finder {
+    is_panel!("finder", WORDS.label, Place::Over(Over::List));
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.view.finder_open
     }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        if self.is_open(context.session()) {
+            context.actions.extend(show(ui.ctx(), context.session(), context.registry()));
+        } else {
+            chooser::forget(ui.ctx(), id());
+        }
+    }
+}
+
+fn show(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let all = everything(ctx, session, registry);
     let screen = ctx.content_rect();
     let width = WIDTH.min(screen.width() - 2.0 * MARGIN);

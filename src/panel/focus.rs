@@ -1,6 +1,9 @@
 //! The keyboard focus: navigation with F6, and a visible frame.
 
-use bevy_egui::egui::{self, Context, Event, Id, Order, Rect, Stroke, StrokeKind, WidgetRect, accesskit};
+use bevy_egui::egui::{
+    self, Context, Event, EventFilter, Id, Key, Order, Rect, Response, Stroke, StrokeKind, Ui, WidgetRect,
+    accesskit,
+};
 
 use super::{Place, theme::Palette};
 
@@ -9,8 +12,6 @@ use super::{Place, theme::Palette};
 pub(super) enum Region {
     /// The panels at one side.
     Panel(Place),
-    /// The strip of examples.
-    Examples,
     /// Widgets over the picture: badges, arrows.
     Picture,
 }
@@ -77,6 +78,21 @@ pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<Wi
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     stops
+}
+
+/// Steps that arrow keys ask of a widget with the focus, to the right and downwards, if it takes the keys of that
+/// axis; with Shift ten at once.
+pub(super) fn steps(ui: &Ui, response: &Response, [across, along]: [bool; 2]) -> [f64; 2] {
+    if !response.has_focus() {
+        return [0.0; 2];
+    }
+    let filter = EventFilter { horizontal_arrows: across, vertical_arrows: along, ..EventFilter::default() };
+    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    ui.input(|i| {
+        let presses = |more, less| i.num_presses(more) as f64 - i.num_presses(less) as f64;
+        let steps = [presses(Key::ArrowRight, Key::ArrowLeft), presses(Key::ArrowDown, Key::ArrowUp)];
+        steps.map(|steps| if i.modifiers.shift { 10.0 * steps } else { steps })
+    })
 }
 
 pub(super) fn focused(ctx: &Context) -> Option<WidgetRect> {

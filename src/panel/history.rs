@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
 
-use super::{Panel, PanelContext, Place, state::Action, theme::Palette};
+use super::{Panel, PanelContext, Place, is_panel, state::Action, theme::Palette};
 
 /// Id of the tab.
 pub const HISTORY_TAB: &str = "history";
@@ -12,17 +12,7 @@ pub const HISTORY_TAB: &str = "history";
 pub struct History;
 
 impl Panel for History {
-    fn id(&self) -> &'static str {
-        HISTORY_TAB
-    }
-
-    fn title(&self) -> &'static str {
-        "History"
-    }
-
-    fn place(&self) -> Place {
-        Place::Bottom
-    }
+    is_panel!(HISTORY_TAB, "History", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, actions) = (context.session(), &mut context.actions);

@@ -6,7 +6,7 @@ use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 31] = [
+pub const PAGES: [(&str, &str); 32] = [
     ("README", include_str!("../../docs/README.md")),
     ("window", include_str!("../../docs/window.md")),
     ("keys", include_str!("../../docs/keys.md")),
@@ -27,6 +27,7 @@ pub const PAGES: [(&str, &str); 31] = [
     ("extending/object-type", include_str!("../../docs/extending/object-type.md")),
     ("extending/shading-model", include_str!("../../docs/extending/shading-model.md")),
     ("extending/parameters", include_str!("../../docs/extending/parameters.md")),
+    ("extending/scene-field", include_str!("../../docs/extending/scene-field.md")),
     ("extending/panel", include_str!("../../docs/extending/panel.md")),
     ("extending/systems", include_str!("../../docs/extending/systems.md")),
     ("extending/scene-format", include_str!("../../docs/extending/scene-format.md")),

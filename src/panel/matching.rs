@@ -1,13 +1,11 @@
 //! Matching: the dialog that matches a view to view A, and the progress of the running match.
 
-use bevy_egui::egui::{
-    self, Align, Button, Id, Key, Layout, RichText, ScrollArea, Ui, WidgetInfo, WidgetType, Window, vec2,
-};
+use bevy_egui::egui::{self, Align, Button, Id, Layout, ScrollArea, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    export,
+    Panel, PanelContext, Place, draft, export, is_panel,
     segmented::segmented,
-    state::{Action, MatchCommand, MatchDraft, PictureArea, Session},
+    state::{Action, MatchCommand, MatchDraft, Over, Session},
     theme::{self, Palette},
 };
 use crate::{
@@ -19,8 +17,6 @@ use crate::{
     },
 };
 
-/// Width of the dialog, in points.
-const WIDTH: f32 = 440.0;
 /// Height of the description of an option, in points: the same for all, so that nothing moves.
 const SENTENCE: f32 = 34.0;
 /// Maximum height of the parameter list, in points.
@@ -43,41 +39,34 @@ pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
     button.on_hover_text(help).clicked()
 }
 
-/// Shows the dialog while there is a draft. It does not block the window.
-pub(super) fn show(
-    ctx: &egui::Context,
-    session: &Session,
-    area: &PictureArea,
-    registry: &Registry,
-) -> Vec<Action> {
-    let Some(draft) = &session.match_draft else {
-        ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
-        return Vec::new();
-    };
-    let close = || vec![Action::Match(MatchCommand::Close)];
-    // The view is gone, or shows other models now.
-    let now = crate::matching::parameters(&session.document, draft.view, registry);
-    if !now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name)) {
-        return close();
+/// The dialog about the match that is about to start.
+pub(super) struct Draft;
+
+impl Panel for Draft {
+    is_panel!("match draft", "Match to A", Place::Over(Over::Window));
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.match_draft.is_some()
     }
-    let mut actions = Vec::new();
-    let mut open = true;
-    Window::new(RichText::new(format!("Match {} to A", letter(draft.view))).heading())
-        .id(Id::new("match draft"))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_width(WIDTH)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(area.rect.center())
-        .show(ctx, |ui| {
-            ui.set_width(WIDTH);
-            actions.extend(ask(ui, session, registry, draft));
-        });
-    if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {
-        return close();
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry) = (context.session(), context.registry());
+        let Some(draft) = &session.match_draft else {
+            ui.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
+            return;
+        };
+        // The view may be gone, or show other models now.
+        let now = crate::matching::parameters(&session.document, draft.view, registry);
+        let is_right = now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name));
+        let mut actions = Vec::new();
+        let title = format!("Match {} to A", letter(draft.view));
+        let ask = |ui: &mut Ui| actions = ask(ui, session, registry, draft);
+        if is_right && draft::window(ui, self.id(), title, context, ask) {
+            context.actions.extend(actions);
+        } else {
+            context.act(Action::Match(MatchCommand::Close));
+        }
     }
-    actions
 }
 
 fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) -> Vec<Action> {

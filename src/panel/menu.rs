@@ -93,6 +93,29 @@ pub(super) fn choice(ui: &mut Ui, chosen: bool, text: impl Into<String>, by_key:
     response
 }
 
+/// Steps that the arrow keys ask of a menu, downwards. The others open and close what hangs at an entry, and change
+/// menus (see [`submenu`] and [`bar`]): they do not move the focus.
+fn steps(ctx: &Context) -> isize {
+    let (mut step, mut stays) = (0, false);
+    ctx.input_mut(|input| {
+        input.events.retain(|event| {
+            let Event::Key { key, pressed: true, modifiers: Modifiers::NONE, .. } = event else {
+                return true;
+            };
+            match key {
+                Key::ArrowDown => step += 1,
+                Key::ArrowUp => step -= 1,
+                _ => stays |= [Key::ArrowLeft, Key::ArrowRight].contains(key),
+            }
+            ![Key::ArrowDown, Key::ArrowUp].contains(key)
+        });
+    });
+    if stays {
+        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    }
+    step
+}
+
 /// Lets the arrow keys walk through an open menu or list, however it was opened. Call before the widgets see the keys.
 pub(super) fn walk(ctx: &Context) {
     // A letter with Alt opens a menu, and is no text; on a Mac it is.
@@ -107,29 +130,7 @@ pub(super) fn walk(ctx: &Context) {
     if now.is_some_and(|w| w.sense.senses_drag()) {
         return;
     }
-    let mut step = 0_isize;
-    let mut stays = false;
-    ctx.input_mut(|input| {
-        input.events.retain(|event| {
-            let Event::Key { key, pressed: true, modifiers: Modifiers::NONE, .. } = event else {
-                return true;
-            };
-            match key {
-                Key::ArrowDown => step += 1,
-                Key::ArrowUp => step -= 1,
-                // They open and close what hangs at an entry, and change menus; see `submenu` and `bar`.
-                Key::ArrowLeft | Key::ArrowRight => {
-                    stays = true;
-                    return true;
-                }
-                _ => return true,
-            }
-            false
-        });
-    });
-    if stays {
-        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
-    }
+    let mut step = steps(ctx);
     let entering: Option<(Id, u64)> = ctx.data(|d| d.get_temp(entered()));
     let entering = entering.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last).map(|(menu, _)| menu);
     if entering.is_some() {

@@ -9,8 +9,10 @@ use super::{
     state::Session,
     theme::{self, Palette},
 };
-use crate::document::ObjectField;
-use crate::{registry::Registry, scene::Object};
+use crate::{
+    registry::Registry,
+    scene::{Field, Object},
+};
 
 /// Width of the frame rate, in points.
 const RATE: f32 = 96.0;
@@ -51,21 +53,15 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     });
 }
 
+/// A field of an object, and the id that it gets.
+type Override = (Field, Option<&'static str>);
+
 /// The button and its popup. Returns the requested change.
-pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<ObjectField> {
+pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<Override> {
     let palette = Palette::here(ui);
-    let model_name =
-        |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
-    let shading_name = |id: &str| {
-        registry.shading_model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned())
-    };
-    let own: Vec<String> = object
-        .reflection_model
-        .as_deref()
-        .map(model_name)
-        .into_iter()
-        .chain(object.shading_model.as_deref().map(|id| format!("{} shading", shading_name(id))))
-        .collect();
+    let own = (object.reflection_model.as_deref().map(|id| model_name(id, registry)).into_iter())
+        .chain(object.shading_model.as_deref().map(|id| format!("{} shading", shading_name(id, registry))))
+        .collect::<Vec<_>>();
     let (word, colour) =
         if own.is_empty() { ("Override", palette.weak) } else { ("Overridden", palette.accent) };
     let button = Button::new(RichText::new(word).small().color(colour))
@@ -75,46 +71,27 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
     button.widget_info(|| {
         WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Override model and shading: {said}"))
     });
-
     let id = ui.make_persistent_id("model override");
-    let scene_model = model_name(&session.scene().reflection_model);
-    let scene_shading = shading_name(&session.scene().shading_model);
     let out = knob::drop_down(&button, id, knob::WIDE, |ui, list| {
-        let mut out = None;
+        let scene_model = model_name(&session.scene().reflection_model, registry);
+        let scene_shading = shading_name(&session.scene().shading_model, registry);
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(theme::small(
             ui,
             format!("Of this object alone; the scene has {scene_model} and {scene_shading} shading."),
         ));
         ui.add_space(4.0);
-        let shadings = registry.shading_models();
-        let mut names = vec!["Scene default"];
-        names.extend(shadings.iter().map(|m| m.declaration.name));
-        let chosen = object
-            .shading_model
-            .as_ref()
-            .map_or(Some(0), |id| shadings.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
-        let tip = |ui: &mut Ui, i: usize| {
-            ui.set_max_width(300.0);
-            match i.checked_sub(1).map(|k| shadings[k].declaration) {
-                Some(d) => ui.label(d.summary),
-                None => ui.label(format!("The shading of the scene: {scene_shading}.")),
-            };
-        };
-        if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
-            out = Some(ObjectField::ShadingModel(
-                i.checked_sub(1).map(|k| shadings[k].declaration.id.to_owned()),
-            ));
-        }
+        let shading = shading(ui, object, &scene_shading, registry);
         ui.add_space(6.0);
         let own = object.reflection_model.as_deref();
         let height = 0.45 * ui.ctx().content_rect().height();
         let first = format!("Scene default ({scene_model})");
-        if let Some(model) = chooser::models(ui, list, height, session, registry, own, Some(&first)) {
-            out = Some(ObjectField::Model(model.map(|m| m.declaration.id.to_owned())));
+        let model = chooser::models(ui, list, height, session, registry, own, Some(&first));
+        let model = model.map(|model| {
             Popup::close_id(ui.ctx(), id);
-        }
-        out
+            (Object::reflection_model, model.map(|m| m.declaration.id))
+        });
+        model.or(shading)
     });
     button.on_hover_ui(|ui| {
         ui.set_max_width(300.0);
@@ -126,4 +103,29 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
         });
     });
     out
+}
+
+fn model_name(id: &str, registry: &Registry) -> String {
+    registry.model(id).map_or(id, |m| m.declaration.name).to_owned()
+}
+
+fn shading_name(id: &str, registry: &Registry) -> String {
+    registry.shading_model(id).map_or(id, |m| m.declaration.name).to_owned()
+}
+
+/// The choice of an object's shading model, or of the scene's.
+fn shading(ui: &mut Ui, object: &Object, scene: &str, registry: &Registry) -> Option<Override> {
+    let all: Vec<_> = registry.shading_models().iter().map(|m| m.declaration).collect();
+    let names: Vec<_> = ["Scene default"].into_iter().chain(all.iter().map(|d| d.name)).collect();
+    let of = |id: &String| all.iter().position(|d| d.id == id).map(|k| k + 1);
+    let chosen = object.shading_model.as_ref().map_or(Some(0), of);
+    let tip = |ui: &mut Ui, i: usize| {
+        ui.set_max_width(300.0);
+        match i.checked_sub(1) {
+            Some(k) => ui.label(all[k].summary),
+            None => ui.label(format!("The shading of the scene: {scene}.")),
+        };
+    };
+    let i = segmented(ui, "Shading of this object", &names, chosen, tip)?;
+    Some((Object::shading_model, i.checked_sub(1).map(|k| all[k].id)))
 }

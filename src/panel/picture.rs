@@ -1,20 +1,23 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use bevy_egui::egui::{
-    self, Align2, CursorIcon, FontFamily, FontId, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
+    self, Align2, CursorIcon, FontFamily, FontId, Galley, Pos2, Rect, Sense, Stroke, TextStyle, Ui, Vec2,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 use glam::Vec3;
 
 use super::{
+    Panel, PanelContext, Place,
     caption::{self, Lines, caption_text},
     channels, clipping,
-    compare::Arrangement,
-    explain, handles, icon, keys, labels, marks,
-    presentation::{CAPTION, Stage},
-    state::{Action, Badge, Cell, CompareCommand, SHADER_TAB, Session, Severity, ViewChange},
+    compare::{self, Arrangement},
+    explain,
+    focus::{self, Region},
+    handles, icon, is_panel, keys, labels, marks,
+    presentation::{CAPTION, Footer, Stage},
+    state::{Action, Badge, Cell, CompareCommand, PictureArea, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
     wires,
 };
@@ -43,177 +46,280 @@ const WIDE_PLATE: f32 = 330.0;
 /// Maximum fraction of a picture that the plate about an error covers.
 const PLATE: f32 = 0.25;
 
-/// Result of painting the overlays.
-#[derive(Debug, Default)]
-pub struct Overlaid {
+/// The picture's own panel: all that is written over the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture;
+
+impl Panel for Picture {
+    is_panel!("picture", "Picture", Place::Picture);
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, before) = (context.session(), context.registry(), &context.area().written);
+        let whole = ui.available_rect_before_wrap();
+        focus::region(ui.ctx(), Region::Picture, whole);
+        let presenting = session.view.presenting;
+        let several = presenting && !session.document.variants.is_empty();
+        let footer = several.then(|| Footer::of(ui, whole, session, registry));
+        let arrangement = compare::arrange(session, whole, footer.as_ref().map_or(0.0, |f| f.height));
+        let (actions, places, written) = Default::default();
+        let mut over = Overlaid { session, registry, before, actions, places, written };
+        let (rect, frame) = if arrangement.is_single() {
+            let stage = presenting.then(|| Stage::of(ui, whole, session, registry));
+            let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
+            over.single(ui, [whole, frame], stage.as_ref());
+            (whole, frame)
+        } else {
+            over.views(ui, &arrangement);
+            (arrangement.picture, arrangement.picture)
+        };
+        let (asked, places) = compare::show(ui, &arrangement, session, registry);
+        if let Some(footer) = footer {
+            footer.paint(ui, whole, session, registry);
+        }
+        over.places.extend(places);
+        context.actions.extend(over.actions.into_iter().chain(asked));
+        let mut area = PictureArea { rect, frame, written: over.written, ..PictureArea::default() };
+        if !arrangement.is_single() {
+            (area.cells, area.map) = (arrangement.cells, arrangement.map);
+        }
+        context.picture = (area, over.places);
+    }
+}
+
+/// The overlays of a picture, as far as they are painted.
+struct Overlaid<'a> {
+    session: &'a Session,
+    registry: &'a Registry,
+    /// What was written over the picture in the previous frame: marks keep clear of it.
+    before: &'a [Rect],
     /// The requested actions.
-    pub actions: Vec<Action>,
+    actions: Vec<Action>,
     /// Clickable rectangles, which cover the picture.
-    pub places: Vec<Rect>,
+    places: Vec<Rect>,
     /// Rectangles of badges, caption and axes.
-    pub written: Vec<Rect>,
+    written: Vec<Rect>,
 }
 
-/// Paints the overlays into the picture, which extends over `whole`, and around it the texts of a presentation. Marks
-/// keep clear of the rectangles `written` over the picture in the previous frame.
-pub fn overlays(
-    ui: &mut Ui,
-    [whole, rect]: [Rect; 2],
-    written: &[Rect],
-    stage: Option<&Stage>,
-    session: &Session,
-    registry: &Registry,
-) -> Overlaid {
-    let mut all = Overlaid::default();
-    if rect.width() < 80.0 || rect.height() < 80.0 {
-        return all;
-    }
-    wires::paint(ui, rect, rect, session.active(), session, registry);
-    clipping::paint(&ui.painter_at(whole), whole, session.active(), session, ui.pixels_per_point());
-    // A presentation has no marks, and its messages are as large as the rest of the text.
-    marked(ui, rect, written, session, registry, &mut all);
-    all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
-    all.written.extend(explain::vectors(ui, rect, session.active(), session, registry));
-    ui.scope(|ui| {
-        let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
-        let (asked, covered) = stale(ui, free, session, registry);
-        all.actions.extend(asked);
-        let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let from = (Align2::LEFT_TOP, top);
-        let top = channel(ui, free, from, session.active(), session, registry, &mut all);
-        let signs = badges_of(session.active(), whole, ui, session, registry);
-        let signs = signs.into_iter().chain(of_disk(session)).collect();
-        badges(ui, free, (Align2::LEFT_TOP, top), signs, &mut all);
-        all.places.push(covered);
-        all.written.push(covered);
-        hint(ui, rect, session);
-    });
-    if stage.is_none() {
-        all.written.push(caption(ui, rect, session, registry));
-        let corner = Rect::from_min_max(rect.right_bottom() - vec2(AXES_CORNER, AXES_CORNER), rect.max);
-        if rect.width() >= AXES && !all.written.iter().any(|place| place.intersects(corner)) {
-            all.written.push(axes(ui, rect, session));
+impl Overlaid<'_> {
+    /// Paints the overlays into the picture, which extends over `whole`, and around it the texts of a presentation.
+    fn single(&mut self, ui: &mut Ui, [whole, rect]: [Rect; 2], stage: Option<&Stage>) {
+        let (session, registry, view) = (self.session, self.registry, self.session.active());
+        if rect.width() < 80.0 || rect.height() < 80.0 {
+            return;
         }
-    }
-    all
-}
-
-/// Paints the legend of a view's debug channel from a corner on, if there is one. Returns the top of the free space
-/// below.
-fn channel(
-    ui: &mut Ui,
-    rect: Rect,
-    (side, top): (Align2, f32),
-    view: usize,
-    session: &Session,
-    registry: &Registry,
-    to: &mut Overlaid,
-) -> f32 {
-    let Some((place, actions)) = channels::legend(ui, rect, (side, top), view, session, registry) else {
-        return top;
-    };
-    to.actions.extend(actions);
-    to.places.push(place);
-    to.written.push(place);
-    place.bottom() + 4.0
-}
-
-/// Paints the marks of a view, and over them the handles of the selection.
-fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &Registry, to: &mut Overlaid) {
-    if session.view.presenting {
-        return;
-    }
-    // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
-    let covers = session.explains() || session.lesson.is_some();
-    let paints = [marks::marks, handles::handles];
-    for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
-        let (asked, places) = paint(ui, rect, written, session, registry);
-        to.actions.extend(asked);
-        to.places.extend(places);
-    }
-}
-
-/// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
-/// active one.
-pub fn views(
-    ui: &mut Ui,
-    arrangement: &Arrangement,
-    written: &[Rect],
-    session: &Session,
-    registry: &Registry,
-) -> Overlaid {
-    let mut all = Overlaid::default();
-    let shown = arrangement.cells.iter().filter(|cell| cell.part.is_positive());
-    // Stacked views share their marks.
-    let layout = session.document.comparison.layout;
-    let apart = layout.is_beside();
-    // A difference has no wireframe.
-    for cell in arrangement.cells.iter().filter(|_| !layout.is_map()) {
-        wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
-        let painter = ui.painter_at(cell.part);
-        clipping::paint(&painter, cell.rect, cell.view, session, ui.pixels_per_point());
-    }
-    for cell in shown.take(if apart { usize::MAX } else { 1 }) {
-        ui.push_id(("view", cell.view), |ui| {
-            marked(ui, cell.rect, written, session, registry, &mut all);
-            all.written.extend(labels::labels(ui, cell.rect, cell.view, session, registry));
-        });
-    }
-    for cell in arrangement.cells.iter().filter(|cell| cell.rect.is_positive()) {
-        // Stacked views share a rectangle.
-        all.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
-    }
-    let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
-    let mut stale_in = None;
-    if let Some(cell) = active.or(arrangement.cells.first()) {
+        wires::paint(ui, rect, rect, view, session, registry);
+        clipping::paint(&ui.painter_at(whole), whole, view, session, ui.pixels_per_point());
+        // A presentation has no marks, and its messages are as large as the rest of the text.
+        self.marked(ui, rect);
+        self.written.extend(labels::labels(ui, rect, view, session, registry));
+        self.written.extend(explain::vectors(ui, rect, view, session, registry));
         ui.scope(|ui| {
-            let (asked, covered) = stale(ui, cell.rect, session, registry);
-            all.actions.extend(asked);
-            all.places.push(covered);
-            all.written.push(covered);
-            hint(ui, cell.rect, session);
-            stale_in = Some((cell.view, covered)).filter(|_| covered.is_positive());
+            let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
+            let covered = self.stale(ui, free);
+            let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
+            let top = self.channel(ui, free, (Align2::LEFT_TOP, top), view);
+            let signs = badges_of(view, whole, ui, session, registry);
+            let signs = signs.into_iter().chain(of_disk(session)).collect();
+            self.badges(ui, free, (Align2::LEFT_TOP, top), signs);
+            hint(ui, rect, session);
+        });
+        if stage.is_none() {
+            self.written.push(caption(ui, rect, session, registry));
+            let corner = Rect::from_min_max(rect.right_bottom() - vec2(AXES_CORNER, AXES_CORNER), rect.max);
+            if rect.width() >= AXES && !self.written.iter().any(|place| place.intersects(corner)) {
+                self.written.push(axes(ui, rect, session));
+            }
+        }
+    }
+
+    /// Paints the legend of a view's debug channel from a corner on, if there is one. Returns the top of the free space
+    /// below.
+    fn channel(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), view: usize) -> f32 {
+        let legend = channels::legend(ui, rect, (side, top), view, self.session, self.registry);
+        let Some((place, actions)) = legend else { return top };
+        self.actions.extend(actions);
+        self.places.push(place);
+        self.written.push(place);
+        place.bottom() + 4.0
+    }
+
+    /// Paints the marks of a view, and over them the handles of the selection.
+    fn marked(&mut self, ui: &Ui, rect: Rect) {
+        let session = self.session;
+        if session.view.presenting {
+            return;
+        }
+        // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
+        let covers = session.explains() || session.lesson.is_some();
+        let paints = [marks::marks, handles::handles];
+        for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
+            let (asked, places) = paint(ui, rect, self.before, session, self.registry);
+            self.actions.extend(asked);
+            self.places.extend(places);
+        }
+    }
+
+    /// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
+    /// active one.
+    fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement) {
+        let (session, registry, cells) = (self.session, self.registry, &arrangement.cells);
+        let layout = session.document.comparison.layout;
+        // A difference has no wireframe.
+        for cell in cells.iter().filter(|_| !layout.is_map()) {
+            wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
+            let painter = ui.painter_at(cell.part);
+            clipping::paint(&painter, cell.rect, cell.view, session, ui.pixels_per_point());
+        }
+        // Stacked views share their marks.
+        let shown = cells.iter().filter(|cell| cell.part.is_positive());
+        for cell in shown.take(if layout.is_beside() { usize::MAX } else { 1 }) {
+            ui.push_id(("view", cell.view), |ui| {
+                self.marked(ui, cell.rect);
+                self.written.extend(labels::labels(ui, cell.rect, cell.view, session, registry));
+            });
+        }
+        for cell in cells.iter().filter(|cell| cell.rect.is_positive()) {
+            // Stacked views share a rectangle.
+            self.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
+        }
+        let active = cells.iter().find(|cell| cell.view == session.active());
+        let mut stale = None;
+        if let Some(cell) = active.or(cells.first()) {
+            ui.scope(|ui| {
+                let covered = self.stale(ui, cell.rect);
+                hint(ui, cell.rect, session);
+                stale = Some((cell.view, covered)).filter(|_| covered.is_positive());
+            });
+        }
+        if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
+            let font = TextStyle::Body.resolve(ui.style());
+            self.written.push(plate(ui, map, Align2::CENTER_CENTER, map.center(), &reason, font, 0.0));
+        }
+        ui.scope(|ui| {
+            if session.view.presenting {
+                let body = FontId::proportional(CAPTION * arrangement.picture.height());
+                ui.style_mut().text_styles.insert(TextStyle::Body, body);
+            }
+            self.badges_in_views(ui, cells, stale);
         });
     }
-    if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
-        let font = TextStyle::Body.resolve(ui.style());
-        all.written.push(plate(ui, map, Align2::CENTER_CENTER, map.center(), &reason, font, 0.0));
-    }
-    ui.scope(|ui| {
-        if session.view.presenting {
-            let body = FontId::proportional(CAPTION * arrangement.picture.height());
-            ui.style_mut().text_styles.insert(TextStyle::Body, body);
-        }
-        // The badges of a difference are those of both views.
-        let is_shown = |cell: &&Cell| cell.part.is_positive() || layout.is_map();
+
+    /// Paints the legends and badges of views, below the message about a shader error in one of them.
+    fn badges_in_views(&mut self, ui: &mut Ui, cells: &[Cell], stale: Option<(usize, Rect)>) {
+        let (session, registry) = (self.session, self.registry);
+        let comparison = &session.document.comparison;
+        let apart = comparison.layout.is_beside();
+        let scale = theme::scale_here(ui);
         let mut next = None;
         let mut disk = of_disk(session);
-        for cell in arrangement.cells.iter().filter(is_shown) {
-            let free = stale_in.filter(|(view, _)| *view == cell.view || !apart);
+        // The badges of a difference are those of both views.
+        for cell in cells.iter().filter(|cell| cell.part.is_positive() || comparison.layout.is_map()) {
+            let free = stale.filter(|(view, _)| *view == cell.view || !apart);
             let first = free.map_or(cell.rect.top() + 8.0, |(_, covered)| covered.bottom() + 4.0);
             let is_second = cell.part.is_positive() && cell.part.min != cell.rect.min;
             // Below the legend of a lobe, if there is one, and in a narrow picture below the badges at the left.
-            let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * theme::scale_here(ui);
+            let narrow = cell.rect.width() < 2.0 * WIDE_PLATE * scale;
             let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
                 .expand2(vec2(0.0, 16.0));
-            let there = all.written.iter().filter(|place| place.is_positive() && place.intersects(corner));
+            let there = self.written.iter().filter(|place| place.is_positive() && place.intersects(corner));
             let left = next.filter(|_| narrow).unwrap_or(first);
             let below = there.map(|place| place.bottom() + 4.0).fold(left, f32::max);
-            let from = match session.document.comparison.edge {
+            let from = match comparison.edge {
                 Edge::Vertical if is_second => (Align2::RIGHT_TOP, below),
                 Edge::Horizontal if is_second => (Align2::LEFT_TOP, first.max(cell.part.top() + 8.0)),
                 _ => (Align2::LEFT_TOP, next.filter(|_| !apart).unwrap_or(first)),
             };
-            let top = channel(ui, cell.rect, from, cell.view, session, registry, &mut all);
+            let top = self.channel(ui, cell.rect, from, cell.view);
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
             // Keeps badges on their own side of the edge of a wipe, if there is room.
-            let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * theme::scale_here(ui);
+            let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
-            next = Some(badges(ui, room, (from.0, top), signs, &mut all));
+            next = Some(self.badges(ui, room, (from.0, top), signs));
         }
-    });
-    all
+    }
+
+    /// Shows that the picture does not match the shaders, in a way that stands out on any picture: a frame, and a filled
+    /// plate that opens the panel with the errors. Returns the rectangle of the plate.
+    fn stale(&mut self, ui: &mut Ui, rect: Rect) -> Rect {
+        let shown = self.registry.model(self.session.model_shown()).map_or("", |m| m.declaration.name);
+        let Some((heading, lines)) = stale_words(&self.session.shaders, shown) else { return Rect::NOTHING };
+        let palette = Palette::here(ui);
+        let painter = ui.painter_at(rect);
+        painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), egui::StrokeKind::Inside);
+        // Without them, there is room for the frame only.
+        let Some(galleys) = that_fit(ui, rect, &heading, &lines) else { return Rect::NOTHING };
+        let place = Rect::from_min_size(rect.min + vec2(10.0, 10.0), size_of(&galleys));
+        let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
+        let said = format!("{heading}: {}", lines.join("; "));
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+        // The rim stands out even where the picture has the colour of the plate.
+        let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
+        painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), egui::StrokeKind::Outside);
+        let mut at = place.min + PADDING;
+        let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
+        icon::severity_in(&painter, sign, 8.0, Severity::Error, palette.panel);
+        at.x += SIGN;
+        for galley in galleys {
+            let height = galley.size().y;
+            painter.galley(at, galley, palette.panel);
+            at.y += height + 2.0;
+        }
+        let response = response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_ui(|ui| {
+            ui.set_max_width(340.0);
+            ui.label(
+                "A shader has an error, so the picture shows these models as they were before the last change. Correct \
+                 the file and save it: the picture updates by itself.",
+            );
+            let key = keys::word(ui.ctx(), "panel.shader");
+            ui.label(theme::small(ui, format!("Click, or key {key}: the line and the message")));
+        });
+        if response.clicked() {
+            self.actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
+        }
+        self.places.push(place);
+        self.written.push(place);
+        place
+    }
+
+    /// Paints a column of badges from a corner on. Returns the top of the free space below.
+    fn badges(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>) -> f32 {
+        let palette = Palette::here(ui);
+        let scale = theme::scale_here(ui);
+        let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+        let mut at = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
+        for (badge, actions) in all {
+            let place = plate(ui, rect, side, at, &badge.text, font.clone(), 18.0 * scale);
+            let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
+            let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
+            let painter = ui.painter_at(rect);
+            let here = !actions.is_empty() && (response.hovered() || response.has_focus());
+            let rim = if here { palette.text } else { palette.severity(badge.severity) };
+            painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), egui::StrokeKind::Inside);
+            let sign = pos2(place.left() + 14.0 * scale, place.center().y);
+            icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
+            let role = if actions.is_empty() { WidgetType::Label } else { WidgetType::Button };
+            response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
+            if !actions.is_empty() {
+                self.places.push(place);
+            }
+            if response.clicked() {
+                self.actions.extend(actions);
+            }
+            self.written.push(place);
+            let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
+            let response = response.on_hover_cursor(pointer);
+            if !badge.help.is_empty() {
+                // With the keyboard alone, the help can be reached in no other way.
+                if response.has_focus() {
+                    response.show_tooltip_text(&badge.help);
+                }
+                response.on_hover_text(&badge.help);
+            }
+            at.y = place.bottom() + 4.0;
+        }
+        at.y
+    }
 }
 
 /// Heading and lines of the message about a shader error in the picture. The model with the display name `shown` comes
@@ -241,86 +347,46 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
-/// Shows that the picture does not match the shaders, in a way that stands out on any picture: a frame, and a filled
-/// plate that opens the panel with the errors.
-fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Vec<Action>, Rect) {
-    let shown = registry.model(session.model_shown()).map_or("", |m| m.declaration.name);
-    let Some((heading, lines)) = stale_words(&session.shaders, shown) else {
-        return (Vec::new(), Rect::NOTHING);
-    };
-    let palette = Palette::here(ui);
-    let painter = ui.painter_at(rect);
-    painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), egui::StrokeKind::Inside);
-    let padding = vec2(10.0, 7.0);
-    let left = 26.0;
-    let margin = 10.0;
-    let room = (rect.width() - 2.0 * margin).min(560.0 * theme::scale_here(ui)) - left - 2.0 * padding.x;
-    let ink = palette.panel;
-    let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
-        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room);
-        job.wrap.max_rows = rows;
-        painter.layout_job(job)
-    };
-    let body = TextStyle::Body.resolve(ui.style()).size;
-    let large = || FontId::new(1.12 * body, theme::semibold());
+/// Space around the message about a shader error, and of the sign at its left, in points.
+const PADDING: Vec2 = vec2(10.0, 7.0);
+const SIGN: f32 = 26.0;
+
+/// Size of the plate of these texts.
+fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
+    let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
+    let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
+    vec2(width + SIGN, height) + 2.0 * PADDING
+}
+
+/// Heading and lines, as far as their plate leaves room for the picture: that has priority, then the heading; the panel
+/// lists all errors.
+fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String]) -> Option<Vec<Arc<Galley>>> {
+    let room = (rect.width() - 20.0).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
     let room = room.max(64.0);
-    let mut galleys = vec![lay_out(&heading, large(), 3, room)];
-    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
-    let size_of = |galleys: &[std::sync::Arc<egui::Galley>]| {
-        let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
-        let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
-        vec2(width + left, height) + 2.0 * padding
+    let body = TextStyle::Body.resolve(ui.style()).size;
+    let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
+        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, Palette::here(ui).panel, room);
+        job.wrap.max_rows = rows;
+        ui.painter().layout_job(job)
     };
-    // The picture has priority, then the heading; the panel lists all errors.
+    let head = |rows, room| vec![lay_out(heading, FontId::new(1.12 * body, theme::semibold()), rows, room)];
+    let mut galleys = head(3, room);
+    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
     let most = PLATE * rect.area();
-    while galleys.len() > 1 && size_of(&galleys).x * size_of(&galleys).y > most {
+    let too_large = |galleys: &[_]| size_of(galleys).x * size_of(galleys).y > most;
+    while galleys.len() > 1 && too_large(&galleys) {
         galleys.pop();
     }
-    let too_large = |galleys: &[_]| size_of(galleys).x * size_of(galleys).y > most;
     for rows in [2, 1] {
         if too_large(&galleys) {
-            galleys = vec![lay_out(&heading, large(), rows, room)];
+            galleys = head(rows, room);
         }
     }
     if too_large(&galleys) {
-        let less = most / size_of(&galleys).y - left - 2.0 * padding.x;
-        galleys = vec![lay_out(&heading, large(), 1, less.max(1.0))];
+        let less = most / size_of(&galleys).y - SIGN - 2.0 * PADDING.x;
+        galleys = head(1, less.max(1.0));
     }
-    if too_large(&galleys) {
-        // There is room for the frame only.
-        return (Vec::new(), Rect::NOTHING);
-    }
-    let size = size_of(&galleys);
-    let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);
-    let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
-    let said = format!("{heading}: {}", lines.join("; "));
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
-    // The rim stands out even where the picture has the colour of the plate.
-    let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
-    painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), egui::StrokeKind::Outside);
-    let mut at = place.min + padding;
-    let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
-    icon::severity_in(&painter, sign, 8.0, Severity::Error, ink);
-    at.x += left;
-    for galley in galleys {
-        let height = galley.size().y;
-        painter.galley(at, galley, ink);
-        at.y += height + 2.0;
-    }
-    let response = response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_ui(|ui| {
-        ui.set_max_width(340.0);
-        ui.label(
-            "A shader has an error, so the picture shows these models as they were before the last change. Correct the \
-             file and save it: the picture follows by itself.",
-        );
-        let key = keys::word(ui.ctx(), "panel.shader");
-        ui.label(theme::small(ui, format!("Click, or key {key}: the line and the message")));
-    });
-    let mut actions = Vec::new();
-    if response.clicked() {
-        actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
-    }
-    (actions, place)
+    Some(galleys).filter(|galleys| !too_large(galleys))
 }
 
 /// Text on a background that is readable over any picture. Returns the rectangle.
@@ -388,45 +454,6 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
         }
     }
     all
-}
-
-/// Paints a column of badges from a corner on. Returns the top of the free space below.
-fn badges(ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>, to: &mut Overlaid) -> f32 {
-    let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let mut at = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
-    for (badge, actions) in all {
-        let place = plate(ui, rect, side, at, &badge.text, font.clone(), 18.0 * scale);
-        let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
-        let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
-        let painter = ui.painter_at(rect);
-        let here = !actions.is_empty() && (response.hovered() || response.has_focus());
-        let rim = if here { palette.text } else { palette.severity(badge.severity) };
-        painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), egui::StrokeKind::Inside);
-        let sign = pos2(place.left() + 14.0 * scale, place.center().y);
-        icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
-        let role = if actions.is_empty() { WidgetType::Label } else { WidgetType::Button };
-        response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
-        if !actions.is_empty() {
-            to.places.push(place);
-        }
-        if response.clicked() {
-            to.actions.extend(actions);
-        }
-        to.written.push(place);
-        let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
-        let response = response.on_hover_cursor(pointer);
-        if !badge.help.is_empty() {
-            // With the keyboard alone, the help can be reached in no other way.
-            if response.has_focus() {
-                response.show_tooltip_text(&badge.help);
-            }
-            response.on_hover_text(&badge.help);
-        }
-        at.y = place.bottom() + 4.0;
-    }
-    at.y
 }
 
 fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {

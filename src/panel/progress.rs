@@ -24,7 +24,7 @@ pub fn load(folder: &Path) -> (Progress, Option<String>) {
     let path = folder.join(FILE);
     let unreadable = |why: &dyn std::fmt::Display| {
         format!(
-            "What you have done of the lessons cannot be read from {} ({why}); the lessons begin anew.",
+            "Your progress in the lessons cannot be read from {} ({why}); all lessons start from the beginning.",
             path.shown()
         )
     };
@@ -57,8 +57,7 @@ pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String
         text.push('\n');
         files::write(&path, text.as_bytes())
     };
-    write()
-        .map_err(|e| format!("What you have done of the lessons cannot be written to {}: {e}.", path.shown()))
+    write().map_err(|e| format!("Your progress in the lessons cannot be written to {}: {e}.", path.shown()))
 }
 
 /// The folder of this program in the user's data.
@@ -118,7 +117,10 @@ mod tests {
             std::fs::write(folder.path().join(FILE), broken)?;
             let (progress, complaint) = load(folder.path());
             assert_eq!(progress, Progress::default(), "{broken}");
-            assert!(complaint.is_some_and(|c| c.contains(FILE) && c.contains("begin anew")), "{broken}");
+            assert!(
+                complaint.is_some_and(|c| c.contains(FILE) && c.contains("start from the beginning")),
+                "{broken}"
+            );
             save(folder.path(), &Progress { last: Some("a".to_owned()), ..Progress::default() }, "a")?;
             assert_eq!(load(folder.path()).1, None, "it is whole again");
         }

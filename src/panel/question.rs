@@ -5,55 +5,68 @@ use std::path;
 use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, Modal, RichText, Ui, vec2};
 
 use super::{
-    state::{Action, Answer, Offer, Question, Session},
+    Panel, PanelContext, Place, is_panel,
+    state::{Action, Answer, Offer, Over, Question, Session},
     theme::{self, Palette},
 };
 use crate::files::Shown as _;
 
-/// Shows the open question. Enter gives the first answer, which loses nothing; Escape the last.
-pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
-    let Some(question) = &session.questions.open else { return Vec::new() };
-    let (title, text, details, answers) = words(session, question);
-    let mut out = None;
-    Modal::new(Id::new("question")).show(ctx, |ui: &mut Ui| {
-        let palette = Palette::here(ui);
-        ui.set_width(420.0);
-        egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
-            ui.label(RichText::new(title).heading());
-            ui.add_space(8.0);
-            ui.add(egui::Label::new(text).wrap());
-            for (what, more) in details {
-                ui.add_space(4.0);
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(theme::strong(ui, what));
-                    ui.label(RichText::new(more).color(palette.weak));
-                });
-            }
-            ui.add_space(16.0);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                for (i, (label, answer)) in answers.iter().enumerate() {
-                    let label = if i == 0 { theme::strong(ui, *label) } else { RichText::new(*label) };
-                    let mut button = Button::new(label).min_size(vec2(80.0, 28.0));
-                    if i == 0 {
-                        button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
-                    }
-                    let response = ui.add(button);
-                    // The keyboard focus starts here, not in the window below.
-                    let focused = ui.memory(|m| m.focused());
-                    if i == 0 && focused.is_none() {
-                        response.request_focus();
-                    }
-                    if response.clicked() {
-                        out = Some(*answer);
-                    }
+/// The open question. Enter gives the first answer, which loses nothing; Escape the last.
+pub(super) struct Asked;
+
+impl Panel for Asked {
+    is_panel!("question", "Question", Place::Over(Over::Question));
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.questions.open.is_some()
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let session = context.session();
+        let Some(question) = &session.questions.open else { return };
+        let (title, text, details, answers) = words(session, question);
+        let mut out = None;
+        Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
+            let palette = Palette::here(ui);
+            ui.set_width(420.0);
+            egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
+                ui.label(RichText::new(title).heading());
+                ui.add_space(8.0);
+                ui.add(egui::Label::new(text).wrap());
+                for (what, more) in details {
+                    ui.add_space(4.0);
+                    ui.horizontal_wrapped(|ui| {
+                        ui.label(theme::strong(ui, what));
+                        ui.label(RichText::new(more).color(palette.weak));
+                    });
                 }
+                ui.add_space(16.0);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| out = answered(ui, &answers));
             });
         });
-    });
-    if ctx.input(|i| i.key_pressed(Key::Escape)) {
-        out = Some(Answer::Cancel);
+        let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
+        context.actions.extend(escape.or(out).map(Action::Answer));
     }
-    out.map(Action::Answer).into_iter().collect()
+}
+
+/// The buttons for the answers, of which the first stands out. Returns the chosen one.
+fn answered(ui: &mut Ui, answers: &[(&str, Answer)]) -> Option<Answer> {
+    let palette = Palette::here(ui);
+    let mut out = None;
+    for (i, (label, answer)) in answers.iter().enumerate() {
+        let label = if i == 0 { theme::strong(ui, *label) } else { RichText::new(*label) };
+        let mut button = Button::new(label).min_size(vec2(80.0, 28.0));
+        if i == 0 {
+            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
+        }
+        let response = ui.add(button);
+        // The keyboard focus starts here, not in the window below.
+        if i == 0 && ui.memory(|m| m.focused()).is_none() {
+            response.request_focus();
+        }
+        out = response.clicked().then_some(*answer).or(out);
+    }
+    out
 }
 
 /// Title, text, details (text and addition), answers.
@@ -72,7 +85,7 @@ fn words(session: &Session, question: &Question) -> Words {
             let what = if parts.len() == 1 { "a part" } else { "parts" };
             (
                 "Use the defaults?",
-                format!("{} lacks {what} that every scene has. Shall the defaults be used?", path.shown()),
+                format!("{} lacks {what} that every scene needs. Use the defaults?", path.shown()),
                 parts.iter().map(|p| (p.name.clone(), format!("default: {}", p.default))).collect(),
                 vec![("Use the defaults", Answer::UseDefaults), ("Do not open", Answer::Cancel)],
             )
@@ -86,7 +99,7 @@ fn words(session: &Session, question: &Question) -> Words {
         Question::ChangedOnDisk { path } => (
             "The file has changed",
             format!(
-                "{} was changed by another program since it was read. Replace it with what is on screen, or reload it and lose what is on screen?",
+                "{} was changed by another program since it was read. Replace it with your version, or reload it and lose your version?",
                 path.shown()
             ),
             Vec::new(),
@@ -102,7 +115,7 @@ fn words(session: &Session, question: &Question) -> Words {
         Question::NewerOnDisk { path, .. } => (
             "Reload from disk?",
             format!(
-                "{} was changed by another program, and there are changes here that are not saved. Reload it and lose your changes, or keep them? If you keep them, saving overwrites the file.",
+                "{} was changed by another program, and you have unsaved changes. Reload it and lose your changes, or keep them? If you keep them, saving overwrites the file.",
                 path.shown()
             ),
             Vec::new(),

@@ -124,8 +124,10 @@ fn doubt(
     if version.is_none() {
         // Saving creates the file if it is still missing.
         files.expect(&path, None);
-        let text =
-            format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.shown());
+        let text = format!(
+            "{} was deleted or moved; this window still has the scene. Saving writes the file again.",
+            path.shown()
+        );
         session.set_disk_badge(
             Severity::Warning,
             &path,
@@ -144,7 +146,7 @@ fn doubt(
     session.say_of_disk(
         Severity::Warning,
         format!(
-            "{} no longer holds the scene that is shown, which is kept: it is unsaved now.",
+            "{} can no longer be read as a scene; the scene that is shown is kept, but now unsaved.",
             path.shown()
         ),
     );
@@ -158,11 +160,7 @@ fn doubt(
 impl Session {
     /// Makes the scene in the file the document. Keeps camera, terms and, where it remains valid, the selection.
     fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>, registry: &Registry) {
-        let id = match self.selection {
-            Selection::Light(i) => self.document.light_id(i),
-            Selection::Object(i) => self.document.object_id(i),
-            Selection::Room | Selection::Observer => None,
-        };
+        let id = self.selected_id();
         if self.document.reflection_model != scene.reflection_model {
             self.model_slots.take(&scene.reflection_model);
         }

@@ -14,10 +14,10 @@ use super::{
     lesson::point,
     shares::shared,
     state::{
-        Action, EXPLAIN_TAB, LessonCommand, OpenLesson, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, Session,
-        ViewChange,
+        Action, EXPLAIN_TAB, LessonCommand, OpenLesson, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ViewChange,
     },
     theme::{self, Palette},
+    widths::zoom_percent,
 };
 
 /// Id of the lesson panel.
@@ -36,14 +36,21 @@ const LINE: f32 = 2.0;
 /// Minimum height of an unfolded section, in points.
 const LEAST: f32 = TITLE + 64.0 + END;
 
-/// Shows the panels at a side; `ui` covers all of it.
+/// Shows the panels at a side, within `edge`. Returns its width.
 pub(super) fn side(
     ui: &mut Ui,
+    edge: egui::Panel,
     place: Place,
-    session: &Session,
     panels: &mut Panels,
     context: &mut PanelContext<'_>,
-) {
+) -> f32 {
+    let shown = edge.show(ui, |ui| within(ui, place, panels, context));
+    focus::region(ui.ctx(), Region::Panel(place), shown.response.rect);
+    shown.response.rect.width()
+}
+
+fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let mut lessons = Vec::new();
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
     let wanted = |ui: &Ui, info: &PanelInfo| match session.view.folds(info.id) {
@@ -184,13 +191,12 @@ const PLOT_STRIP: f32 = 312.0;
 /// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
-    session: &Session,
     panels: &mut Panels,
-    palette: &Palette,
     whole: Rect,
     height: &mut f32,
     context: &mut PanelContext<'_>,
 ) {
+    let session = context.session();
     let most = 0.6 * whole.height();
     // High enough for a complete error with its source line.
     let share = |(least, part): (f32, f32)| least.max(part * whole.height());
@@ -201,34 +207,17 @@ pub(super) fn bottom(
         PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
         _ => (0, 72.0, 0.0),
     };
-    let zoom = super::zoom_percent(ui.ctx());
+    let zoom = zoom_percent(ui.ctx());
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom, kind)))
-        .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
+        .frame(theme::panel_frame(&Palette::of(&session.view), vec2(12.0, 4.0)))
         .resizable(true)
         .default_size(height.max(least).max(start).min(most))
         .size_range(least.min(most)..=most);
     let response = strip.show(ui, |ui| {
-        let mut tabs: Vec<_> = panels.at(Place::Bottom, session).collect();
-        let shown = tabs.iter().position(|(info, _)| info.id == session.view.bottom_tab).unwrap_or(0);
+        let mut all: Vec<_> = panels.at(Place::Bottom, session).collect();
+        let shown = all.iter().position(|(info, _)| info.id == session.view.bottom_tab).unwrap_or(0);
         ui.horizontal(|ui| {
-            for (i, (info, panel)) in tabs.iter().enumerate() {
-                let title = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
-                let text = theme::strong(ui, title);
-                let text = if i == shown { text } else { text.color(palette.weak) };
-                if tabs.len() == 1 {
-                    ui.label(text);
-                    continue;
-                }
-                let mut button = Button::selectable(i == shown, text);
-                if let Some((severity, note)) = panel.note(session) {
-                    button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
-                }
-                let button = ui.add(button);
-                point::tab(ui, info.id, button.rect);
-                if button.clicked() {
-                    context.act(Action::View(ViewChange::BottomTab(info.id.to_owned())));
-                }
-            }
+            tabs(ui, &all, shown, context);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let says = keys::hint(ui.ctx(), "Fold the strip away", "panel.messages");
                 if icon::button(ui, Icon::Down, &says).clicked() {
@@ -236,7 +225,7 @@ pub(super) fn bottom(
                 }
             });
         });
-        match tabs.get_mut(shown) {
+        match all.get_mut(shown) {
             Some((info, panel)) if info.guest => {
                 ScrollArea::vertical().id_salt(info.id).auto_shrink(false).show(ui, |ui| {
                     ui.set_max_width(ui.available_width() - 8.0);
@@ -251,5 +240,28 @@ pub(super) fn bottom(
     focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
     if response.response.rect.height() > least + 1.0 {
         *height = response.response.rect.height();
+    }
+}
+
+/// The tabs of panels, with their notes.
+fn tabs(ui: &mut Ui, all: &[(PanelInfo, &mut dyn Panel)], shown: usize, context: &mut PanelContext<'_>) {
+    let palette = Palette::here(ui);
+    for (i, (info, panel)) in all.iter().enumerate() {
+        let title = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
+        let text = theme::strong(ui, title);
+        let text = if i == shown { text } else { text.color(palette.weak) };
+        if all.len() == 1 {
+            ui.label(text);
+            continue;
+        }
+        let mut button = Button::selectable(i == shown, text);
+        if let Some((severity, note)) = panel.note(context.session()) {
+            button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
+        }
+        let button = ui.add(button);
+        point::tab(ui, info.id, button.rect);
+        if button.clicked() {
+            context.act(Action::View(ViewChange::BottomTab(info.id.to_owned())));
+        }
     }
 }

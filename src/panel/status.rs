@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, PanelContext, Place, export,
     icon::{self, Icon},
-    keys, matching,
+    is_panel, keys, matching,
     state::{Action, Converging, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
@@ -21,17 +21,7 @@ use crate::{
 pub struct StatusLine;
 
 impl Panel for StatusLine {
-    fn id(&self) -> &'static str {
-        "status"
-    }
-
-    fn title(&self) -> &'static str {
-        "Status line"
-    }
-
-    fn place(&self) -> Place {
-        Place::Status
-    }
+    is_panel!("status", "Status line", Place::Status);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
@@ -150,7 +140,7 @@ fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     let palette = Palette::here(ui);
     let stale = if session.shaders.stale().is_empty() {
-        "nothing on the picture depends on it"
+        "nothing in the picture depends on it"
     } else {
         "the picture shows the last good version"
     };

@@ -213,6 +213,25 @@ pub fn elided_within(
     (with(fits), true)
 }
 
+/// Selects all text of a field, for typing to replace it.
+pub(super) fn select_all(ui: &egui::Ui, id: egui::Id, text: &str) {
+    use egui::text::{CCursor, CCursorRange};
+    if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
+        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), id);
+    }
+}
+
+/// Names a text field for screen readers, with the text before, the text now, and the hint in the empty field.
+pub(super) fn names_field(field: &egui::Response, name: &str, [before, now, hint]: [&str; 3]) {
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::text_edit(field.enabled(), before, now, hint);
+        info.label = Some(name.to_owned());
+        info
+    });
+}
+
 /// Layers of the tooltips shown in this frame so far.
 pub(super) fn tooltips(ctx: &Context) -> Vec<egui::LayerId> {
     let layers: Vec<_> = ctx.memory(|m| m.areas().visible_layer_ids().into_iter().collect());

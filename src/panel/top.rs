@@ -6,7 +6,7 @@ use super::{
     Panel, PanelContext, Place, chooser,
     command::{self, Menu, show},
     explain::has_sides,
-    keys,
+    is_panel, keys,
     lesson::{list, point},
     maths, menu, model_override,
     segmented::{segment_width, segmented},
@@ -23,17 +23,7 @@ use crate::registry::Registry;
 pub struct TopBar;
 
 impl Panel for TopBar {
-    fn id(&self) -> &'static str {
-        "top"
-    }
-
-    fn title(&self) -> &'static str {
-        "Top bar"
-    }
-
-    fn place(&self) -> Place {
-        Place::Top
-    }
+    is_panel!("top", "Top bar", Place::Top);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
@@ -140,7 +130,8 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         if let Some(description) = &session.document.description {
             ui.label(maths::prose(ui, description, egui::TextStyle::Body));
         }
-        let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.shown().to_string());
+        let file =
+            session.path.as_ref().map_or("not saved to a file yet".to_owned(), |p| p.shown().to_string());
         let said = match session.lesson {
             Some(_) => format!("a scene of the lesson; “{own}” {state}, and comes back when you leave"),
             None => format!("{file}; {state}"),

@@ -8,16 +8,17 @@ use bevy_egui::egui::{
 use super::{
     Panel, PanelContext, Place, focus, glyphs,
     icon::{self, Icon},
-    knob,
+    is_panel, knob,
     lesson::point,
     state::{Action, Session},
     theme::{self, Palette},
 };
-use crate::document::{Edit, LightField, ObjectField, Selection};
+use crate::document::{Edit, Selection};
 use crate::{
     optics::colour::Encoding,
     parameter::{BASE_COLOUR, Value},
     registry::Registry,
+    scene::{Light, Object, Part},
 };
 
 /// Height of a row, in points.
@@ -35,17 +36,7 @@ enum Row {
 }
 
 impl Panel for Tree {
-    fn id(&self) -> &'static str {
-        "tree"
-    }
-
-    fn title(&self) -> &'static str {
-        "Scene"
-    }
-
-    fn place(&self) -> Place {
-        Place::Left
-    }
+    is_panel!("tree", "Scene", Place::Left);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
@@ -71,7 +62,7 @@ impl Panel for Tree {
         let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
             for i in range {
                 match row(i) {
-                    Row::Part(part) => part_row(ui, session, registry, part, actions),
+                    Row::Part(part) => PartRow::of(part, session, registry).show(ui, actions),
                     Row::Lights => {
                         heading(ui, "Lights", lights, HEIGHT, |ui| add_lights(ui, registry, actions));
                     }
@@ -182,92 +173,182 @@ fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce
 /// Width below which the list has tighter spacing, in points.
 const NARROW: f32 = 190.0;
 
-fn part_row(ui: &mut Ui, session: &Session, registry: &Registry, part: Selection, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
-    let selected = session.selection == part;
-    let name = session.name_of(part, registry);
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let response = ui.interact(rect, row_id(part), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
-    let hovered = ui.rect_contains_pointer(rect);
-    point::part(ui, session, part, rect);
-    let painter = ui.painter_at(rect);
-    let ground = rect.shrink2(vec2(4.0, 0.0));
-    if selected {
-        painter.rect_filled(ground, 4.0, palette.chosen);
-        painter.rect_filled(Rect::from_min_size(ground.min, vec2(3.0, ground.height())), 1.5, palette.accent);
-    } else if hovered {
-        painter.rect_filled(ground, 4.0, palette.hovered);
-    }
-    let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
-    let narrow = rect.width() < NARROW;
-    let x = rect.left() + (if nested && !narrow { 22.0 } else { 16.0 });
-    let square = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, 14.0));
-    let dot = sign(ui, &painter, square, session, registry, part);
-    let text_left = x + 14.0;
-    if session.renaming == Some(part) {
-        let place = Rect::from_min_max(
-            pos2(text_left - 4.0, rect.top() + 2.0),
-            pos2(ground.right() - 4.0, rect.bottom() - 2.0),
-        );
-        rename(ui, session, part, &name, place, actions);
-        return;
-    }
-    let between = if narrow { 22.0 } else { 24.0 };
-    let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
-    let there = is_there(session, part);
-    let colour = if there { palette.text } else { palette.weak };
-    let room = (right - text_left).max(8.0);
-    let body = TextStyle::Body.resolve(ui.style());
-    let (galley, cut) = theme::elided_within(ui, &name, &body, colour, room);
-    painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
-    if let Some(rgb) = dot {
-        let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
-        toggle(ui, centre(1.5 * between), hovered, part, there, &name, actions);
-        colour_dot(ui, centre(0.5 * between), rgb, part, &name, actions);
-    }
-    acted(ui, &response, part, nested, actions);
-    response.context_menu(|ui| menu(ui, session, part, nested, actions));
-    if cut {
-        response.on_hover_text(name);
-    }
+/// The row of a part.
+struct PartRow<'a> {
+    part: Selection,
+    name: String,
+    /// True for a light or an object.
+    nested: bool,
+    session: &'a Session,
+    registry: &'a Registry,
 }
 
-/// Paints the icon or the glyph of a part. Returns the colour of a light or an object.
-fn sign(
-    ui: &Ui,
-    painter: &egui::Painter,
-    square: Rect,
-    session: &Session,
-    registry: &Registry,
-    part: Selection,
-) -> Option<[u8; 3]> {
-    let palette = Palette::here(ui);
-    let (sign, name, rgb) = match part {
-        Selection::Room | Selection::Observer => {
-            let icon = if part == Selection::Room { Icon::Room } else { Icon::Eye };
-            icon::paint(painter, square, icon, palette.text);
-            return None;
+impl<'a> PartRow<'a> {
+    fn of(part: Selection, session: &'a Session, registry: &'a Registry) -> Self {
+        let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
+        Self { part, name: session.name_of(part, registry), nested, session, registry }
+    }
+
+    fn show(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Self { part, ref name, nested, session, .. } = *self;
+        let palette = Palette::here(ui);
+        let selected = session.selection == part;
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+        let response = ui.interact(rect, row_id(part), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, name));
+        let hovered = ui.rect_contains_pointer(rect);
+        point::part(ui, session, part, rect);
+        let painter = ui.painter_at(rect);
+        let ground = rect.shrink2(vec2(4.0, 0.0));
+        if selected {
+            painter.rect_filled(ground, 4.0, palette.chosen);
+            let bar = Rect::from_min_size(ground.min, vec2(3.0, ground.height()));
+            painter.rect_filled(bar, 1.5, palette.accent);
+        } else if hovered {
+            painter.rect_filled(ground, 4.0, palette.hovered);
         }
-        Selection::Light(i) => {
-            let light = &session.document.lights[i];
-            let known = registry.light(&light.light_type).map(|e| (e.declaration.glyph, e.declaration.name));
-            let (sign, name) = known.unwrap_or(("?", ""));
-            (sign, name, light.rgb8())
+        let narrow = rect.width() < NARROW;
+        let x = rect.left() + (if nested && !narrow { 22.0 } else { 16.0 });
+        let square = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, 14.0));
+        let dot = self.sign(ui, &painter, square);
+        let text_left = x + 14.0;
+        if session.renaming == Some(part) {
+            let place = Rect::from_min_max(
+                pos2(text_left - 4.0, rect.top() + 2.0),
+                pos2(ground.right() - 4.0, rect.bottom() - 2.0),
+            );
+            return self.rename(ui, place, actions);
         }
-        Selection::Object(i) => {
-            let object = &session.document.objects[i];
-            let known =
-                registry.shape(&object.object_type).map(|e| (e.declaration.glyph, e.declaration.name));
-            let (sign, name) = known.unwrap_or(("?", ""));
-            let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
-            (sign, name, [colour.x as u8, colour.y as u8, colour.z as u8])
+        let between = if narrow { 22.0 } else { 24.0 };
+        let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
+        let colour = if is_there(session, part) { palette.text } else { palette.weak };
+        let room = (right - text_left).max(8.0);
+        let body = TextStyle::Body.resolve(ui.style());
+        let (galley, cut) = theme::elided_within(ui, name, &body, colour, room);
+        painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
+        if let Some(rgb) = dot {
+            let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
+            self.toggle(ui, centre(1.5 * between), hovered, actions);
+            self.colour_dot(ui, centre(0.5 * between), rgb, actions);
         }
-    };
-    let font = FontId::new(14.0, TextStyle::Body.resolve(ui.style()).family);
-    let sign = glyphs::glyph(ui, sign, name);
-    painter.text(square.center(), Align2::CENTER_CENTER, sign, font, palette.text);
-    Some(rgb)
+        acted(ui, &response, part, nested, actions);
+        response.context_menu(|ui| menu(ui, session, part, nested, actions));
+        if cut {
+            response.on_hover_text(name);
+        }
+    }
+
+    /// Paints the icon or the glyph of a part. Returns the colour of a light or an object.
+    fn sign(&self, ui: &Ui, painter: &egui::Painter, square: Rect) -> Option<[u8; 3]> {
+        let Self { part, session, registry, .. } = *self;
+        let palette = Palette::here(ui);
+        let (sign, name, rgb) = match part {
+            Selection::Room | Selection::Observer => {
+                let icon = if part == Selection::Room { Icon::Room } else { Icon::Eye };
+                icon::paint(painter, square, icon, palette.text);
+                return None;
+            }
+            Selection::Light(i) => {
+                let light = &session.document.lights[i];
+                let known =
+                    registry.light(&light.light_type).map(|e| (e.declaration.glyph, e.declaration.name));
+                let (sign, name) = known.unwrap_or(("?", ""));
+                (sign, name, light.rgb8())
+            }
+            Selection::Object(i) => {
+                let object = &session.document.objects[i];
+                let known =
+                    registry.shape(&object.object_type).map(|e| (e.declaration.glyph, e.declaration.name));
+                let (sign, name) = known.unwrap_or(("?", ""));
+                let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
+                (sign, name, [colour.x as u8, colour.y as u8, colour.z as u8])
+            }
+        };
+        let font = FontId::new(14.0, TextStyle::Body.resolve(ui.style()).family);
+        let sign = glyphs::glyph(ui, sign, name);
+        painter.text(square.center(), Align2::CENTER_CENTER, sign, font, palette.text);
+        Some(rgb)
+    }
+
+    /// The eye of an object, or the lamp of a light.
+    fn toggle(&self, ui: &mut Ui, centre: egui::Pos2, row_hovered: bool, actions: &mut Vec<Action>) {
+        let (palette, part) = (Palette::here(ui), self.part);
+        let there = is_there(self.session, part);
+        let says = format!("{} {}", toggle_words(part, there), self.name);
+        let response = spot(ui, centre, ui.id().with(("toggle", part)), &says);
+        let icon = match (part, there) {
+            (Selection::Light(_), true) => Icon::Lamp,
+            (Selection::Light(_), false) => Icon::LampOff,
+            (_, true) => Icon::Eye,
+            (_, false) => Icon::EyeOff,
+        };
+        let strong = row_hovered || !there || response.hovered();
+        let colour = if strong { palette.text } else { palette.weak };
+        let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
+        icon::paint(ui.painter(), square, icon, colour);
+        if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
+            actions.push(Action::Toggle(part));
+        }
+    }
+
+    /// The colour of a part, as a button that changes it.
+    fn colour_dot(&self, ui: &mut Ui, centre: egui::Pos2, [r, g, b]: [u8; 3], actions: &mut Vec<Action>) {
+        let (palette, part) = (Palette::here(ui), self.part);
+        let says = format!("Colour of {}", self.name);
+        let response = spot(ui, centre, ui.id().with(("dot", part)), &says);
+        ui.painter().circle(centre, 4.5, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+        egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(
+            |ui| {
+                if let Some(rgb) = knob::picker(ui, response.id.with("picker"), &says, [r, g, b]) {
+                    actions.extend(match part {
+                        Selection::Light(i) => {
+                            Some(Action::Edit(Edit::set(Part::Light(i), Light::colour, rgb)))
+                        }
+                        Selection::Object(i) => {
+                            let edit = Edit::material(Part::Object(i), BASE_COLOUR.name, Value::Colour(rgb));
+                            Some(Action::Edit(edit))
+                        }
+                        Selection::Room | Selection::Observer => None,
+                    });
+                }
+            },
+        );
+        response.on_hover_text(&says);
+    }
+
+    fn rename(&self, ui: &mut Ui, place: Rect, actions: &mut Vec<Action>) {
+        let Self { part, ref name, session, .. } = *self;
+        let id = ui.id().with(("rename", part));
+        let own = match part {
+            Selection::Light(i) => session.document.lights[i].name.clone(),
+            Selection::Object(i) => session.document.objects[i].name.clone(),
+            _ => None,
+        };
+        let first = ui.data(|d| d.get_temp::<String>(id)).is_none();
+        let mut text: String =
+            ui.data(|d| d.get_temp(id)).unwrap_or_else(|| own.unwrap_or_else(|| name.clone()));
+        let response =
+            ui.put(place, TextEdit::singleline(&mut text).id(id.with("text")).desired_width(place.width()));
+        theme::names_field(&response, &format!("New name of {name}"), [name, &text, ""]);
+        if first {
+            response.request_focus();
+            // Typing replaces the old name.
+            theme::select_all(ui, response.id, &text);
+        }
+        let done = response.lost_focus();
+        if done || (!first && !response.has_focus()) {
+            ui.data_mut(|d| d.remove::<String>(id));
+            let given_up = ui.input(|i| i.key_pressed(Key::Escape)) || text.trim() == name.as_str();
+            actions.push(match part {
+                _ if given_up => Action::CancelRename,
+                Selection::Light(i) => Action::Edit(Edit::set(Part::Light(i), Light::name, text)),
+                Selection::Object(i) => Action::Edit(Edit::set(Part::Object(i), Object::name, text)),
+                _ => Action::CancelRename,
+            });
+        } else {
+            ui.data_mut(|d| d.insert_temp(id, text));
+        }
+    }
 }
 
 /// Clicks on a row, and keys while it has the focus.
@@ -336,111 +417,4 @@ fn spot(ui: &Ui, centre: egui::Pos2, id: egui::Id, says: &str) -> egui::Response
         ui.painter().rect_filled(rect, 4.0, Palette::here(ui).hovered);
     }
     response
-}
-
-/// The eye of an object, or the lamp of a light.
-fn toggle(
-    ui: &mut Ui,
-    centre: egui::Pos2,
-    row_hovered: bool,
-    part: Selection,
-    there: bool,
-    name: &str,
-    actions: &mut Vec<Action>,
-) {
-    let palette = Palette::here(ui);
-    let says = format!("{} {name}", toggle_words(part, there));
-    let response = spot(ui, centre, ui.id().with(("toggle", part)), &says);
-    let icon = match (part, there) {
-        (Selection::Light(_), true) => Icon::Lamp,
-        (Selection::Light(_), false) => Icon::LampOff,
-        (_, true) => Icon::Eye,
-        (_, false) => Icon::EyeOff,
-    };
-    let strong = row_hovered || !there || response.hovered();
-    let colour = if strong { palette.text } else { palette.weak };
-    let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
-    icon::paint(ui.painter(), square, icon, colour);
-    if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
-        actions.push(Action::Toggle(part));
-    }
-}
-
-/// The colour of a part, as a button that changes it.
-fn colour_dot(
-    ui: &mut Ui,
-    centre: egui::Pos2,
-    [r, g, b]: [u8; 3],
-    part: Selection,
-    name: &str,
-    actions: &mut Vec<Action>,
-) {
-    let palette = Palette::here(ui);
-    let response = spot(ui, centre, ui.id().with(("dot", part)), &format!("Colour of {name}"));
-    ui.painter().circle(centre, 4.5, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
-    egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
-        if let Some(rgb) =
-            knob::picker(ui, response.id.with("picker"), &format!("Colour of {name}"), [r, g, b])
-        {
-            actions.extend(match part {
-                Selection::Light(i) => Some(Action::Edit(Edit::Light(i, LightField::Colour(rgb)))),
-                Selection::Object(i) => {
-                    let field = ObjectField::Material(BASE_COLOUR.name, Value::Colour(rgb));
-                    Some(Action::Edit(Edit::Object(i, field)))
-                }
-                Selection::Room | Selection::Observer => None,
-            });
-        }
-    });
-    response.on_hover_text(format!("Colour of {name}"));
-}
-
-fn rename(
-    ui: &mut Ui,
-    session: &Session,
-    part: Selection,
-    name: &str,
-    place: Rect,
-    actions: &mut Vec<Action>,
-) {
-    let id = ui.id().with(("rename", part));
-    let own = match part {
-        Selection::Light(i) => session.document.lights[i].name.clone(),
-        Selection::Object(i) => session.document.objects[i].name.clone(),
-        _ => None,
-    };
-    let first = ui.data(|d| d.get_temp::<String>(id)).is_none();
-    let mut text: String =
-        ui.data(|d| d.get_temp(id)).unwrap_or_else(|| own.unwrap_or_else(|| name.to_owned()));
-    let response =
-        ui.put(place, TextEdit::singleline(&mut text).id(id.with("text")).desired_width(place.width()));
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, name, &text, "");
-        info.label = Some(format!("New name of {name}"));
-        info
-    });
-    if first {
-        response.request_focus();
-        // Typing replaces the old name.
-        let mut state = egui::text_edit::TextEditState::load(ui.ctx(), response.id).unwrap_or_default();
-        let all = egui::text::CCursorRange::two(
-            egui::text::CCursor::new(0),
-            egui::text::CCursor::new(text.chars().count()),
-        );
-        state.cursor.set_char_range(Some(all));
-        state.store(ui.ctx(), response.id);
-    }
-    let done = response.lost_focus();
-    if done || (!first && !response.has_focus()) {
-        ui.data_mut(|d| d.remove::<String>(id));
-        let given_up = ui.input(|i| i.key_pressed(Key::Escape)) || text.trim() == name;
-        actions.push(match part {
-            _ if given_up => Action::CancelRename,
-            Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
-            Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
-            _ => Action::CancelRename,
-        });
-    } else {
-        ui.data_mut(|d| d.insert_temp(id, text));
-    }
 }

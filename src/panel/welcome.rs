@@ -9,10 +9,10 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    command,
+    Panel, PanelContext, Place, command,
     focus::{self, Region},
     icon::{self, Icon},
-    keys,
+    is_panel, keys,
     lesson::list,
     maths,
     preview::{self, Source},
@@ -44,13 +44,26 @@ const LEAST: f32 = 320.0;
 /// Maximum and minimum width of the menu, in points.
 const MENU: [f32; 2] = [580.0, 260.0];
 
-/// Shows the strip below the picture, with three sections.
-pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-    let mut actions = Vec::new();
-    // The picture has priority; the menus offer the same.
-    if !session.view.examples_open || ui.available_height() < LEAST {
-        return actions;
+/// The strip below the picture, with three sections.
+#[derive(Clone, Copy, Debug)]
+pub struct Welcome;
+
+impl Panel for Welcome {
+    is_panel!("examples", "Examples", Place::Strip);
+
+    fn is_open(&self, session: &Session) -> bool {
+        session.view.examples_open
     }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        // The picture has priority; the menus offer the same.
+        if self.is_open(context.session()) && ui.available_height() >= LEAST {
+            strip(ui, context.session(), context.registry(), &mut context.actions);
+        }
+    }
+}
+
+fn strip(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let panel = egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0)));
     let shown = panel.show(ui, |ui| {
@@ -76,7 +89,7 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
             show(&mut ui.new_child(UiBuilder::new().id_salt(from as i32).max_rect(place)));
         };
         column(ui, whole.left(), whole.left() + lessons, &mut |ui| {
-            lesson_door(ui, session, registry, &mut actions);
+            lesson_door(ui, session, registry, actions);
             if !wide && small_button(ui, "New model…").on_hover_text(MODEL_TIP).clicked() {
                 actions.push(Action::Model(ModelCommand::New));
             }
@@ -84,25 +97,24 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
         column(ui, first, last, &mut |ui| {
             heading(ui, "Examples", |ui| {
                 if !wide {
-                    return close(ui, &mut actions);
+                    return close(ui, actions);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let hint = theme::small(ui, "open as new scenes; also in the File menu");
                     ui.add(Label::new(hint).truncate());
                 });
             });
-            cards(ui, &titles, below, registry, &mut actions);
+            cards(ui, &titles, below, registry, actions);
         });
         if wide {
             column(ui, whole.right() - model, whole.right(), &mut |ui| {
-                heading(ui, "Your own model", |ui| close(ui, &mut actions));
-                model_door(ui, &mut actions);
+                heading(ui, "Your own model", |ui| close(ui, actions));
+                model_door(ui, actions);
             });
         }
         ui.advance_cursor_after_rect(whole);
     });
-    focus::region(ui.ctx(), Region::Examples, shown.response.rect);
-    actions
+    focus::region(ui.ctx(), Region::Panel(Place::Strip), shown.response.rect);
 }
 
 /// The heading of a section, with widgets at the right.
@@ -261,11 +273,10 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
             ui.spacing_mut().item_spacing.x = 0.0;
             let each = EXAMPLES.len().div_ceil(columns);
             for column in 0..columns {
+                let examples = (column * each..EXAMPLES.len()).take(each);
                 ui.vertical(|ui| {
                     ui.set_width(width);
-                    for i in (column * each..EXAMPLES.len()).take(each) {
-                        entry(ui, i, registry, actions);
-                    }
+                    examples.for_each(|i| entry(ui, i, registry, actions));
                 });
             }
         });

@@ -30,6 +30,11 @@ struct Side {
     most: f32,
 }
 
+/// The current zoom, in per cent.
+pub(super) fn zoom_percent(ctx: &Context) -> u32 {
+    (100.0 * ctx.zoom_factor()).round() as u32
+}
+
 /// Key of the flag that the user is dragging the edge of a panel.
 fn dragging() -> Id {
     Id::new("panel dragged")

@@ -110,11 +110,12 @@ pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Sess
     let fov = session.document.observer.field_of_view;
     let size = rect.size() * ui.ctx().pixels_per_point();
     let size = [size.x, size.y].map(|side| (side.round() as u32).max(1));
+    let here = session.facts.observer(session.document.observer);
     let question = Question {
         revision: session.document.revision(),
         channel,
         size,
-        observer: session.facts.observer(fov).fitting(size, session.document.view_angle()),
+        observer: here.fitting(size, session.document.view_angle()),
         terms: session.terms_of(view),
         reloaded: session.shaders.last.clone(),
     };

@@ -162,7 +162,7 @@ fn read_within<'f>(
     }
     if bytes > max_bytes {
         let [all, most] = [bytes.div_ceil(1 << 20), max_bytes >> 20];
-        return Err(format!("names files of {all} MiB together; at most {most} MiB are read"));
+        return Err(format!("names files of {all} MiB in total; at most {most} MiB are read"));
     }
     let is_new = |group: &[&Arc<Content>]| group.iter().any(|content| content.first.get().is_none());
     let numbers = AtomicUsize::new(0);
@@ -180,9 +180,7 @@ fn read_within<'f>(
         done.fetch_add(usize::from(is_new), Ordering::Relaxed);
     });
     if numbers.into_inner() > max_numbers {
-        return Err(format!(
-            "names files with more than {max_numbers} numbers together, the most that are read"
-        ));
+        return Err(format!("names files with more than {max_numbers} numbers in total, the most allowed"));
     }
     Ok(())
 }
@@ -382,7 +380,7 @@ impl Content {
         files::inside(&self.folder, path).map_err(|error| match error {
             files::FileError::Outside(_) => {
                 format!(
-                    "{error}, and a scene may read only what is in its own, unless {} is given",
+                    "{error}, but a scene may read only files in its own folder, unless {} is given",
                     outside::OPTION
                 )
             }

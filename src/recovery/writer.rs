@@ -100,7 +100,7 @@ impl Settled {
                 file.shown()
             )),
             Self::Lost { title, why } => Some(format!(
-                "the unsaved changes of “{title}” are lost, no recovery copy could be written: {why}"
+                "the unsaved changes of “{title}” are lost, because no recovery copy could be written: {why}"
             )),
         }
     }
@@ -312,7 +312,7 @@ impl Writer {
 
 fn no_folder() -> io::Error {
     io::Error::other(format!(
-        "there is no folder for the user's data; {} names one",
+        "there is no folder for the user's data; set {} to one",
         crate::library::assets::DATA_VARIABLE
     ))
 }
@@ -323,8 +323,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        document::{Edit, Extent, ObjectField, Selection},
-        scene::Object,
+        document::{Edit, Extent, Selection},
+        scene::{Object, Part},
     };
 
     /// Generous, since machines may be busy.
@@ -478,7 +478,7 @@ mod tests {
         let (before, change) = keep(&document, "a");
         assert_eq!(keep(&document, "a"), (before.clone(), change), "nothing changed");
         let edit = |document: &mut Document, size: f32| {
-            let edit = Edit::Object(1, ObjectField::Size(size));
+            let edit = Edit::set(Part::Object(1), Object::size, size);
             document.edit(edit, Selection::Room, &registry).expect("legal");
         };
         edit(&mut document, 0.5);

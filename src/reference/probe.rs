@@ -119,7 +119,7 @@ pub(crate) fn towards(
     /// Field of view of a picture of one pixel, in degrees.
     const NARROW: f32 = 0.1;
     let position = scene.observer.position;
-    let observer = Observer { position, direction: point - position, field_of_view: NARROW };
+    let observer = Observer { field_of_view: NARROW, ..Observer::at(position, point - position) };
     let Found { object, posed, face: (_, corners), weights, .. } =
         first(store, scene, registry, &observer, [1, 1], [0, 0])?;
     let [a, b, c] = corners.map(|i| posed.positions[i as usize]);

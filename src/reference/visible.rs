@@ -259,9 +259,8 @@ mod tests {
             lights: vec![light],
             objects: Vec::new(),
             observer: Observer {
-                position: Vec3::new(5.0, 5.0, 10.0),
-                direction: Vec3::NEG_Z,
                 field_of_view: 60.0,
+                ..Observer::at(Vec3::new(5.0, 5.0, 10.0), Vec3::NEG_Z)
             },
             ..Scene::default()
         }

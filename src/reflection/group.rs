@@ -38,7 +38,7 @@ impl Group {
                 return of("the name is empty; it is the heading of its knobs".to_owned());
             }
             if !names.insert(group.name) {
-                return of("is there twice; names must differ".to_owned());
+                return of("is given twice; names must differ".to_owned());
             }
             if group.parameters.is_empty() {
                 return of("has no parameters, but needs at least one".to_owned());
@@ -46,10 +46,13 @@ impl Group {
             for name in group.parameters {
                 if !all.iter().any(|p| p.name == *name) {
                     let hint = did_you_mean(name, all.iter().map(|p| (p.name, p.name)));
-                    return of(format!("{} is no parameter of the model{hint}", quoted(name)));
+                    return of(format!("{} is not a parameter of the model{hint}", quoted(name)));
                 }
                 if !known.insert(*name) {
-                    return of(format!("{} is in a group already; a parameter has one place", quoted(name)));
+                    return of(format!(
+                        "{} is already in a group; a parameter may be in only one",
+                        quoted(name)
+                    ));
                 }
             }
         }
@@ -74,10 +77,10 @@ mod tests {
         let sheen = Group::new("Sheen", &["sheen", "sheen_tint"]);
         for (groups, expected) in [
             (vec![Group::new(" ", &["sheen"])], "the name is empty"),
-            (vec![sheen, Group::new("Sheen", &["metallic"])], "is there twice"),
+            (vec![sheen, Group::new("Sheen", &["metallic"])], "is given twice"),
             (vec![Group::new("Sheen", &[])], "has no parameters"),
             (vec![Group::new("Sheen", &["shen"])], "did you mean \"sheen\"?"),
-            (vec![sheen, Group::new("Cloth", &["sheen"])], "is in a group already"),
+            (vec![sheen, Group::new("Cloth", &["sheen"])], "is already in a group"),
         ] {
             let what = told(&groups).expect(expected);
             assert!(what.contains(expected), "{what}");

@@ -68,10 +68,10 @@ pub fn problem(parameters: &[Parameter], parameter: &Parameter) -> Option<String
     let condition = parameter.used_when?;
     let name = condition.parameter;
     let Some(other) = parameters.iter().find(|p| p.name == name) else {
-        return Some(format!("it must name a parameter of this model, and there is no \"{name}\""));
+        return Some(format!("it must name a parameter of this model; there is no \"{name}\""));
     };
     let ParameterKind::Choice { options, .. } = &other.kind else {
-        return Some(format!("it must name a parameter of type choice, and \"{name}\" has another type"));
+        return Some(format!("it must name a parameter of type choice; \"{name}\" has another type"));
     };
     if let Some(unknown) = condition.choices.iter().find(|c| options.iter().all(|(id, _)| id != *c)) {
         let known: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();

@@ -369,7 +369,7 @@ fn place(known: bool, id: &str, admission: Admission, part: &str) -> Result<(), 
     let call = part.replace(' ', "_");
     match (admission == Admission::Replacing, known) {
         (false, true) => Err(Mistake::Declared(format!(
-            "another {part} has that id already; choose another, or call replace_{call}"
+            "that id is already used by another {part}; choose another id, or call replace_{call}"
         ))),
         (true, false) => {
             Err(Mistake::Declared(format!("there is no {part} `{id}` to replace; add_{call} adds a new one")))

@@ -25,7 +25,7 @@ use crate::{
     document::Extent,
     registry::Registry,
     scene::{
-        Light, Object, Observer, Scene,
+        self, Light, Object, Observer, Scene,
         check::{self, light_count, object_count},
         error::{Path, Problem},
     },
@@ -290,9 +290,9 @@ impl Change<'_> {
         loop {
             let mut check = check::Parts::of(self.scene, self.registry);
             let problem = |part: Extent| match part {
-                Extent::Light(i) => check.light(i),
-                Extent::Object(i) => check.object(i),
-                Extent::Rest | Extent::All => check.observer(),
+                Extent::Light(i) => check.problems(scene::Part::Light(i)),
+                Extent::Object(i) => check.problems(scene::Part::Object(i)),
+                Extent::Rest | Extent::All => check.problems(scene::Part::Observer),
             };
             let problems: Vec<_> = self.tried.iter().map(|(_, part, _)| *part).map(problem).collect();
             if problems.iter().all(Vec::is_empty) {
@@ -308,7 +308,7 @@ impl Change<'_> {
             }
             for (entity, part, before, problem) in refused {
                 self.restore(part, before);
-                self.refuse(entity, part, &format!("A change of a component was refused: {problem}"));
+                self.refuse(entity, part, &format!("A change to a component was refused: {problem}"));
             }
         }
     }
@@ -349,7 +349,7 @@ impl Change<'_> {
             Extent::Object(i) => format!("objects[{i}]"),
             Extent::Rest | Extent::All => "the observer".to_owned(),
         };
-        self.refuse(entity, part, &format!("A change of the components of {part_name} was refused: {why}"));
+        self.refuse(entity, part, &format!("A change to the components of {part_name} was refused: {why}"));
     }
 
     /// Reports a message once, whatever numbers it contains.
@@ -412,7 +412,7 @@ impl Change<'_> {
                     self.reported.waiting.insert(entity);
                     let name = self.world.get::<Name>(entity).map(|name| format!("“{name}”"));
                     let name = name.unwrap_or_else(|| entity.to_string());
-                    self.report(entity, &format!("The entity {name} is not added to the scene: {why}"));
+                    self.report(entity, &format!("The entity {name} was not added to the scene: {why}"));
                 }
             }
         }
@@ -424,14 +424,15 @@ impl Change<'_> {
         let (types, registry, room) = (self.types, self.registry, self.scene.scene_size);
         let legal = |problems: Vec<Problem>| problems.first().map_or(Ok(()), |problem| Err(clause(problem)));
         if now.contains::<SceneObserver>() {
-            return Err("a scene has one observer".to_owned());
+            return Err("a scene has only one observer".to_owned());
         }
         if now.contains::<SceneLight>() {
             let i = self.scene.lights.len();
             let light = read_light(now, None, types, registry, room)?;
             light_count(i + 1)?;
             self.scene.lights.push(light);
-            legal(check::light(self.scene, i, registry)).inspect_err(|_| drop(self.scene.lights.pop()))?;
+            legal(check::Parts::of(self.scene, registry).problems(scene::Part::Light(i)))
+                .inspect_err(|_| drop(self.scene.lights.pop()))?;
             self.entities.lights.push(entity);
             return Ok(Some(Extent::Light(i)));
         }
@@ -442,7 +443,8 @@ impl Change<'_> {
         let object = read_object(now, None, types, registry)?;
         object_count(i + 1)?;
         self.scene.objects.push(object);
-        legal(check::object(self.scene, i, registry)).inspect_err(|_| drop(self.scene.objects.pop()))?;
+        legal(check::Parts::of(self.scene, registry).problems(scene::Part::Object(i)))
+            .inspect_err(|_| drop(self.scene.objects.pop()))?;
         self.entities.objects.push(entity);
         self.entities.place(i);
         Ok(Some(Extent::Object(i)))

@@ -261,7 +261,7 @@ fn join(
     let Some(illumination) = buffers.get(joins.illumination) else { return };
     if target.main_texture_format() != FRAME {
         error_once!(
-            "The frames of a picture have the format {:?} in place of {FRAME:?}",
+            "The frames of a picture have the format {:?} instead of {FRAME:?}",
             target.main_texture_format()
         );
         return;

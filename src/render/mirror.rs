@@ -180,14 +180,13 @@ impl Part for Object {
 impl Part for Observer {
     fn write(&self, entity: &mut EntityWorldMut, old: Option<&Self>, _: &PartTypes) {
         place(entity, old.map(observer_transform), observer_transform(self));
-        if old.is_none_or(|old| old.field_of_view != self.field_of_view) {
-            set(entity, SceneObserver { field_of_view: self.field_of_view });
+        if old.map(SceneObserver::from) != Some(self.into()) {
+            set(entity, SceneObserver::from(self));
         }
     }
 
     fn spawn(&self, world: &mut World, _: &PartTypes) -> Entity {
-        let eye = SceneObserver { field_of_view: self.field_of_view };
-        world.spawn((eye, observer_transform(self), Name::new("Observer"))).id()
+        world.spawn((SceneObserver::from(self), observer_transform(self), Name::new("Observer"))).id()
     }
 }
 
@@ -252,7 +251,7 @@ pub(super) fn read_object(
     registry: &Registry,
 ) -> Result<Object, String> {
     if entity.contains::<SceneLight>() {
-        return Err("it is a light and an object, but must be one of them".to_owned());
+        return Err("it is both a light and an object, but must be only one of them".to_owned());
     }
     needed::<SceneObject>(&entity)?;
     let mut object = known.cloned().unwrap_or_default();
@@ -296,7 +295,7 @@ pub(super) fn read_light(
     room: SceneSize,
 ) -> Result<Light, String> {
     if entity.contains::<SceneObject>() {
-        return Err("it is a light and an object, but must be one of them".to_owned());
+        return Err("it is both a light and an object, but must be only one of them".to_owned());
     }
     let mut light = known.cloned().unwrap_or_default();
     let of_type = types.lights.find(&entity, known.map(|known| &*known.light_type), "light")?;
@@ -353,6 +352,5 @@ pub(super) fn read_observer(entity: EntityRef, known: &Observer) -> Result<Obser
     if transform.rotation != old.rotation {
         observer.direction = transform.rotation * Vec3::NEG_Z;
     }
-    observer.field_of_view = needed::<SceneObserver>(&entity)?.field_of_view;
-    Ok(observer)
+    Ok(needed::<SceneObserver>(&entity)?.at(observer))
 }

@@ -16,7 +16,7 @@ use bevy::{
 use crate::{
     document::PartId,
     parameter::Values,
-    scene::{DEFAULT_FIELD_OF_VIEW, Light},
+    scene::{Light, Observer, observer::observer},
 };
 
 /// Entities with removed components.
@@ -127,19 +127,44 @@ pub struct Surface {
 #[component(on_remove = touch)]
 pub struct Tessellation(pub Option<u32>);
 
-/// The observer of the scene, who looks along −z of the `Transform`.
-#[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, Default, Clone, Debug, PartialEq)]
-#[require(Transform)]
-#[component(on_remove = touch)]
-pub struct SceneObserver {
-    /// Vertical field of view, in degrees.
-    pub field_of_view: f32,
+/// The component of the observer: the declared fields without its place.
+macro_rules! component {
+    (
+        $(#[$about:meta])+
+        pub struct Observer($what:literal) {
+            $(#[$of_position:meta])+ position: $position:ty = $at:expr, $there:expr;
+            $(#[$of_direction:meta])+ direction: $direction:ty = $to:expr, $ahead:expr;
+            $($(#[$help:meta])+ $field:ident: $type:ty = $declared:expr, $default:expr;)+
+        }
+    ) => {
+        /// The observer of the scene, who looks along −z of the `Transform`.
+        #[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
+        #[reflect(Component, Default, Clone, Debug, PartialEq)]
+        #[require(Transform)]
+        #[component(on_remove = touch)]
+        pub struct SceneObserver {
+            $($(#[$help])+ pub $field: $type,)+
+        }
+
+        impl From<&Observer> for SceneObserver {
+            fn from(observer: &Observer) -> Self {
+                Self { $($field: observer.$field,)+ }
+            }
+        }
+
+        impl SceneObserver {
+            /// The observer with these values.
+            pub(super) fn at(self, place: Observer) -> Observer {
+                Observer { $($field: self.$field,)+ ..place }
+            }
+        }
+    };
 }
+observer!(component);
 
 impl Default for SceneObserver {
     fn default() -> Self {
-        Self { field_of_view: DEFAULT_FIELD_OF_VIEW }
+        Self::from(&Observer::default())
     }
 }
 

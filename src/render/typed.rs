@@ -53,7 +53,7 @@ impl TypeList {
     /// Gives an entity the component of a type with these parameters, and removes those of other types.
     pub(super) fn write(&self, entity: &mut EntityWorldMut, id: &str, values: &Values) {
         if self.0.iter().all(|part_type| part_type.id != id) {
-            warn!("`{id}` is no type of a light or an object that is registered: nothing is shown of it");
+            warn!("`{id}` is not a registered light type or object type: it is not shown");
         }
         for part_type in &self.0 {
             if part_type.id == id {

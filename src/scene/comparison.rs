@@ -1,9 +1,12 @@
 //! The layout in which the views of a scene are compared.
 
-use super::variant::MAX_VARIANTS;
-
-/// The smallest and the largest amplification of a difference.
-pub const AMPLIFICATIONS: std::ops::RangeInclusive<f32> = 1.0..=100.0;
+use super::{
+    Field,
+    field::Kind,
+    held::{Word, word},
+    part::part,
+    variant::{LETTERS, MAX_VARIANTS},
+};
 
 /// A choice with an id for files, a name for people, and one sentence.
 macro_rules! choice {
@@ -42,6 +45,8 @@ macro_rules! choice {
                 Self::ALL.iter().copied().find(|choice| choice.id() == id)
             }
         }
+
+        word! { $name: |choice| choice.name(), choice.summary(); }
     };
 }
 
@@ -149,41 +154,33 @@ impl Layout {
     }
 }
 
-/// The way in which views are compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
-    /// The arrangement.
-    pub layout: Layout,
-    /// The view compared with view A in layouts of two views: 1 for B.
-    pub with: usize,
-    /// The position of the edge of a wipe: 0 at the left or top, 1 at the right or bottom.
-    pub split: f32,
-    /// The direction of the edge.
-    pub edge: Edge,
-    /// The sign of differences.
-    pub sign: Sign,
-    /// The value of a pixel that is compared.
-    pub channel: Channel,
-    /// The values that are compared.
-    pub values: Compared,
-    /// The factor by which a difference is multiplied before it is mapped to a colour, 1 to 100; `None` for
-    /// the one that fits the largest difference.
-    pub amplification: Option<f32>,
+part! {
+    /// The way in which the views of a scene are shown.
+    #[derive(Copy)]
+    pub struct Comparison("comparison") {
+        /// Arrangement of the views.
+        layout: Layout = Field::of("the layout", Kind::Choice(Layout::words)), Layout::Single;
+        /// Letter of the view that is compared with view A where two are.
+        with: usize = Field::of("the other view", Kind::Choice(letters)), 1;
+        /// Place of the edge of a wipe: 0 at the left or top, 1 at the right or bottom.
+        split: f32 = Field::number("the place of the edge", 0.0..=1.0), 0.5;
+        /// Direction of the edge of a wipe.
+        edge: Edge = Field::of("the edge of a wipe", Kind::Choice(Edge::words)), Edge::Vertical;
+        /// Sign of differences.
+        sign: Sign = Field::of("the sign of a difference", Kind::Choice(Sign::words)), Sign::Absolute;
+        /// The number of a pixel that is compared.
+        channel: Channel = Field::of("the channel of a difference", Kind::Choice(Channel::words)), Channel::Largest;
+        /// The values that are compared.
+        values: Compared = Field::of("the values of a difference", Kind::Choice(Compared::words)), Compared::Codes;
+        /// Factor by which a difference is multiplied before it becomes a colour. Default: the one that fits the largest
+        /// difference.
+        amplification: Option<f32> = Field::number("the amplification", 1.0..=100.0), None;
+    }
 }
 
-impl Default for Comparison {
-    fn default() -> Self {
-        Self {
-            layout: Layout::default(),
-            with: 1,
-            split: 0.5,
-            edge: Edge::default(),
-            sign: Sign::default(),
-            channel: Channel::default(),
-            values: Compared::default(),
-            amplification: None,
-        }
-    }
+/// The letters of the views that may be compared with view A.
+fn letters() -> Vec<[&'static str; 3]> {
+    LETTERS[1..].iter().map(|letter| [*letter, "", ""]).collect()
 }
 
 impl Comparison {

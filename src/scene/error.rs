@@ -276,12 +276,12 @@ fn declined(missing: &[Missing]) -> String {
     )
 }
 
-/// "; it is a link to room.json, which is not there" if the path is such a link.
+/// "; it is a link to room.json, which does not exist" if the path is such a link.
 fn broken_link(path: &FilePath) -> Option<String> {
     if !std::fs::symlink_metadata(path).ok()?.is_symlink() {
         return None;
     }
-    Some(format!("; it is a link to {}, which is not there", follow(path).ok()?.shown()))
+    Some(format!("; it is a link to {}, which does not exist", follow(path).ok()?.shown()))
 }
 
 /// ". Did you mean scenes/room.json?" if there is a file with a similar name.

@@ -1,32 +1,29 @@
 //! Values of materials that must change with the model, since models may give a parameter different ranges.
 
-use super::{Scene, check::Declared, error::Path, variant::LETTERS};
+use super::{Part, Scene, check::Declared, variant::LETTERS};
 use crate::registry::Registry;
 
 impl Scene {
     /// Replaces every number of a material that its object's model does not allow by the nearest one that it
     /// allows. Returns one sentence for each.
     pub fn bring_into_range(&mut self, registry: &Registry) -> Vec<String> {
-        let mut said = Vec::new();
-        for i in 0..self.objects.len() {
-            let object = &self.objects[i];
-            let mut changes = Vec::new();
-            for (name, value) in &object.material.0 {
-                let declared = Declared::of(registry, self, object, name);
-                let Err(Some(rule)) = declared.refusing(value) else { continue };
-                let Some(nearest) = declared.nearest(value) else { continue };
-                let place = Path::root().key("objects").index(i).key("material").key(name.clone());
-                let model = self.model_of(object);
-                said.push(format!(
-                    "{place} is {value}, but for {model} it must be {}: {nearest} is taken",
-                    rule.rule()
-                ));
-                changes.push((name.clone(), nearest));
-            }
-            for (name, nearest) in changes {
-                self.objects[i].material.set(name, nearest);
-            }
+        (0..self.objects.len()).flat_map(|i| self.bring_object_into_range(i, registry)).collect()
+    }
+
+    /// The same for one object.
+    pub(super) fn bring_object_into_range(&mut self, i: usize, registry: &Registry) -> Vec<String> {
+        let (mut said, mut changes) = (Vec::new(), Vec::new());
+        let object = &self.objects[i];
+        for (name, value) in &object.material.0 {
+            let declared = Declared::of(registry, self, object, name);
+            let Err(Some(rule)) = declared.refusing(value) else { continue };
+            let Some(nearest) = declared.nearest(value) else { continue };
+            let place = Part::Object(i).path().key("material").key(name.clone());
+            let (model, rule) = (self.model_of(object), rule.rule());
+            said.push(format!("{place} is {value}, but for {model} it must be {rule}: {nearest} is used"));
+            changes.push((name.clone(), nearest));
         }
+        self.objects[i].material.0.extend(changes);
         said
     }
 
@@ -64,8 +61,7 @@ mod tests {
         scene.objects[0].material.set("tilt", Value::Number(80.0));
         scene.variants = vec![Variant { reflection_model: Some("second".to_owned()), ..Variant::default() }];
         assert_eq!(scene.clone().bring_into_range(&registry), Vec::<String>::new());
-        let expected =
-            "objects[0].material.tilt is 80, but for second it must be between 0 and 1: 1 is taken";
+        let expected = "objects[0].material.tilt is 80, but for second it must be between 0 and 1: 1 is used";
         assert_eq!(scene.beyond_the_range_of_views(&registry), [format!("view B: {expected}")]);
         let (seen, _) = scene.seen(1, &registry).expect("there is a view B");
         assert_eq!(seen.objects[0].material.0["tilt"], Value::Number(1.0), "the nearest, not the default");

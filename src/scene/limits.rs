@@ -1,14 +1,13 @@
-//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and
-//! edits, and for widgets, which check values while they are typed.
+//! The legal values of numbers, for widgets, which check values while they are typed. Those of a field follow from its
+//! [declaration](super::Field::limits); here are those that depend on other parts of the scene.
+
+use glam::Vec3;
 
 use crate::{
     light,
-    optics::{
-        radiometry::SPHERE,
-        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
-    },
+    optics::radiometry::SPHERE,
     parameter::ABOVE_ZERO,
-    scene::{MAX_DIMENSION, SceneSize, check},
+    scene::{Light, Object, Part, Scene, SceneSize, check},
     shape,
 };
 
@@ -124,28 +123,10 @@ pub fn position(size: SceneSize, axis: usize) -> Limits {
     Limits { because: Some(because), ..Limits::above_zero(extent) }
 }
 
-/// A component of a direction. [`check::direction`] decides which triples are valid.
-#[must_use]
-pub fn direction() -> Limits {
-    Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-1.0, 1.0)
-}
-
-/// A rotation about one axis, degrees.
-#[must_use]
-pub fn rotation() -> Limits {
-    Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-180.0, 180.0)
-}
-
 /// The size of an object, metres, with a slider for the room.
 #[must_use]
 pub fn object_size(size: SceneSize) -> Limits {
-    any_size().slider(0.0, f64::from(size.corner().max_element()))
-}
-
-/// The size of any object, metres.
-#[must_use]
-pub fn any_size() -> Limits {
-    Limits::above_zero(f64::from(check::MAX_SIZE))
+    Object::size.limits().slider(0.0, f64::from(size.corner().max_element()))
 }
 
 /// The tessellation of an object.
@@ -155,16 +136,10 @@ pub fn tessellation(shape: &shape::Declaration) -> Limits {
     Limits::between(f64::from(*range.start()), f64::from(*range.end())).whole()
 }
 
-/// The intensity or the luminous flux of any light.
-#[must_use]
-pub fn brightness() -> Limits {
-    Limits::between(0.0, f64::INFINITY)
-}
-
 /// The intensity of a light.
 #[must_use]
 pub fn intensity(light: &light::Declaration) -> Limits {
-    brightness().slider(0.0, f64::from(light.slider_max))
+    Light::intensity.limits().slider(0.0, f64::from(light.slider_max))
 }
 
 /// The luminous flux of a light, lumen. The end of the slider corresponds to that of the intensity, for a
@@ -172,7 +147,7 @@ pub fn intensity(light: &light::Declaration) -> Limits {
 #[must_use]
 pub fn luminous_flux(light: &light::Declaration) -> Limits {
     let end = f64::from(light.slider_max) * SPHERE;
-    brightness().slider(0.0, significant(end, 1))
+    Light::luminous_flux.limits().slider(0.0, significant(end, 1))
 }
 
 /// A number rounded to this number of significant digits.
@@ -182,29 +157,28 @@ pub fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.0$e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// The colour temperature of a light, kelvin.
+/// An extent of the room, in metres: everything in the room must stay inside. `axis` is 0 for width, 1 for height, 2 for
+/// depth; `name` returns the name of a part.
 #[must_use]
-pub fn colour_temperature() -> Limits {
-    Limits::between(f64::from(MIN_TEMPERATURE), f64::from(MAX_TEMPERATURE)).slider(1000.0, 12_000.0)
-}
-
-/// The vertical field of view, degrees.
-#[must_use]
-pub fn field_of_view() -> Limits {
-    Limits::between(f64::from(check::MIN_FIELD_OF_VIEW), f64::from(check::MAX_FIELD_OF_VIEW))
-}
-
-/// The exposure, EV.
-#[must_use]
-pub fn exposure() -> Limits {
-    let max = f64::from(check::MAX_EXPOSURE);
-    Limits::between(-max, max).slider(-8.0, 8.0)
-}
-
-/// An extent of the room, metres.
-#[must_use]
-pub fn dimension() -> Limits {
-    Limits::above_zero(f64::from(MAX_DIMENSION))
+pub fn extent(scene: &Scene, axis: usize, name: impl Fn(Part) -> String) -> Limits {
+    let at = |p: Vec3| p.to_array()[axis.min(2)];
+    let furthest = check::places(&scene.lights, &scene.objects, scene)
+        .map(|(who, p)| (who, at(p)))
+        .filter(|(_, c)| c.is_finite())
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let any = SceneSize::width.limits();
+    match furthest {
+        Some((who, c)) if c > 0.0 && any.allows(f64::from(c)) => Limits {
+            because: Some(format!(
+                "{} is at {} = {} m",
+                name(who),
+                ["x", "y", "z"][axis.min(2)],
+                number(f64::from(c))
+            )),
+            ..Limits::between(f64::from(c), any.max).slider(0.0, any.max)
+        },
+        _ => any,
+    }
 }
 
 #[cfg(test)]
@@ -232,7 +206,7 @@ mod tests {
     #[test]
     fn rules_are_sentences() {
         assert_eq!(Limits::between(0.5, 1.0).rule(), "between 0.5 and 1");
-        assert_eq!(any_size().rule(), "greater than 0 and at most 1e9");
+        assert_eq!(Object::size.limits().rule(), "greater than 0 and at most 1e9");
         assert_eq!(Limits::above_zero(90.0).rule(), "greater than 0 and at most 90");
         assert_eq!(Limits::between(0.0, f64::INFINITY).whole().rule(), "a whole number, 0 or more");
         assert_eq!(Limits::between(0.0, f64::INFINITY).rule(), "at least 0");
@@ -242,6 +216,6 @@ mod tests {
     fn limits_exclude_what_they_say() {
         assert!(!Limits::above_zero(1.0).allows(0.0));
         assert!(!Limits::between(0.0, 9.0).whole().allows(1.5));
-        assert!(!direction().allows(f64::NAN));
+        assert!(!Light::direction.limits().allows(f64::NAN));
     }
 }

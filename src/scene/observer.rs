@@ -1,8 +1,29 @@
-//! The camera of the observer.
+//! The observer and its camera.
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Observer, Scene};
+use super::{Field, Scene, field::Kind, part::part};
+
+/// Passes the declaration to a macro: [`part!`], or that of the component.
+macro_rules! observer {
+    ($with:ident) => {
+        $with! {
+            /// The observer: the camera of the scene.
+            #[derive(Copy)]
+            pub struct Observer("the observer") {
+                /// Position: [x, y, z] in metres, inside the room, not at the position of a light or an object.
+                position: Vec3 = Field::of("a position", Kind::Position).unit("m").required("the observer needs one"), Vec3::new(5.0, 5.0, 9.5);
+                /// Direction of view: [x, y, z], of any length.
+                direction: Vec3 = Field::of("a direction", Kind::Direction).required("the observer needs one"), Vec3::NEG_Z;
+                /// Vertical field of view, degrees.
+                field_of_view: f32 = Field::number("the field of view", 1.0..=170.0).unit("°").always(), 45.0;
+            }
+        }
+    };
+}
+pub(crate) use observer;
+
+observer!(part);
 
 /// The distance of the near plane from the eye, metres. Anything nearer is clipped.
 pub const NEAR: f32 = 0.01;
@@ -90,6 +111,12 @@ impl Scene {
 }
 
 impl Observer {
+    /// The default observer at a position, looking in a direction.
+    #[must_use]
+    pub fn at(position: Vec3, direction: Vec3) -> Self {
+        Self { position, direction, ..Self::default() }
+    }
+
     /// This observer with the angle of view of a picture of this size, for a renderer that takes the field of
     /// view as the vertical one.
     #[must_use]
@@ -108,7 +135,7 @@ mod tests {
         let observer = Observer {
             position: Vec3::new(1.0, 2.0, 3.0),
             direction: Vec3::new(2.0, 0.0, -1.0),
-            field_of_view: 60.0,
+            ..Observer::default()
         };
         let clip = clip_from_room(&observer, 1.5);
         let ahead = clip.project_point3(observer.position + 4.0 * observer.direction);
@@ -128,7 +155,7 @@ mod tests {
 
     #[test]
     fn the_field_of_view_is_vertical() {
-        let observer = Observer { position: Vec3::ZERO, direction: Vec3::NEG_Z, field_of_view: 90.0 };
+        let observer = Observer { position: Vec3::ZERO, field_of_view: 90.0, ..Observer::default() };
         let clip = clip_from_room(&observer, 2.0);
         assert!((clip.project_point3(Vec3::new(0.0, 1.0, -1.0)).y - 1.0).abs() < 1e-5);
         assert!((clip.project_point3(Vec3::new(2.0, 0.0, -1.0)).x - 1.0).abs() < 1e-5);

@@ -11,10 +11,10 @@ use serde::Serialize;
 use super::{
     Scene, check,
     error::{Path as ScenePath, Problem},
-    format::SceneFile,
     formats::{self, Target, UnknownExtension},
     layout::{ShortNumbers, pretty},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
+    write::Written,
 };
 use crate::files::{Shown as _, words};
 use crate::{
@@ -144,7 +144,8 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
     let mut compact = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut compact, ShortNumbers);
     // Writing to memory, with text as keys, cannot fail.
-    let _ = SceneFile::new(scene, schema, registry).serialize(&mut serializer);
+    let materials: Vec<_> = registry.material_parameters().collect();
+    let _ = Written { part: scene, schema, materials: &materials, registry }.serialize(&mut serializer);
     let compact = String::from_utf8_lossy(&compact);
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }

@@ -1,21 +1,20 @@
-//! The JSON Schema of scene files, for editors: the types of `format` plus the contents of the registry.
+//! The JSON Schema of scene files, for editors: the declared fields plus the contents of the registry.
 
 use super::{
-    MAX_DIMENSION, MAX_OBJECTS,
-    comparison::{Channel, Compared, Edge, Layout, Sign},
-    format::SceneFile,
-    read::keys,
+    Comparison, Display, Field, Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Scene, SceneSize,
+    Variant,
+    field::{Absent, Kind},
+    part::Structure,
+    variant::MAX_VARIANTS,
 };
 use crate::{
     light::MAX_LIGHTS,
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as value},
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value, json as value},
     reflection::ModelEntry,
     registry::Registry,
     shading::ShadingEntry,
     text::number,
 };
-use schemars::{SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value as Json, json};
 
 /// File name of the schema next to the shipped scenes, as in their `$schema`.
@@ -29,46 +28,87 @@ pub(super) const EXTENSION: &str = ".schema.json";
 /// parts.
 #[must_use]
 pub fn schema(registry: &Registry) -> Json {
-    let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
-    let generator = SchemaGenerator::new(settings);
-    let mut schema = generator.into_root_schema_for::<SceneFile<'static>>().to_value();
-    tidy(&mut schema);
-
-    let models = || registry.models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
-    let shadings =
-        || registry.shading_models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
+    let mut schema = part::<Scene>(Scene::ABOUT, registry);
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+    schema["title"] = "Scene of Lights, Camera, Models!".into();
     let scene = &mut schema["properties"];
-    choose(&mut scene["reflection_model"], models());
-    choose(&mut scene["shading_model"], shadings());
-    scene["reflection_model"]["default"] = super::DEFAULT_REFLECTION_MODEL.into();
-    scene["shading_model"]["default"] = super::DEFAULT_SHADING_MODEL.into();
-    let tones = ToneMapping::ALL.map(|t| (t.id(), t.name(), t.summary()));
-    choose(&mut scene["display"]["properties"]["tone_mapping"], tones.into_iter());
-    let encodings = Encoding::ALL.map(|e| (e.id(), e.id(), ""));
-    choose(&mut scene["display"]["properties"]["encoding"], encodings.into_iter());
-    let comparison = &mut scene["comparison"]["properties"];
-    macro_rules! choices {
-        ($($key:literal $type:ident,)+) => {
-            $(choose(&mut comparison[$key], $type::ALL.iter().map(|c| (c.id(), c.name(), c.summary())));)+
-        };
-    }
-    choices! { "layout" Layout, "edge" Edge, "sign" Sign, "channel" Channel, "values" Compared, }
-    let variant = &mut scene["variants"]["items"]["properties"];
-    choose(&mut variant["reflection_model"], models());
-    choose(&mut variant["shading_model"], shadings());
-    choose(&mut variant["tone_mapping"], tones.into_iter());
-    choose(&mut variant["encoding"], encodings.into_iter());
-    choose(&mut variant["terms"], TermSelection::ALL.map(|t| (t.id(), t.id(), "")).into_iter());
-    place(&mut scene["observer"]["properties"]["position"]);
+    scene["$schema"] = json!({
+        "type": "string",
+        "description": "Address of the JSON Schema of scene files, with which editors complete and check this file.",
+    });
+    scene["scene_size"] = part::<SceneSize>(Scene::scene_size.help, registry);
+    scene["observer"] = part::<Observer>(Scene::observer.help, registry);
+    scene["display"] = part::<Display>(Scene::display.help, registry);
+    scene["comparison"] = part::<Comparison>(Scene::comparison.help, registry);
+    scene["lights"]["items"] = part::<Light>(Light::ABOUT, registry);
+    scene["objects"]["items"] = part::<Object>(Object::ABOUT, registry);
+    scene["variants"]["items"] = part::<Variant>(Variant::ABOUT, registry);
+    scene["variants"]["maxItems"] = MAX_VARIANTS.into();
     lights(&mut scene["lights"], registry);
     objects(&mut scene["objects"], registry);
-    let fields = &mut scene["objects"]["items"]["properties"];
-    choose(&mut fields["reflection_model"], models());
-    choose(&mut fields["shading_model"], shadings());
-    let material = fields["material"]["properties"].clone();
-    let variants = &mut schema["properties"]["variants"]["items"]["properties"]["material"];
+    let material = scene["objects"]["items"]["properties"]["material"]["properties"].clone();
+    let variants = &mut scene["variants"]["items"]["properties"]["material"];
     (variants["properties"], variants["additionalProperties"]) = (material, false.into());
     schema
+}
+
+/// A part, with its documentation.
+fn part<P: Structure>(help: &str, registry: &Registry) -> Json {
+    let (mut properties, mut required) = (Map::new(), Vec::new());
+    P::default().each(&mut |declared, _, default| {
+        if !matches!(declared.kind, Kind::Parameters) {
+            properties.insert(declared.key.to_owned(), field(declared, default.value(), registry));
+        }
+        if declared.absent != Absent::Allowed {
+            required.push(declared.key);
+        }
+    });
+    let mut part = json!({
+        "type": "object", "description": help.trim(), "properties": properties, "additionalProperties": false,
+    });
+    if !required.is_empty() {
+        part["required"] = required.into();
+    }
+    part
+}
+
+/// A field, with its default if it is the same for all types.
+fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
+    let vector = |one: Json| json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 });
+    let mut schema = match field.kind {
+        Kind::Number { min, max, .. } => {
+            let least = if min == ABOVE_ZERO { "exclusiveMinimum" } else { "minimum" };
+            let mut schema =
+                json!({ "type": "number", least: if min == ABOVE_ZERO { 0.into() } else { whole(min) } });
+            if max.is_finite() {
+                schema["maximum"] = whole(max);
+            }
+            schema
+        }
+        Kind::Count(min) => json!({ "type": "integer", "minimum": min }),
+        Kind::Flag(_) => json!({ "type": "boolean" }),
+        Kind::Text(_) => json!({ "type": "string" }),
+        Kind::Position => {
+            vector(json!({ "type": "number", "exclusiveMinimum": 0, "maximum": number(MAX_DIMENSION) }))
+        }
+        Kind::Direction | Kind::Rotation => vector(json!({ "type": "number" })),
+        Kind::Colour => vector(json!({ "type": "integer", "minimum": 0, "maximum": 255 })),
+        Kind::Id(ids) => choice(ids.all(registry).map(|listed| [listed.id, listed.name, listed.summary])),
+        Kind::Choice(words) => choice(words().into_iter()),
+        Kind::Parts => json!({ "type": "array" }),
+        Kind::Material | Kind::Parameters | Kind::Part => json!({ "type": "object" }),
+    };
+    schema["description"] = field.help.trim().into();
+    let is_free = field.by_type || matches!(field.kind, Kind::Text(_));
+    if let Some(default) = default.filter(|_| !is_free && !matches!(field.absent, Absent::Error(_))) {
+        schema["default"] = value(&default);
+    }
+    schema
+}
+
+/// The end of a range, which may be large.
+fn whole(v: f32) -> Json {
+    if v.fract() == 0.0 { (v as i64).into() } else { number(v) }
 }
 
 /// The schema as shipped and printed, with a final line break.
@@ -77,60 +117,19 @@ pub fn text(registry: &Registry) -> String {
     format!("{:#}\n", schema(registry))
 }
 
-/// Optional fields may be absent, but not `null`; and the formats of numbers are internal.
-fn tidy(schema: &mut Json) {
-    match schema {
-        Json::Object(map) => {
-            if let Some(Json::Array(types)) = map.get_mut("type") {
-                types.retain(|t| t != "null");
-                if let [only] = types.as_slice() {
-                    let only = only.clone();
-                    map.insert("type".to_owned(), only);
-                }
-            }
-            if let Some(Json::Array(choices)) = map.get_mut("anyOf") {
-                choices.retain(|c| c["type"] != "null");
-                if let [Json::Object(only)] = choices.as_slice() {
-                    let only = only.clone();
-                    map.remove("anyOf");
-                    for (key, value) in only {
-                        map.entry(key).or_insert(value);
-                    }
-                }
-            }
-            if map.get("format").is_some_and(Json::is_string) {
-                map.remove("format");
-            }
-            // Documentation comments are wrapped in the source; editors wrap by themselves.
-            if let Some(Json::String(text)) = map.get_mut("description") {
-                *text = text.replace('\n', " ");
-            }
-            map.values_mut().for_each(tidy);
-        }
-        Json::Array(items) => items.iter_mut().for_each(tidy),
-        _ => {}
-    }
-}
-
 /// One of several ids; editors show the names and summaries next to them.
-fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str, &'a str)>) {
-    let (mut ids, mut descriptions) = (Vec::new(), Vec::new());
-    for (id, name, summary) in choices {
-        ids.push(Json::from(id));
-        descriptions.push(Json::from(if summary.is_empty() {
-            name.to_owned()
-        } else {
-            format!("{name}: {summary}")
-        }));
+fn choice<'a>(choices: impl Iterator<Item = [&'a str; 3]>) -> Json {
+    let (ids, descriptions): (Vec<_>, Vec<_>) = choices
+        .map(|[id, name, summary]| match summary {
+            "" => (id, name.to_owned()),
+            summary => (id, format!("{name}: {summary}")),
+        })
+        .unzip();
+    let mut schema = json!({ "type": "string", "enum": ids });
+    if descriptions.iter().any(|words| !words.is_empty()) {
+        schema["enumDescriptions"] = descriptions.into();
     }
-    field["enum"] = ids.into();
-    field["enumDescriptions"] = descriptions.into();
-}
-
-/// A position: inside the largest legal room.
-fn place(field: &mut Json) {
-    field["items"]["exclusiveMinimum"] = 0.into();
-    field["items"]["maximum"] = number(MAX_DIMENSION);
+    schema
 }
 
 /// The lights: one variant per type, distinguished by `type`.
@@ -138,10 +137,7 @@ fn lights(list: &mut Json, registry: &Registry) {
     list["minItems"] = 1.into();
     list["maxItems"] = MAX_LIGHTS.into();
     let light = &mut list["items"];
-    let declarations = || registry.lights().iter().map(|l| l.declaration);
     let fields = &mut light["properties"];
-    choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
-    place(&mut fields["position"]);
     let parameters = || registry.lights().iter().flat_map(|l| l.parameters);
     // Types may declare the same name with other ranges.
     let shared = |p: &Parameter| parameters().any(|other| other.name == p.name && other != p);
@@ -180,7 +176,10 @@ fn lights(list: &mut Json, registry: &Registry) {
             "then": { "required": required, "properties": properties },
         })
     });
-    let alternatives = keys::LIGHT_ALTERNATIVES.map(|both| json!({ "not": { "required": both } }));
+    let alternatives = Light::FIELDS
+        .iter()
+        .rev()
+        .filter_map(|field| Some(json!({ "not": { "required": [field.key, field.instead?] } })));
     light["allOf"] = types.chain(alternatives).collect::<Vec<_>>().into();
     list["items"]["defaultSnippets"] = json!([{
         "label": "point light",
@@ -193,7 +192,6 @@ fn objects(list: &mut Json, registry: &Registry) {
     list["minItems"] = 1.into();
     list["maxItems"] = MAX_OBJECTS.into();
     let object = &mut list["items"];
-    let declarations = || registry.shapes().iter().map(|s| s.declaration);
     let of_types = || registry.shapes().iter().flat_map(|s| s.parameters);
     let fields = &mut object["properties"];
     for p in of_types() {
@@ -205,8 +203,6 @@ fn objects(list: &mut Json, registry: &Registry) {
             other => *other = json!({ "description": p.help }),
         }
     }
-    choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
-    place(&mut fields["position"]);
     let mut parameters = Map::new();
     for p in registry.material_parameters() {
         let mut field = parameter(p);
@@ -358,11 +354,7 @@ fn parameter(p: &Parameter) -> Json {
             json!({ "oneOf": [one, { "type": "array", "items": one, "minItems": 3, "maxItems": 3 }] })
         }
         ParameterKind::Choice { .. } if p.is_flag() => json!({ "type": "boolean" }),
-        ParameterKind::Choice { options, .. } => {
-            let mut field = json!({ "type": "string" });
-            choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));
-            field
-        }
+        ParameterKind::Choice { options, .. } => choice(options.iter().map(|(id, name)| [*id, *name, ""])),
         ParameterKind::File { .. } => json!({ "type": "string" }),
     };
     field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();

@@ -16,9 +16,10 @@ use serde::{
 use super::{
     Display, Light, Object, Observer, Scene, SceneSize,
     error::Problem,
-    format::{DisplayFile, LightFile, ObjectFile, ObserverFile, SceneFile, SizeFile},
     load::{self, Defaults},
+    part::Fields,
     read,
+    write::Written,
 };
 use crate::{
     parameter::{Parameter, ParameterKind, Value},
@@ -50,7 +51,7 @@ pub struct SceneOf<'a>(pub &'a Registry);
 
 impl Serialize for SceneIn<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        SceneFile::new(self.0, None, self.1).serialize(serializer)
+        written(self.0, self.1, serializer)
     }
 }
 
@@ -78,13 +79,17 @@ impl<'de> Deserialize<'de> for Scene {
     }
 }
 
-/// A part of a scene, by the type that writes it and the method that reads it.
-macro_rules! part {
-    ($Part:ty, |$part:ident| $file:expr, $read:ident) => {
-        impl Serialize for $Part {
+fn written<S: Serializer>(part: &dyn Fields, registry: &Registry, serializer: S) -> Result<S::Ok, S::Error> {
+    let materials: Vec<_> = registry.material_parameters().collect();
+    Written { part, schema: None, materials: &materials, registry }.serialize(serializer)
+}
+
+/// Parts of a scene, with the methods that read them.
+macro_rules! parts {
+    ($($Part:ty: $read:ident;)+) => {
+        $(impl Serialize for $Part {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let $part = self;
-                $file.serialize(serializer)
+                written(self, &BUILT_IN, serializer)
             }
         }
 
@@ -93,19 +98,11 @@ macro_rules! part {
                 let text = text(deserializer)?;
                 read::alone(&text, &BUILT_IN, |reader, value| reader.$read(value)).map_err(of)
             }
-        }
+        })+
     };
 }
 
-part!(SceneSize, |size| SizeFile::new(*size), size);
-part!(Light, |light| LightFile::new(light, &BUILT_IN), light);
-part!(Observer, |observer| ObserverFile::new(observer), observer);
-part!(
-    Object,
-    |object| ObjectFile::new(object, &BUILT_IN.material_parameters().collect::<Vec<_>>(), &BUILT_IN),
-    object
-);
-part!(Display, |display| DisplayFile::new(display), display);
+parts! { SceneSize: part; Light: light; Observer: part; Object: object; Display: part; }
 
 /// Reads a value of this parameter: its declaration determines the meaning of a number or a list.
 impl<'de> DeserializeSeed<'de> for &Parameter {

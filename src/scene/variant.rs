@@ -3,7 +3,13 @@
 //! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
 //! it gives.
 
-use super::{Comparison, Display, Scene};
+use super::{
+    Comparison, Display, Field, Object, Scene,
+    display::EXPOSURE,
+    field::{Ids, Kind},
+    held::Word as _,
+    part::{Fields as _, Key, Structure as _, part},
+};
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Values,
@@ -16,40 +22,46 @@ pub const MAX_VARIANTS: usize = 3;
 /// The letters of the views: A is the scene, the others are its variants.
 pub const LETTERS: [&str; MAX_VARIANTS + 1] = ["A", "B", "C", "D"];
 
-/// A scene with some things changed. Anything that is `None`, or missing, is inherited.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Variant {
-    /// Name given by the user.
-    pub name: Option<String>,
-    /// The name of another variant, from which it inherits instead of the scene.
-    pub based_on: Option<String>,
-    /// Id of the reflection model of every object.
-    pub reflection_model: Option<String>,
-    /// Id of the shading model of every object.
-    pub shading_model: Option<String>,
-    /// Parameters of the material of every object.
-    pub material: Values,
-    /// The terms of the equation that are shown.
-    pub terms: Option<TermSelection>,
-    /// The curve from light to display.
-    pub tone_mapping: Option<ToneMapping>,
-    /// Exposure in EV.
-    pub exposure: Option<f32>,
-    /// Decoding and encoding of colours.
-    pub encoding: Option<Encoding>,
-    /// Tessellation of every object, as far as the object's type allows it.
-    pub tessellation: Option<u32>,
+part! {
+    /// The scene with some things changed. What is absent is inherited.
+    pub struct Variant("a variant") {
+        /// Name of the variant.
+        name: Option<String> = Field::of("the name", Kind::Text(None)), None;
+        /// Name of another variant from which it inherits, instead of the scene.
+        based_on: Option<String> =
+            Field::of("the base", Kind::Text(Some("this must be the name of another variant"))), None;
+        /// Reflection model of every object.
+        reflection_model: Option<String> = Field::of("the reflection model", Kind::Id(Ids::ReflectionModel)), None;
+        /// Shading model of every object.
+        shading_model: Option<String> = Field::of("the shading model", Kind::Id(Ids::ShadingModel)), None;
+        /// Parameters of the material of every object.
+        material: Values = Field::of("the material", Kind::Material), Values::default();
+        /// Terms of the equation that are shown.
+        terms: Option<TermSelection> = Field::of("the terms", Kind::Choice(TermSelection::words)), None;
+        /// Tone mapping: the curve from light to display.
+        tone_mapping: Option<ToneMapping> = Field::of("the tone mapping", Kind::Choice(ToneMapping::words)), None;
+        /// Exposure in EV: each step up doubles the light.
+        exposure: Option<f32> = EXPOSURE, None;
+        /// `srgb`: colours are decoded before and encoded after the calculation. `off`: neither; deliberately wrong, for
+        /// comparison.
+        encoding: Option<Encoding> = Field::of("the encoding", Kind::Choice(Encoding::words)), None;
+        /// Tessellation of every object, as far as the object's type allows it.
+        tessellation: Option<u32> =
+            Field::of("the tessellation of a variant", Kind::Count(1)).called("tessellation"), None;
+    }
 }
 
 impl Variant {
     /// The display settings, where `inherited` are those of the scene.
     #[must_use]
     pub fn display(&self, inherited: Display) -> Display {
-        Display {
-            tone_mapping: self.tone_mapping.unwrap_or(inherited.tone_mapping),
-            exposure: self.exposure.unwrap_or(inherited.exposure),
-            encoding: self.encoding.unwrap_or(inherited.encoding),
+        let mut display = inherited;
+        for key in Display::keys().into_iter().map(Key::Own) {
+            if let Some(value) = self.value(key) {
+                display.put(key, Some(value));
+            }
         }
+        display
     }
 
     /// The scene as the variant shows it: numbers that another model does not allow are replaced by the
@@ -57,62 +69,81 @@ impl Variant {
     #[must_use]
     pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = self.laid_over(scene, registry);
-        if self.reflection_model.is_some() || self.shading_model.is_some() {
+        if self.chooses_models() {
             shown.bring_into_range(registry);
         }
         shown
     }
 
+    /// True if another model may judge materials.
+    fn chooses_models(&self) -> bool {
+        self.reflection_model.is_some() || self.shading_model.is_some()
+    }
+
+    /// True if objects look the same with another variant, whatever else differs.
+    #[must_use]
+    pub fn shows_objects_like(&self, other: &Self) -> bool {
+        let objects = |variant: &Self| Self {
+            reflection_model: variant.reflection_model.clone(),
+            shading_model: variant.shading_model.clone(),
+            material: variant.material.clone(),
+            tessellation: variant.tessellation,
+            ..Self::default()
+        };
+        objects(self) == objects(other)
+    }
+
+    /// Shows one object of a scene as [`applied`](Self::applied) does.
+    pub fn apply_to_object(&self, shown: &mut Scene, i: usize, registry: &Registry) {
+        self.lay_over_object(&mut shown.objects[i], registry);
+        if self.chooses_models() {
+            shown.bring_object_into_range(i, registry);
+        }
+    }
+
     /// The scene as the variant shows it, with every number as written.
     pub(super) fn laid_over(&self, scene: &Scene, registry: &Registry) -> Scene {
-        let mut shown = Scene { display: self.display(scene.display), ..scene.clone() };
+        let mut shown = scene.clone();
+        self.lay_over_rest(&mut shown);
+        shown.objects.iter_mut().for_each(|object| self.lay_over_object(object, registry));
+        shown
+    }
+
+    /// Sets everything but the objects of a scene.
+    pub fn lay_over_rest(&self, shown: &mut Scene) {
+        shown.display = self.display(shown.display);
         if let Some(id) = &self.reflection_model {
             shown.reflection_model.clone_from(id);
         }
         if let Some(id) = &self.shading_model {
             shown.shading_model.clone_from(id);
         }
-        for object in &mut shown.objects {
-            if self.reflection_model.is_some() {
-                object.reflection_model = None;
-            }
-            if self.shading_model.is_some() {
-                object.shading_model = None;
-            }
-            if let (Some(count), Some(shape)) = (self.tessellation, registry.shape(&object.object_type)) {
-                object.tessellation = Some(shape.tessellation(Some(count)));
-            }
-            object.material.0.extend(self.material.0.clone());
+    }
+
+    fn lay_over_object(&self, object: &mut Object, registry: &Registry) {
+        if self.reflection_model.is_some() {
+            object.reflection_model = None;
         }
-        shown
+        if self.shading_model.is_some() {
+            object.shading_model = None;
+        }
+        if let (Some(count), Some(shape)) = (self.tessellation, registry.shape(&object.object_type)) {
+            object.tessellation = Some(shape.tessellation(Some(count)));
+        }
+        object.material.0.extend(self.material.0.clone());
     }
 
     /// These overrides, supplemented by those of `base`.
     #[must_use]
-    pub fn over(mut self, base: &Self) -> Self {
-        let Self {
-            name: _,
-            based_on,
-            reflection_model,
-            shading_model,
-            material,
-            terms,
-            tone_mapping,
-            exposure,
-            encoding,
-            tessellation,
-        } = base;
-        self.based_on.clone_from(based_on);
-        self.reflection_model = self.reflection_model.or_else(|| reflection_model.clone());
-        self.shading_model = self.shading_model.or_else(|| shading_model.clone());
-        self.terms = self.terms.or(*terms);
-        self.tone_mapping = self.tone_mapping.or(*tone_mapping);
-        self.exposure = self.exposure.or(*exposure);
-        self.encoding = self.encoding.or(*encoding);
-        self.tessellation = self.tessellation.or(*tessellation);
-        let own = std::mem::replace(&mut self.material, material.clone());
-        self.material.0.extend(own.0);
-        self
+    pub fn over(self, base: &Self) -> Self {
+        let mut all = Self { name: None, ..base.clone() };
+        self.each(&mut |field, held, _| {
+            if let Some(value) = held.value().filter(|_| field.key != Self::based_on.key) {
+                all.put(Key::Own(field.key), Some(value));
+            }
+        });
+        all.material.0.extend(self.material.0);
+        all
     }
 }
 
@@ -176,10 +207,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        parameter::Value,
-        scene::{Object, check},
-    };
+    use crate::{parameter::Value, scene::check};
 
     fn scene(variants: Vec<Variant>) -> Scene {
         Scene { variants, ..Scene::default() }

@@ -53,7 +53,7 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
                 session.say(Severity::Info, told(&exported, folder));
                 return Some(folder.clone());
             }
-            Err(why) => session.say(Severity::Error, format!("The shaders were not written out: {why}.")),
+            Err(why) => session.say(Severity::Error, format!("The shaders were not exported: {why}.")),
         },
         _ => {}
     }
@@ -77,7 +77,7 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
             session.say(
                 Severity::Info,
                 format!(
-                    "{} was written. {}, change it and save it: the picture follows.",
+                    "{} was written. {}, change it and save it: the picture updates.",
                     path.shown(),
                     keys::hint_beside(session, registry, "Open it in an editor", "edit_model")
                 ),
@@ -88,7 +88,7 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
             session.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
             session.say(
                 Severity::Error,
-                format!("{} exists already and was left as it is; choose another name.", path.shown()),
+                format!("{} already exists and was not changed; choose another name.", path.shown()),
             );
         }
         Err(e) => {
@@ -118,7 +118,7 @@ fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => session.say(
             Severity::Error,
-            format!("{} exists already and was left as it is; rename the other file.", path.shown()),
+            format!("{} already exists and was not changed; rename the other file.", path.shown()),
         ),
         Err(e) => {
             session.say(Severity::Error, format!("{} could not be written: {}.", path.shown(), words(&e)))
@@ -130,14 +130,14 @@ fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
 fn told(exported: &Exported, folder: &Path) -> String {
     let count = |n: usize| if n == 1 { "1 file".to_owned() } else { format!("{n} files") };
     let mut text = match exported.written.len() {
-        0 => format!("The shaders are in {} already", folder.shown()),
+        0 => format!("The shaders are already in {}", folder.shown()),
         n => format!("{} of shaders and example models were written to {}", count(n), folder.shown()),
     };
     if !exported.kept.is_empty() {
-        text += &format!("; {} that differ were left as they are", count(exported.kept.len()));
+        text += &format!("; {} that differ were not changed", count(exported.kept.len()));
     }
     format!(
-        "{text}. Change one and save it: the picture follows. `lcm --assets {}` begins with them the next time.",
+        "{text}. Change one and save it: the picture updates. Next time, `lcm --assets {}` starts with them.",
         folder.shown()
     )
 }

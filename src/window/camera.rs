@@ -280,9 +280,9 @@ impl CameraControl<'_, '_> {
         let observer = Observer {
             position: transform.translation,
             direction: transform.rotation * Vec3::NEG_Z,
-            field_of_view: session.document.observer.field_of_view,
+            ..session.document.observer
         };
-        session.apply(Action::Edit(Edit::Observer(observer)), registry);
+        session.apply(Action::Edit(Edit::from(observer)), registry);
         if session.document.observer == observer {
             self.home();
         }

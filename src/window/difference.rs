@@ -92,27 +92,23 @@ fn compare(
     let comparable = views.cells().len() > 1 && session.incomparable().is_none();
     let both = comparable.then(|| views.find(0).zip(views.find(with))).flatten();
     let Some((a, b)) = both else {
-        if session.facts.comparison.is_some() {
-            session.bypass_change_detection().facts.comparison = None;
-        }
+        session.bypass_change_detection().facts.comparison = None;
         map.0 = None;
         return forget(&mut comparing, &mut commands);
     };
     let rest = a.drawing.rests() && b.drawing.rests();
     if rest && let (Some(texture_a), Some(texture_b)) = (a.texture(), b.texture()) {
-        // The edge of a wipe and the arrangement of the views do not affect the statistics.
-        let question = Question {
-            comparison: Comparison { split: 0.0, ..comparison },
-            with,
-            size: a.view.size,
-            drawn: [a.drawing.drawn(), b.drawing.drawn()],
-            textures: [texture_a.clone(), texture_b.clone()],
-        };
-        let under_way = comparing.asked.is_some();
-        if !under_way && comparing.known.as_ref() != Some(&question) {
-            comparing.read = Some(Reading::begin(&question.textures, &mut commands));
-            comparing.asked = Some(question);
-        }
+        comparing.ask(
+            Question {
+                // The edge of a wipe does not affect the statistics.
+                comparison: Comparison { split: 0.0, ..comparison },
+                with,
+                size: a.view.size,
+                drawn: [a.drawing.drawn(), b.drawing.drawn()],
+                textures: [texture_a.clone(), texture_b.clone()],
+            },
+            &mut commands,
+        );
     }
     if comparing.asked.is_some() {
         requests.write(RequestRedraw);
@@ -121,14 +117,7 @@ fn compare(
         && let Some(question) = comparing.asked.clone()
         && let Some(codes) = Reading::end(&mut comparing.read, &mut commands)
     {
-        let job = Job {
-            terms: [0, question.with].map(|view| session.terms_of(view)),
-            question,
-            codes,
-            scene: (*session.document).clone(),
-            camera: session.facts.observer(session.document.observer.field_of_view),
-            registry: registry.clone(),
-        };
+        let job = Job::of(question, codes, &session, &registry);
         // An obsolete result is dropped.
         comparing.work.begin((), || {}, || None, move |_| Some(job.run()));
     }
@@ -140,21 +129,34 @@ fn compare(
     let numbers = numbers(&answer, known.with, several, known.comparison.values);
     session.bypass_change_detection().facts.comparison = Some(numbers);
     if let Some(colours) = answer.map {
-        let rgba: Vec<u8> =
-            colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
-        let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
-        let mut image = Image::new(
-            extent,
-            TextureDimension::D2,
-            rgba,
-            TextureFormat::Rgba8UnormSrgb,
-            RenderAssetUsages::RENDER_WORLD,
-        );
-        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
-        map.0 = Some((images.add(image), size));
+        map.0 = Some((images.add(image(&colours, size)), size));
     }
     settling.draw(SETTLING_FRAMES);
     requests.write(RequestRedraw);
+}
+
+impl Comparing {
+    /// Begins to read back views, unless the answer is known or another question is under way.
+    fn ask(&mut self, question: Question, commands: &mut Commands) {
+        if self.asked.is_none() && self.known.as_ref() != Some(&question) {
+            self.read = Some(Reading::begin(&question.textures, commands));
+            self.asked = Some(question);
+        }
+    }
+}
+
+/// The image of a map of colours.
+fn image(colours: &[u8], size: UVec2) -> Image {
+    let rgba = colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
+    let mut image = Image::new(
+        Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        TextureDimension::D2,
+        rgba,
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+    image
 }
 
 /// Ends the comparison and forgets its result.
@@ -180,6 +182,17 @@ struct Job {
 }
 
 impl Job {
+    fn of(question: Question, codes: Vec<Vec<u8>>, session: &Session, registry: &Registry) -> Self {
+        Self {
+            terms: [0, question.with].map(|view| session.terms_of(view)),
+            question,
+            codes,
+            scene: (*session.document).clone(),
+            camera: session.facts.observer(session.document.observer),
+            registry: registry.clone(),
+        }
+    }
+
     fn run(self) -> Answer {
         let size = self.question.size;
         let shown: Vec<Shown> = [0, self.question.with]

@@ -320,7 +320,7 @@ fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> 
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|e| format!("the command {program}{of} does not start ({})", files::words(&e)))?;
+        .map_err(|e| format!("the command {program}{of} could not be started ({})", files::words(&e)))?;
     let started = Instant::now();
     match child.wait() {
         Ok(status) if !status.success() && started.elapsed() < PATIENCE => {

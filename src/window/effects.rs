@@ -2,7 +2,7 @@
 
 use bevy::{
     app::AppExit,
-    ecs::prelude::*,
+    ecs::{prelude::*, system::SystemParam},
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
@@ -29,6 +29,59 @@ fn wake(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + 'static + u
     }
 }
 
+/// Work in the background, and the way to wake the idle window.
+#[derive(SystemParam)]
+pub(super) struct Work<'w> {
+    editors: Res<'w, editor::Editors>,
+    laws: Res<'w, laws::LawChecks>,
+    exports: Res<'w, exports::Exports>,
+    matches: Res<'w, matching::Matches>,
+    plots: Res<'w, plots::PlotFiles>,
+    proxy: Option<Res<'w, EventLoopProxyWrapper>>,
+}
+
+impl Work<'_> {
+    /// Reports what has ended. Shows the folder of an export to the user, if there is one.
+    fn report(&self, session: &mut ResMut<Session>, registry: &Registry, unattended: bool) {
+        for complaint in self.editors.take() {
+            session.say(Severity::Error, complaint);
+        }
+        if let Some((model, outcome)) = self.laws.take() {
+            session.laws_checked(&model, outcome);
+        }
+        if let Some(path) = self.exports.report(session)
+            && !unattended
+        {
+            exports::reveal(&path, session);
+        }
+        self.matches.report(session, registry);
+        self.plots.report(session);
+    }
+
+    /// Begins or stops what an effect asks for. Returns any other effect.
+    fn begin(&self, effect: Effect, session: &mut ResMut<Session>, registry: &Registry) -> Option<Effect> {
+        let wake = wake(self.proxy.as_deref());
+        match effect {
+            Effect::OpenInEditor { path, line } => {
+                let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
+                self.editors.open(variable.as_deref(), &path, line, wake);
+            }
+            Effect::Export { form, path, overwrite } => {
+                self.exports.begin(form, path, overwrite, session, registry, wake);
+            }
+            Effect::CancelExport => self.exports.cancel(),
+            Effect::Match { view, what, parameters } => {
+                self.matches.begin((view, what, parameters), session, registry, wake);
+            }
+            Effect::CancelMatch => self.matches.cancel(),
+            Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
+            Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
+            other => return Some(other),
+        }
+        None
+    }
+}
+
 /// Carries out the effects of the panels.
 pub(super) fn carry_out(
     mut effects: MessageReader<LabEffect>,
@@ -38,32 +91,16 @@ pub(super) fn carry_out(
     mut camera: camera::CameraControl,
     watch: Option<Res<watching::FileWatch>>,
     mut exit: MessageWriter<AppExit>,
-    editors: Res<editor::Editors>,
-    laws: Res<laws::LawChecks>,
-    exports: Res<exports::Exports>,
-    matches: Res<matching::Matches>,
-    plot_files: Res<plots::PlotFiles>,
-    proxy: Option<Res<EventLoopProxyWrapper>>,
+    work: Work,
     mut recovery: Option<ResMut<recovery::Recovery>>,
     unattended: Option<Res<Unattended>>,
     mut commands: Commands,
 ) {
-    for complaint in editors.take() {
-        session.say(Severity::Error, complaint);
-    }
-    if let Some((model, outcome)) = laws.take() {
-        session.laws_checked(&model, outcome);
-    }
-    if let Some(path) = exports.report(&mut session)
-        && unattended.is_none()
-    {
-        exports::reveal(&path, &mut session);
-    }
-    matches.report(&mut session, &registry);
-    plot_files.report(&mut session);
+    work.report(&mut session, &registry, unattended.is_some());
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
+        let Some(effect) = work.begin(effect, &mut session, &registry) else { continue };
         match effect {
             Effect::HomeView => camera.home(),
             Effect::FocusSelection => camera.focus(&session),
@@ -75,9 +112,7 @@ pub(super) fn carry_out(
                 camera.home();
             }
             Effect::Quit => {
-                if let Some(recovery) = &recovery {
-                    recovery.farewell.close();
-                }
+                recovery.iter().for_each(|recovery| recovery.farewell.close());
                 exit.write(AppExit::Success);
             }
             Effect::Recovery(choice) => {
@@ -86,53 +121,19 @@ pub(super) fn carry_out(
                 }
             }
             Effect::LookAgain(path) => {
-                if let Some(watch) = &watch {
-                    watch.0.report_later(&path, watching::GRACE);
-                }
+                watch.iter().for_each(|watch| watch.0.report_later(&path, watching::GRACE));
             }
             Effect::SaveSettings | Effect::SaveProgress(_) if unattended.is_some() => {}
             Effect::Complain(text) => watching::complain(&text),
-            // The panels handle the clipboard and the dialogs.
-            Effect::CopyText(_) => {}
-            // Handled elsewhere, since the views must be read back first.
-            Effect::Picture { .. } => {}
-            dialog @ (Effect::PickOpen
-            | Effect::PickSave
-            | Effect::PickFile(..)
-            | Effect::PickExport(_)
-            | Effect::PickPicture(_)
-            | Effect::PickPlot
-            | Effect::PickLesson
-            | Effect::PickShaderFolder) => {
-                session.wanted_dialog = Some(dialog);
-            }
+            // The panels handle the clipboard. Pictures are taken elsewhere, since the views must be read back first.
+            Effect::CopyText(_) | Effect::Picture { .. } => {}
             Effect::OpenManual => manual::show(&mut session),
-            Effect::NewModel { .. }
-            | Effect::DuplicateModel { .. }
-            | Effect::AdoptModel(_)
-            | Effect::ExportShaders(_) => {
-                if let Some(folder) = authoring::write(&effect, &mut session, &registry) {
+            Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
+            dialog if dialog.is_dialog() => session.wanted_dialog = Some(dialog),
+            model if model.is_authoring() => {
+                if let Some(folder) = authoring::write(&model, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }
-            }
-            Effect::OpenInEditor { path, line } => {
-                let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
-                editors.open(variable.as_deref(), &path, line, wake(proxy.as_deref()));
-            }
-            Effect::Export { form, path, overwrite } => {
-                exports.begin(form, path, overwrite, &mut session, &registry, wake(proxy.as_deref()));
-            }
-            Effect::CancelExport => exports.cancel(),
-            Effect::Match { view, what, parameters } => {
-                matches.begin((view, what, parameters), &session, &registry, wake(proxy.as_deref()));
-            }
-            Effect::CancelMatch => matches.cancel(),
-            Effect::WritePlot(path) => {
-                plot_files.begin(path, &mut session, &registry, wake(proxy.as_deref()));
-            }
-            Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
-            Effect::CheckLaws(model) => {
-                laws.begin(&model, registry.folders(), wake(proxy.as_deref()));
             }
             other => {
                 let more = run_files(&mut session, &registry, other.clone(), &mut *files);

@@ -83,7 +83,7 @@ impl Exports {
             path,
             before,
         };
-        let broken = vec!["The export broke off: an error of this program.".to_owned()];
+        let broken = vec!["The export failed: an internal error.".to_owned()];
         let place = job.path.clone();
         self.0.begin(
             form.name,

@@ -30,7 +30,7 @@ impl Matches {
         let same = scene.clone();
         // Pictures are compared as seen from the current camera.
         let mut seen = scene.clone();
-        seen.observer = session.facts.observer(seen.observer.field_of_view);
+        seen.observer = session.facts.observer(seen.observer);
         self.0.begin(
             view,
             wake,

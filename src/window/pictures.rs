@@ -96,16 +96,42 @@ fn take(
     if let Some(end) = pictures.work.take() {
         session.pictured(end);
     }
-    let busy = pictures.job.is_some() || pictures.work.running().is_some();
-    if let Some(Wanted { view, file, since }) = pictures.wanted.front().cloned().filter(|_| !busy) {
-        let numbers = shown(&session, views.cells().iter().map(|cell| cell.view).collect(), view);
+    if let Err(why) = pictures.begin(&views, &session, &registry, &mut commands) {
+        return session.pictured(PictureEnd::Failed(why));
+    }
+    let Pictures { reading, job, work, wanted } = &mut *pictures;
+    if let Some(read) = job.as_ref().and_then(|_| Reading::end(reading, &mut commands))
+        && let Some(job) = job.take()
+    {
+        let broken = PictureEnd::Failed("The picture was not taken: an internal error.".to_owned());
+        work.begin((), || {}, move || broken, move |_| job.run(&read));
+    }
+    if !wanted.is_empty() || job.is_some() || work.running().is_some() {
+        requests.write(RequestRedraw);
+    }
+}
+
+impl Pictures {
+    /// Begins to read back the views of the first picture that is wanted, once they are idle. Returns why there cannot be
+    /// such a picture.
+    fn begin(
+        &mut self,
+        views: &ShownViews,
+        session: &Session,
+        registry: &Registry,
+        commands: &mut Commands,
+    ) -> Result<(), String> {
+        let busy = self.job.is_some() || self.work.running().is_some();
+        let wanted = self.wanted.front().cloned().filter(|_| !busy);
+        let Some(Wanted { view, file, since }) = wanted else { return Ok(()) };
+        let numbers = shown(session, views.cells().iter().map(|cell| cell.view).collect(), view);
         let found: Option<Vec<_>> = numbers.iter().map(|number| views.find(*number)).collect();
         let Some(found) = found else {
-            pictures.wanted.pop_front();
+            self.wanted.pop_front();
             let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
-            let why =
-                format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
-            return session.pictured(PictureEnd::Failed(why));
+            return Err(format!(
+                "No picture was taken: view {letter} is not on screen. Choose a layout with it."
+            ));
         };
         // A converging view becomes idle eventually; one that keeps restarting does not.
         let converges = |drawing: &Drawing| drawing.converged().done > 1 && !drawing.is_done();
@@ -114,31 +140,22 @@ fn take(
         let textures: Option<Vec<_>> =
             found.iter().map(|view| view.texture().filter(|_| rest).cloned()).collect();
         if let (Some(textures), Some(first)) = (textures, found.first()) {
-            pictures.reading = Some(Reading::begin(&textures, &mut commands));
-            pictures.job = Some(Job {
-                scene: scene(&session, &registry),
+            self.reading = Some(Reading::begin(&textures, commands));
+            self.job = Some(Job {
+                scene: scene(session, registry),
                 registry: registry.clone(),
                 shown: numbers.iter().map(|view| (*view, session.terms_of(*view))).collect(),
                 size: first.view.size,
-                camera: session.facts.observer(session.document.observer.field_of_view),
+                camera: session.facts.observer(session.document.observer),
                 camera_is_free: session.facts.camera_is_free,
                 caption: session.view.picture_caption,
                 // A layout that shows a single view also means that view alone.
                 alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
                 file,
             });
-            pictures.wanted.pop_front();
+            self.wanted.pop_front();
         }
-    }
-    let Pictures { reading, job, work, wanted } = &mut *pictures;
-    if let Some(read) = job.as_ref().and_then(|_| Reading::end(reading, &mut commands))
-        && let Some(job) = job.take()
-    {
-        let broken = PictureEnd::Failed("The picture was not taken: an error of this program.".to_owned());
-        work.begin((), || {}, move || broken, move |_| job.run(&read));
-    }
-    if !wanted.is_empty() || job.is_some() || work.running().is_some() {
-        requests.write(RequestRedraw);
+        Ok(())
     }
 }
 
@@ -213,7 +230,7 @@ impl Job {
 
     /// The RGB pixels of the picture, and its size.
     fn draw(&self, read: &[Vec<u8>]) -> Result<(Vec<u8>, [u32; 2]), String> {
-        let unread = || "The picture was not taken: the GPU gave no pixels.".to_owned();
+        let unread = || "The picture was not taken: the GPU returned no pixels.".to_owned();
         let mut comparison = self.scene.comparison;
         if self.shown.len() < 2 {
             comparison.layout = Layout::Single;

@@ -93,7 +93,7 @@ impl Farewell {
             }
         };
         let interrupt = Interrupt::listen(waker(world), last_act).unwrap_or_else(|error| {
-            complain(&format!("signals end the window without a question: {error}"));
+            complain(&format!("signals will close the window without asking: {error}"));
             Interrupt::default()
         });
         Self { keeper, interrupt, closing: Arc::default() }

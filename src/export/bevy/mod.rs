@@ -52,7 +52,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     }
     if lit.programs.iter().any(|program| program.shader.reads_header) {
         return Err(ExportError::refused(
-            "the edited loop.wgsl reads the exposure or the encoding, which the light loop of an export has no part in",
+            "the edited loop.wgsl reads the exposure or the encoding, which the light loop of an export does not have",
         ));
     }
     progress.step(0.5, "writing the program")?;

@@ -84,7 +84,7 @@ fn doubt(request: &Request, explanation: &Explanation) -> Option<String> {
         )),
         None if ignored.is_empty() => None,
         None => Some(format!(
-            "The explanation is not that of the picture: the CPU renderer, which is explained, ignores the edited {}",
+            "The explanation is not that of the picture: explanations follow the CPU renderer, which ignores the edited {}",
             listed(&ignored, "and")
         )),
     }

@@ -107,7 +107,10 @@ fn matte_phong(m: &Material) -> Result<Bsdf, String> {
         return Err("Mitsuba has a counterpart only where k_s and k_a are 0".to_owned());
     }
     if m.ambient {
-        return Err("Mitsuba has a counterpart only without ambient lights, to which k_a answers".to_owned());
+        return Err(
+            "Mitsuba has a counterpart only without ambient lights, which this model reflects by k_a"
+                .to_owned(),
+        );
     }
     Ok(diffuse(m.number("k_d") * m.colour("base_colour")))
 }
@@ -127,7 +130,7 @@ fn microfacet(m: &Material) -> Result<Bsdf, String> {
         let chosen = m.choice(parameter);
         if !options.contains(&chosen.as_str()) {
             let options = crate::text::listed(options, "or");
-            wrong.push(format!("{parameter} must be {options}, and it is {chosen}"));
+            wrong.push(format!("{parameter} must be {options}, not {chosen}"));
         }
     };
     require("distribution", &["ggx", "beckmann"]);
@@ -189,7 +192,7 @@ mod tests {
     #[test]
     fn what_is_not_the_same_is_refused_with_all_reasons() {
         let said = of("microfacet", &[], false).expect_err("by default it has a base");
-        for part in ["masking must be smith_separable", "diffuse must be none, and it is lambert"] {
+        for part in ["masking must be smith_separable", "diffuse must be none, not lambert"] {
             assert!(said.contains(part), "{said}");
         }
         let mut metal = vec![

@@ -221,7 +221,7 @@ fn ambient(lamp: &Lamp) -> Result<Emitter, String> {
 fn spot(lamp: &Lamp) -> Result<Emitter, String> {
     let [angle, penumbra] = ["cone_angle", "penumbra"].map(|name| lamp.parameter(name));
     if angle > WIDEST {
-        return Err(format!("Mitsuba has a counterpart of cones up to {WIDEST}°, and this one has {angle}°"));
+        return Err(format!("Mitsuba has a counterpart of cones up to {WIDEST}°, but this one has {angle}°"));
     }
     let LightRecord { position, direction, .. } = lamp.record;
     let look = format!(

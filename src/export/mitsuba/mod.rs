@@ -127,7 +127,7 @@ fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
         match emitter {
             Ok(Emitter { around: true, .. }) if let Some(first) = first => refused.add(
                 name,
-                format!("Mitsuba has room for one light from all around, and {first} is the first; one of them would do"),
+                format!("Mitsuba allows only one light from all around, and {first} is one already; switch off one of them"),
             ),
             Ok(emitter) => emitters.push((name, emitter)),
             Err(why) => refused.add(name, why),
@@ -217,8 +217,8 @@ fn differences(request: &Request) -> Vec<String> {
     let mut notes = vec!["Mitsuba casts shadows, the lab does not; its background is black".to_owned()];
     if has_extent(scene.shining(), request.registry) {
         notes.push(
-            "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and those that shine to both \
-             sides are two, a millimetre apart"
+            "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and two-sided ones \
+             become two, a millimetre apart"
                 .to_owned(),
         );
     }

@@ -163,7 +163,7 @@ fn unique(sections: &[Section]) -> Result<(), ExportError> {
     let twice = sections.iter().flat_map(|s| &s.items).find(|item| !known.insert(item.name.as_str()));
     twice.map_or(Ok(()), |item| {
         Err(ExportError::refused(format!(
-            "a shader declares `{}`, a name that exports use themselves; another name for it will do",
+            "a shader declares `{}`, a name reserved for exports; choose another name",
             item.name
         )))
     })
@@ -178,7 +178,7 @@ fn fits(what: &str, bytes: usize, remedy: &str) -> Result<(), ExportError> {
         return Ok(());
     }
     Err(ExportError::refused(format!(
-        "{what} have {bytes} bytes together, and a uniform holds {UNIFORM_BYTES}; {remedy} would do"
+        "{what} take {bytes} bytes in total, but a uniform holds {UNIFORM_BYTES}; use {remedy}"
     )))
 }
 

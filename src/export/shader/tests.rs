@@ -145,12 +145,12 @@ fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
     assert!(compose(&lights, &registry, model, shading, ALONE).is_ok());
     lights.numbers.resize(20_000, 0.0);
     let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much");
-    assert!(refused.to_string().contains("80000 bytes together, and a uniform holds 65536"), "{refused}");
+    assert!(refused.to_string().contains("80000 bytes in total, but a uniform holds 65536"), "{refused}");
     lights.numbers.clear();
     lights.rows = vec![lights.rows[0].clone(); 2000];
     let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much").to_string();
     assert!(
-        refused.starts_with("the lights have ") && refused.contains("a uniform holds 65536"),
+        refused.starts_with("the lights take ") && refused.contains("a uniform holds 65536"),
         "{refused}"
     );
 }

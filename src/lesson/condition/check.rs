@@ -39,7 +39,7 @@ impl Condition {
                         mistakes.push((
                             operand.at,
                             format!(
-                                "this is a {}, and alone neither true nor false; compare it, as in … = …",
+                                "this is a {}, which alone is neither true nor false; compare it, as in … = …",
                                 kind.name()
                             ),
                         ));
@@ -84,7 +84,9 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
             let what = if kind == Kind::Text { "a text" } else { "true or false" };
             return Some((
                 operand.at,
-                format!("this is {what}, which is not greater or less than others; compare it by = or !="),
+                format!(
+                    "this is {what}, which cannot be greater or less than another value; compare it with = or !="
+                ),
             ));
         }
     }
@@ -94,7 +96,10 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
             Kind::Text => "a text",
             Kind::Truth | Kind::Various => "true or false",
         };
-        (right.at, format!("this is {}, and the other side {}; both must be of one type", word(b), word(a)))
+        (
+            right.at,
+            format!("this is {}, but the other side is {}; both must have the same type", word(b), word(a)),
+        )
     })
 }
 
@@ -222,7 +227,7 @@ fn of_knob(
             None => None,
         };
         if used == Some(false) {
-            return Err(format!("what the step selects has no knob {}", quoted(name)));
+            return Err(format!("the part that the step selects has no knob {}", quoted(name)));
         }
         return kind_of_parameter(&parameter.kind).ok_or_else(|| {
             format!("{name} is three numbers; compare one of them, as in scene.objects[0].material.{name}[0]")

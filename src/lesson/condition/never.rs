@@ -43,9 +43,9 @@ pub(super) fn beyond(
         Argument::None => asked.quantity.name.to_owned(),
     };
     let range = if most.is_finite() {
-        format!("it goes from {least} to {most}")
+        format!("it ranges from {least} to {most}")
     } else {
-        format!("its least value is {least}")
+        format!("its smallest value is {least}")
     };
     Some((bound.at, detailed(&format!("{name} is never {word}{number}"), &range)))
 }

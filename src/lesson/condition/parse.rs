@@ -40,9 +40,10 @@ pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
             None => Ok(read),
         },
         Token::Close => Err((parser.at, "there is no opening bracket for this one".to_owned())),
-        _ => {
-            Err((parser.at, format!("expected and, or, or the end of the condition, not {}", parser.shown())))
-        }
+        _ => Err((
+            parser.at,
+            format!("expected “and”, “or” or the end of the condition, not {}", parser.shown()),
+        )),
     }
 }
 
@@ -120,9 +121,9 @@ impl<'a> Parser<'a> {
                 }
                 Ok((Token::Word(&rest[..end]), end))
             }
-            '&' => Err((self.at, "conditions are joined by the word and".to_owned())),
-            '|' => Err((self.at, "conditions are joined by the word or".to_owned())),
-            '!' => Err((self.at, "a condition is negated by the word not".to_owned())),
+            '&' => Err((self.at, "conditions are joined with the word “and”".to_owned())),
+            '|' => Err((self.at, "conditions are joined with the word “or”".to_owned())),
+            '!' => Err((self.at, "a condition is negated with the word “not”".to_owned())),
             c => Err((self.at, format!("{} has no meaning in a condition", quoted(&c.to_string())))),
         }
     }
@@ -219,7 +220,9 @@ impl<'a> Parser<'a> {
             if self.token != Token::Close {
                 return Err(match self.token {
                     Token::End => (open, "this bracket is never closed".to_owned()),
-                    _ => (self.at, format!("expected and, or, or a closing bracket, not {}", self.shown())),
+                    _ => {
+                        (self.at, format!("expected “and”, “or” or a closing bracket, not {}", self.shown()))
+                    }
                 });
             }
             self.advance()?;
@@ -234,7 +237,7 @@ impl<'a> Parser<'a> {
         self.advance()?;
         let right = self.operand()?;
         if let Token::Sign(_) = self.token {
-            return Err((self.at, "a comparison has two sides; join two comparisons by and".to_owned()));
+            return Err((self.at, "a comparison has two sides; join two comparisons with “and”".to_owned()));
         }
         Ok(Expression::Comparison { left, sign, right })
     }

@@ -140,9 +140,9 @@ quantities! {
     "window.active", Text, |_| LETTERS.to_vec(), "the letter of the active view: `\"A\"` to `\"D\"`",
     |s, _| text(LETTERS.get(s.window.active).copied().unwrap_or_default());
     "window.plots", Text, |_| Plot::ALL.map(Plot::id).into_iter().chain(["off"]).collect(),
-    "the plot in sight by its id, or `\"off\"`",
+    "the plot that is shown by its id, or `\"off\"`",
     |s, _| text(s.window.plots.map_or("off", Plot::id));
-    "window.explain", Truth, free, "true if the panel *Explain* is in sight", |s, _| Ok(Value::Truth(s.window.explain));
+    "window.explain", Truth, free, "true if the panel *Explain* is open", |s, _| Ok(Value::Truth(s.window.explain));
     "window.presenting", Truth, free, "true while the picture is presented",
     |s, _| Ok(Value::Truth(s.window.presenting));
     "window.reflection_model", Text, |r| r.models().iter().map(|m| m.declaration.id).collect(),
@@ -229,7 +229,7 @@ fn with_surface(
     let entry = s.registry.model(id).ok_or_else(|| format!("the model {id} is not known"))?;
     let name = entry.declaration.name;
     if let Some(why) = entry.not_on_cpu() {
-        return Err(format!("the processor cannot run {name}: {why}"));
+        return Err(format!("the CPU cannot run {name}: {why}"));
     }
     let surface: Arc<dyn Surface> = entry.instantiate(&object.material, s.scene.display.encoding);
     value(&*surface, entry, name).and_then(|value| {
@@ -283,7 +283,7 @@ fn knob(s: &Situation, name: &str) -> Result<Value, String> {
         }
         Selection::Room => return Err("no object and no light is selected".to_owned()),
     };
-    found.map_err(|_| format!("what is selected has no {name}"))
+    found.map_err(|_| format!("the selected part has no {name}"))
 }
 
 /// The quantity of a word in a condition, or the byte of a mistake in the word, and a sentence.
@@ -318,7 +318,7 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
             }
             _ => Err((
                 at,
-                format!("the angle is {}, but it must be from 0° to less than 90°", quoted(written)),
+                format!("the angle is {}, but it must be at least 0° and less than 90°", quoted(written)),
             )),
         };
     }

@@ -7,8 +7,10 @@ use crate::{
     parameter::{Parameter, Values, json as of},
     registry::Registry,
     scene::{
-        Light, Object, Scene, SceneIn,
+        Light, Object, Part, Scene, Variant,
         error::{Path, Segment},
+        field::Kind,
+        part::Fields,
     },
     text::{did_you_mean, plural, quoted},
 };
@@ -32,7 +34,7 @@ pub(super) fn value(scene: &Scene, path: &Path, registry: &Registry) -> Result<V
         Json::Bool(truth) => Ok(Value::Truth(truth)),
         Json::Null => Err(format!("{path} is not given")),
         Json::Array(_) => Err(format!("{path} is a list; compare an entry, as in {path}[0]")),
-        Json::Object(_) => Err(format!("{path} is no single value; go on with one of its keys")),
+        Json::Object(_) => Err(format!("{path} is not a single value; continue with one of its keys")),
     }
 }
 
@@ -43,7 +45,9 @@ pub(super) fn json_at(scene: &Scene, path: &Path, registry: &Registry) -> Result
         return Err("a path begins with a key".to_owned());
     };
     let list = |count: usize, part: &dyn Fn(usize) -> Json| match rest {
-        [] => Err(format!("{first} is a list; go on with [0], or with .count for the number of its entries")),
+        [] => {
+            Err(format!("{first} is a list; continue with [0], or with .count for the number of its entries"))
+        }
         [Segment::Key(key)] if key == COUNT => Ok(json!(count)),
         [Segment::Index(i), rest @ ..] if *i < count => walk(part(*i), &format!("{first}[{i}]"), rest),
         [Segment::Index(i), ..] => Err(format!(
@@ -51,14 +55,14 @@ pub(super) fn json_at(scene: &Scene, path: &Path, registry: &Registry) -> Result
             plural(count, first.trim_end_matches('s'))
         )),
         [Segment::Key(key), ..] => {
-            Err(format!("{first} is a list, and has no {}; go on with [0] or .count", quoted(key)))
+            Err(format!("{first} is a list, so it has no {}; continue with [0] or .count", quoted(key)))
         }
     };
     match first.as_ref() {
         "objects" => list(scene.objects.len(), &|i| object(scene, &scene.objects[i], registry)),
         "lights" => list(scene.lights.len(), &|i| light(&scene.lights[i], registry)),
-        "variants" => list(scene.variants.len(), &|i| variant(scene, i, registry)),
-        _ => walk(rest_of(scene, registry), "", segments),
+        "variants" => list(scene.variants.len(), &|i| variant(&scene.variants[i], registry)),
+        _ => walk(rest_of(scene), "", segments),
     }
 }
 
@@ -83,7 +87,7 @@ fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
                 ));
             }
             (Segment::Key(key), Json::Array(_)) => {
-                return Err(format!("{place} is a list, and has no {}; go on with [0]", quoted(key)));
+                return Err(format!("{place} is a list, so it has no {}; continue with [0]", quoted(key)));
             }
             (_, Json::Null) => return Ok(Json::Null),
             _ => return Err(format!("{place} is a single value; the path ends there")),
@@ -108,24 +112,24 @@ fn fill<'p>(
     }
 }
 
-/// Writes a value unless one exists.
-fn default(map: &mut Map<String, Json>, key: &str, value: Json) {
-    map.entry(key).or_insert(value);
-}
-
-fn map_of(value: &impl serde::Serialize) -> Map<String, Json> {
-    match serde_json::to_value(value) {
-        Ok(Json::Object(map)) => map,
-        _ => Map::new(),
-    }
+/// The fields of a part, given or default; null for one that it does not have, unless its type has none.
+fn map_of(part: &dyn Fields) -> Map<String, Json> {
+    let mut map = Map::new();
+    part.each(&mut |field, held, _| {
+        let written = match (field.kind, held.value()) {
+            // Their entries are asked for by themselves.
+            (Kind::Parts, _) => json!([]),
+            (Kind::Part | Kind::Material | Kind::Parameters, _) => return,
+            (_, None) if field.by_type => return,
+            (_, value) => value.map_or(Json::Null, |value| of(&value)),
+        };
+        map.insert(field.key.to_owned(), written);
+    });
+    map
 }
 
 fn object(scene: &Scene, object: &Object, registry: &Registry) -> Json {
     let mut map = map_of(object);
-    default(&mut map, "name", Json::Null);
-    map.insert("visible".to_owned(), json!(object.visible));
-    map.insert("size".to_owned(), json!(object.size));
-    map.insert("rotation".to_owned(), json!(object.rotation.to_array()));
     map.insert("reflection_model".to_owned(), json!(scene.model_of(object)));
     map.insert("shading_model".to_owned(), json!(scene.shading_model_of(object)));
     if let Some(shape) = registry.shape(&object.object_type) {
@@ -140,87 +144,30 @@ fn object(scene: &Scene, object: &Object, registry: &Registry) -> Json {
 
 fn light(light: &Light, registry: &Registry) -> Json {
     let mut map = map_of(light);
-    for key in ["name", "colour_temperature", "luminous_flux"] {
-        default(&mut map, key, Json::Null);
-    }
-    map.insert("enabled".to_owned(), json!(light.enabled));
     map.insert("colour".to_owned(), json!(light.rgb8()));
-    let intensity = registry.light(&light.light_type).map_or(light.intensity, |entry| {
+    if let Some(entry) = registry.light(&light.light_type) {
         fill(&mut map, &light.parameters, entry.parameters);
-        light.intensity_as(entry)
-    });
-    map.insert("intensity".to_owned(), json!(intensity));
+        map.insert("intensity".to_owned(), json!(light.intensity_as(entry)));
+    }
     Json::Object(map)
 }
 
-/// The scene without its lights and objects.
-fn rest_of(scene: &Scene, registry: &Registry) -> Json {
-    let bare = Scene {
-        name: scene.name.clone(),
-        description: scene.description.clone(),
-        reflection_model: scene.reflection_model.clone(),
-        shading_model: scene.shading_model.clone(),
-        lights: Vec::new(),
-        objects: Vec::new(),
-        variants: scene.variants.clone(),
-        ..*scene
-    };
-    let mut map = map_of(&SceneIn(&bare, registry));
-    for key in ["name", "description"] {
-        default(&mut map, key, Json::Null);
+/// The scene without its lists.
+fn rest_of(scene: &Scene) -> Json {
+    let mut map = map_of(scene);
+    for part in [Part::Size, Part::Observer, Part::Display, Part::Comparison] {
+        if let (Some(Segment::Key(key)), Some(fields)) = (part.path().segments().first(), scene.part(part)) {
+            map.insert(key.to_string(), Json::Object(map_of(fields)));
+        }
     }
-    let mut observer = map_of(&scene.observer);
-    observer.insert("field_of_view".to_owned(), json!(scene.observer.field_of_view));
-    map.insert("observer".to_owned(), Json::Object(observer));
-    let display = &scene.display;
-    map.insert(
-        "display".to_owned(),
-        json!({
-            "tone_mapping": display.tone_mapping.id(),
-            "exposure": display.exposure,
-            "encoding": display.encoding.id(),
-        }),
-    );
-    let comparison = &scene.comparison;
-    let mut compared = match map.remove("comparison") {
-        Some(Json::Object(map)) => map,
-        _ => Map::new(),
-    };
-    default(&mut compared, "layout", json!(comparison.layout.id()));
-    map.insert("comparison".to_owned(), Json::Object(compared));
     Json::Object(map)
 }
 
-fn variant(scene: &Scene, index: usize, registry: &Registry) -> Json {
-    let mut all = match rest_of(scene, registry) {
-        Json::Object(mut map) => map.remove("variants").unwrap_or_default(),
-        _ => Json::Null,
-    };
-    let mut map = match all.get_mut(index).map(Json::take) {
-        Some(Json::Object(map)) => map,
-        _ => Map::new(),
-    };
-    for key in [
-        "name",
-        "based_on",
-        "reflection_model",
-        "shading_model",
-        "terms",
-        "tone_mapping",
-        "exposure",
-        "encoding",
-        "tessellation",
-    ] {
-        default(&mut map, key, Json::Null);
-    }
-    // A value missing from a variant is inherited: null, not the default.
-    let mut material = match map.remove("material") {
-        Some(Json::Object(map)) => map,
-        _ => Map::new(),
-    };
-    for parameter in registry.material_parameters() {
-        default(&mut material, parameter.name, Json::Null);
-    }
-    map.insert("material".to_owned(), Json::Object(material));
+/// What a variant overrides. A value missing from it is inherited: null, not the default.
+fn variant(variant: &Variant, registry: &Registry) -> Json {
+    let mut map = map_of(variant);
+    let value = |p: &Parameter| variant.material.0.get(p.name).map_or(Json::Null, of);
+    let material = registry.material_parameters().map(|p| (p.name.to_owned(), value(p)));
+    map.insert("material".to_owned(), Json::Object(material.collect()));
     Json::Object(map)
 }

@@ -45,7 +45,7 @@ const NUMBERS: &[(&str, &str, &str, [f64; 2])] = &[
 /// Sentences for Boolean quantities: one for false, one for true.
 const TRUTHS: &[(&str, &str, &str)] = &[
     ("window.shows_term_alone", "all terms are shown", "one term is shown alone"),
-    ("window.explain", "the panel Explain is not in sight", "the panel Explain is in sight"),
+    ("window.explain", "the panel Explain is closed", "the panel Explain is open"),
     ("window.presenting", "the picture is not presented", "the picture is presented"),
     ("probe.pinned", "nothing is pinned", "a pixel is pinned"),
     ("probe.background", "the pinned pixel shows an object", "there is no object at the pinned pixel"),
@@ -59,11 +59,7 @@ const TRUTHS: &[(&str, &str, &str)] = &[
         "the specular term is not brighter than the diffuse one at the pinned pixel",
         "the specular term is brighter than the diffuse one at the pinned pixel",
     ),
-    (
-        "probe.clipped",
-        "the display cuts off nothing at the pinned pixel",
-        "the display cuts off a colour of the pinned pixel",
-    ),
+    ("probe.clipped", "the pinned pixel is not clipped", "the pinned pixel is clipped"),
 ];
 
 /// The sentence for a Boolean quantity with this value, if it has a special one.

@@ -83,7 +83,7 @@ fn value(operand: &Operand, state: &State) -> Result<Value, String> {
 /// States that a quantity is true, or that it is false.
 fn truth(operand: &Operand, state: &State) -> String {
     let situation = state.situation;
-    let Term::Quantity(asked) = &operand.what else { return "this can never be done".to_owned() };
+    let Term::Quantity(asked) = &operand.what else { return "this condition can never be met".to_owned() };
     match value(operand, state) {
         Ok(Value::Truth(is)) => match subject::truth(asked, is) {
             Some(sentence) => sentence.to_owned(),
@@ -103,7 +103,7 @@ fn comparison(left: &Operand, sign: Sign, right: &Operand, state: &State) -> Str
         (Term::Value(_), Term::Quantity(_)) => (right, sign.mirrored(), left),
         _ => (left, sign, right),
     };
-    let Term::Quantity(asked) = &left.what else { return "this can never be done".to_owned() };
+    let Term::Quantity(asked) = &left.what else { return "this condition can never be met".to_owned() };
     let (now, bound) = match (value(left, state), value(right, state)) {
         (Ok(now), Ok(bound)) => (now, bound),
         (Err(why), _) | (_, Err(why)) => return why,
@@ -194,8 +194,8 @@ fn text(asked: &Asked, now: &str, situation: &Situation) -> String {
             now => format!("the {now} term alone is shown"),
         },
         "window.plots" => match Plot::ALL.into_iter().find(|kind| kind.id() == now) {
-            Some(kind) => format!("the plot in sight is that of the {}", kind.name()),
-            None => "no plot is in sight".to_owned(),
+            Some(kind) => format!("the plot that is shown is that of the {}", kind.name()),
+            None => "no plot is shown".to_owned(),
         },
         "window.active" => format!("view {now} is active"),
         "window.reflection_model" => format!("the reflection model is {}", model()),

@@ -42,9 +42,7 @@ const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.312
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     // Decoders may panic on unforeseen input.
     let read = caught::catch(|| decode(bytes)?.numbers());
-    let read = read.unwrap_or_else(|_| {
-        Err("its pixels are not what its head says; it must be written again".to_owned())
-    });
+    let read = read.unwrap_or_else(|_| Err("its pixels do not match its header; save it again".to_owned()));
     read.map_err(|message| FileProblem { line: None, message })
 }
 
@@ -54,7 +52,7 @@ fn decode(bytes: &[u8]) -> Result<Average, String> {
     } else if bytes.starts_with(OPEN_EXR) {
         open_exr(bytes)
     } else {
-        Err("it begins neither as a Radiance picture (#?RADIANCE) nor as an OpenEXR picture".to_owned())
+        Err("it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture".to_owned())
     }
 }
 
@@ -65,8 +63,8 @@ fn radiance(rest: &[u8]) -> Result<Average, String> {
     let size = end.and_then(|end| head[end..].split_inclusive(|byte| *byte == b'\n').next());
     let Some(size) = size.filter(|size| size.ends_with(b"\n")) else {
         return Err(format!(
-            "the head of a Radiance picture must end with an empty line and a line such as “-Y 512 +X 1024” within \
-             {MAX_HEAD} bytes, and it does not"
+            "the header of a Radiance picture must end with an empty line and a line such as “-Y 512 +X \
+             1024” within {MAX_HEAD} bytes"
         ));
     };
     let size = String::from_utf8_lossy(size);
@@ -77,20 +75,20 @@ fn radiance(rest: &[u8]) -> Result<Average, String> {
     };
     let (Some(width), Some(height)) = (width, height) else {
         return Err(format!(
-            "the size in a Radiance picture must be given as “-Y height +X width”, and it is “{}”",
+            "the size of a Radiance picture must be given as “-Y height +X width”, not “{}”",
             shortened(size.trim())
         ));
     };
     let blank = Average::new(width, height)?;
     let decoder = HdrDecoder::new(RADIANCE[0].chain(rest)).map_err(|error| match error {
-        ImageError::Unsupported(_) => "its FORMAT must be 32-bit_rle_rgbe, and it is another".to_owned(),
-        error => format!("the head of the Radiance picture cannot be read: {error}"),
+        ImageError::Unsupported(_) => "its FORMAT must be 32-bit_rle_rgbe".to_owned(),
+        error => format!("the header of the Radiance picture cannot be read: {error}"),
     })?;
     let meta = decoder.metadata();
     let exposure = meta.exposure.unwrap_or(1.0);
     let factors = meta.color_correction.map_or([exposure; 3], |(r, g, b)| [r, g, b].map(|c| c * exposure));
     if factors.iter().any(|factor| !factor.is_normal() || *factor < 0.0) {
-        return Err("EXPOSURE and COLORCORR must be greater than 0, and they are not".to_owned());
+        return Err("EXPOSURE and COLORCORR must be greater than 0".to_owned());
     }
     let mut pixels = vec![0; 12 * width * height];
     decoder.read_image(&mut pixels).map_err(|error| match error {
@@ -127,8 +125,8 @@ fn open_exr(bytes: &[u8]) -> Result<Average, String> {
 fn broken(error: &exr::error::Error) -> String {
     match error {
         exr::error::Error::NotSupported(what) => format!(
-            "this kind of OpenEXR picture is not read ({}); it must have flat pixels, compressed by none, RLE, ZIP, PIZ, \
-             PXR24 or B44",
+            "this kind of OpenEXR picture is not supported ({}); it must have flat pixels, uncompressed or \
+             compressed with RLE, ZIP, PIZ, PXR24 or B44",
             shortened(what)
         ),
         error => {
@@ -161,7 +159,7 @@ fn within_limits(layers: &[Header]) -> Result<Average, String> {
         let bytes = block.x().saturating_mul(block.y()).saturating_mul(layer.channels.bytes_per_pixel);
         if bytes > MAX_BLOCK_BYTES || layer.chunk_count > MAX_BLOCKS {
             return Err(format!(
-                "its tiles have up to {} × {} pixels and are {}; at most {MAX_BLOCK_BYTES} bytes each and {MAX_BLOCKS} are read",
+                "its tiles have up to {} × {} pixels, and there are {}; at most {MAX_BLOCK_BYTES} bytes per tile and {MAX_BLOCKS} tiles are read",
                 block.x(),
                 block.y(),
                 layer.chunk_count
@@ -177,25 +175,25 @@ fn within_limits(layers: &[Header]) -> Result<Average, String> {
             .map(|channel| channel.name.to_string())
             .collect();
         return Err(format!(
-            "no layer has the channels R, G and B; there is {}",
+            "no layer has the channels R, G and B; the channels are {}",
             shortened(&names.join(", "))
         ));
     };
     let is_thin = |channel: &ChannelDescription| channel.sampling.x() != 1 || channel.sampling.y() != 1;
     if let Some(channel) = layer.channels.list.iter().find(|channel| is_thin(channel)) {
         let name = shortened(&channel.name.to_string());
-        return Err(format!("the channel {name} has fewer pixels than the picture; all must have the same"));
+        return Err(format!(
+            "the channel {name} has fewer pixels than the picture; all channels must have the same number"
+        ));
     }
     let (own, shared) = (&layer.own_attributes, &layer.shared_attributes);
     if own.environment_map == Some(EnvironmentMap::Cube) {
-        return Err(
-            "it has the six sides of a cube, but must be equirectangular (latitude and longitude)".to_owned()
-        );
+        return Err("it is a cube map, but must be equirectangular (latitude and longitude)".to_owned());
     }
     let [shown, there] = [shared.display_window.size, layer.layer_size];
     if shown != there {
         return Err(format!(
-            "{} × {} of {} × {} pixels are there (data window and display window); all must be",
+            "only {} × {} of {} × {} pixels are present (data window and display window); all must be",
             there.x(),
             there.y(),
             shown.x(),
@@ -209,13 +207,13 @@ fn within_limits(layers: &[Header]) -> Result<Average, String> {
         if !found.as_flattened().iter().zip(REC_709.as_flattened()).all(near) {
             let [x, y] = found[0];
             return Err(format!(
-                "its colours must be linear Rec. 709, and its chromaticities are others (red at {x}, {y}, not 0.64, 0.33)"
+                "its colours must be linear Rec. 709, but its chromaticities differ (red at {x}, {y}, not 0.64, 0.33)"
             ));
         }
     }
     let white = own.white_luminance.unwrap_or(1.0);
     if !white.is_normal() || white < 0.0 {
-        return Err(format!("its whiteLuminance must be greater than 0, and it is {white}"));
+        return Err(format!("its whiteLuminance must be greater than 0, not {white}"));
     }
     Ok(Average::new(layer.layer_size.x(), layer.layer_size.y())?.scaled(DVec3::splat(f64::from(white))))
 }

@@ -441,11 +441,11 @@ fn said(bytes: &[u8]) -> String {
 fn illegal_radiance_files_are_told_what_is_wrong() {
     let head = |text: &str| text.as_bytes().to_vec();
     let with = |size: &str| head(&format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"));
-    let no_magic = "it begins neither as a Radiance picture (#?RADIANCE) nor as an OpenEXR picture";
-    let no_head = "the head of a Radiance picture must end with an empty line and a line such as “-Y 512 +X 1024” within 65536 bytes, and it does not";
+    let no_magic = "it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture";
+    let no_head = "the header of a Radiance picture must end with an empty line and a line such as “-Y 512 +X 1024” within 65536 bytes";
     let rule = "but an equirectangular picture is twice as wide as high, from 2 × 1 to 8192 × 4096 pixels";
     let no_size = |found: &str| {
-        format!("the size in a Radiance picture must be given as “-Y height +X width”, and it is “{found}”")
+        format!("the size of a Radiance picture must be given as “-Y height +X width”, not “{found}”")
     };
     for (bytes, expected) in [
         (vec![], no_magic.to_owned()),
@@ -465,11 +465,11 @@ fn illegal_radiance_files_are_told_what_is_wrong() {
         (with("-Y 4096 +X 8192"), "the file ends before its last pixel".to_owned()),
         (
             head("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
-            "its FORMAT must be 32-bit_rle_rgbe, and it is another".to_owned(),
+            "its FORMAT must be 32-bit_rle_rgbe".to_owned(),
         ),
         (
             head("#?RADIANCE\nEXPOSURE=-1\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
-            "EXPOSURE and COLORCORR must be greater than 0, and they are not".to_owned(),
+            "EXPOSURE and COLORCORR must be greater than 0".to_owned(),
         ),
         (
             [with("-Y 1 +X 2"), vec![1, 1, 1, 130, 200, 200, 200, 250]].concat(),
@@ -509,20 +509,17 @@ fn illegal_openexr_files_are_told_what_is_wrong() {
         LayerAttributes { environment_map: Some(exr::meta::attribute::EnvironmentMap::Cube), ..plain() };
     assert_eq!(
         said(&exr([4, 2], fast, cube, pattern)),
-        "it has the six sides of a cube, but must be equirectangular (latitude and longitude)"
+        "it is a cube map, but must be equirectangular (latitude and longitude)"
     );
     let white = LayerAttributes { white_luminance: Some(-1.0), ..plain() };
-    assert_eq!(
-        said(&exr([4, 2], fast, white, pattern)),
-        "its whiteLuminance must be greater than 0, and it is -1"
-    );
+    assert_eq!(said(&exr([4, 2], fast, white, pattern)), "its whiteLuminance must be greater than 0, not -1");
     // Windows and chromaticities.
     let channels = || SpecificChannels::rgb(|_: At<usize>| (1.0_f32, 1.0_f32, 1.0_f32));
     let mut image = Image::from_layer(Layer::new((4, 2), plain(), fast, channels()));
     image.attributes.display_window.size = At(8, 4);
     assert_eq!(
         said(&written(&image)),
-        "4 × 2 of 8 × 4 pixels are there (data window and display window); all must be"
+        "only 4 × 2 of 8 × 4 pixels are present (data window and display window); all must be"
     );
     let mut image = Image::from_layer(Layer::new((4, 2), plain(), fast, channels()));
     let aces = [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], [0.32168, 0.33767]].map(|[x, y]| At(x, y));
@@ -530,18 +527,18 @@ fn illegal_openexr_files_are_told_what_is_wrong() {
     image.attributes.chromaticities = Some(exr::meta::attribute::Chromaticities { red, green, blue, white });
     assert_eq!(
         said(&written(&image)),
-        "its colours must be linear Rec. 709, and its chromaticities are others (red at 0.7347, 0.2653, not 0.64, 0.33)"
+        "its colours must be linear Rec. 709, but its chromaticities differ (red at 0.7347, 0.2653, not 0.64, 0.33)"
     );
     // Other channels.
     let grey = SpecificChannels::build().with_channel("Y").with_pixel_fn(|_| (1.0_f32,));
     let image = Image::from_layer(Layer::new((4, 2), plain(), fast, grey));
-    assert_eq!(said(&written(&image)), "no layer has the channels R, G and B; there is Y");
+    assert_eq!(said(&written(&image)), "no layer has the channels R, G and B; the channels are Y");
     // Tiles as large as the picture.
     let tiles = exr::image::Blocks::Tiles(At(4096, 2048));
     let encoding = Encoding { blocks: tiles, ..fast };
     assert_eq!(
         said(&exr([4, 2], encoding, plain(), pattern)),
-        "its tiles have up to 4096 × 2048 pixels and are 1; at most 16777216 bytes each and 262144 are read"
+        "its tiles have up to 4096 × 2048 pixels, and there are 1; at most 16777216 bytes per tile and 262144 tiles are read"
     );
     // An absurd window, before anything is allocated: the number after the window's first corner.
     let whole = exr([4, 2], fast, plain(), pattern);

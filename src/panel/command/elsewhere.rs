@@ -77,7 +77,9 @@ fn comparison(to: &mut List) {
     to.add(Command { held: true, ..blink.keys("Space") });
     let views = session.document.variants.len() + 1;
     let next = CompareCommand::Activate((session.active() + 1) % views);
-    to.add(compare("next_view", "Next view", next).keys("Ctrl+K").unless(views == 1, "There is one view"));
+    to.add(
+        compare("next_view", "Next view", next).keys("Ctrl+K").unless(views == 1, "There is only one view"),
+    );
     let now = session.document.comparison;
     let other = views == 1 || now.layout != Layout::Wipe;
     for (id, key, name, step) in [

@@ -22,7 +22,7 @@ pub(super) fn file(to: &mut List) {
         to.add(command("save_as", "Save as…", Action::SaveAsDialog).keys("Ctrl+Shift+S"));
         let unsaved = to.session.path.is_none();
         let reload = command("reload", "Reload from disk", Action::Reload);
-        to.add(reload.unless(unsaved, "The scene is in no file yet"));
+        to.add(reload.unless(unsaved, "The scene has no file yet"));
         to.line();
         pictures(to);
         exports(to);

@@ -102,7 +102,7 @@ pub fn check(given: &GivenKeys, root: &Menu) -> (Replaced, Vec<String>) {
     let more = problems.len().saturating_sub(MOST);
     problems.truncate(MOST);
     if more > 0 {
-        problems.push(format!("There are {more} more problems of keys."));
+        problems.push(format!("There are {more} more problems with keys."));
     }
     (own.into_iter().map(|(id, keys)| (id.to_owned(), keys)).collect(), problems)
 }
@@ -120,7 +120,7 @@ fn read<'a>(
     }
     let Some(command) = commands.get(id) else {
         let near = did_you_mean(id, commands.values().map(|c| (&*c.id, &*c.id)));
-        let hint = if near.is_empty() { "; the documents list all commands".to_owned() } else { near };
+        let hint = if near.is_empty() { "; the documentation lists all commands".to_owned() } else { near };
         return Err(sentence(&format!("keys has {}, which is not a command{hint}", quoted(id))));
     };
     if !seen.insert(id) {
@@ -220,11 +220,11 @@ mod tests {
             ),
             ("[\"Ctrl+S\"]", "but must be an object"),
             (r#"{ "sav": "F4" }"#, "keys has \"sav\", which is not a command; did you mean \"save\"?"),
-            (r#"{ "zzzzzzzzzzzz": "F4" }"#, "which is not a command; the documents list all commands."),
+            (r#"{ "zzzzzzzzzzzz": "F4" }"#, "which is not a command; the documentation lists all commands."),
             (r#"{ "save": "Strg+S" }"#, "keys.save is \"Strg+S\", but must be a key such as \"Ctrl+S\""),
             (
                 r#"{ "save": "Strg+S" }"#,
-                "\"Strg\" is not a modifier; those are Ctrl, Shift and Alt; the default Ctrl+S stays.",
+                "\"Strg\" is not a modifier; use Ctrl, Shift or Alt; the default Ctrl+S stays.",
             ),
             (r#"{ "save": "Ctrl+Entr" }"#, "\"Entr\" is not a key; did you mean \"Enter\"?"),
             (
@@ -232,7 +232,7 @@ mod tests {
                 "keys.redo is 7, but must be a key such as \"Ctrl+S\", a list of keys, or null for no key; the defaults Ctrl+Shift+Z and Ctrl+Y stay.",
             ),
             (r#"{ "manual": {} }"#, "keys.manual is an object, but must be a key"),
-            (r#"{ "manual": "" }"#, "it names no key; it stays without a key."),
+            (r#"{ "manual": "" }"#, "it has no key; it stays without a key."),
             (r#"{ "save": ["F4", 3] }"#, "a list of keys"),
             (r#"{ "save": ["F4","F4","F4","F4","F4","F4","F4","F4","F4"] }"#, "must have at most 8 keys"),
             (r#"{ "save": "F6" }"#, "cannot be used, since F6 goes to the next panel; choose another key"),
@@ -268,7 +268,7 @@ mod tests {
         let begun = std::time::Instant::now();
         let (own, problems) = checked(&format!("{{ {} }}", many.join(", ")));
         assert!(own.is_empty() && problems.len() == MOST + 1, "{problems:?}");
-        assert_eq!(problems[MOST], format!("There are {} more problems of keys.", 20_000 - MOST));
+        assert_eq!(problems[MOST], format!("There are {} more problems with keys.", 20_000 - MOST));
         assert!(begun.elapsed().as_secs() < 5, "{:?}", begun.elapsed());
         let long = format!("{{ \"{0}\": \"{0}\" }}", "x".repeat(100_000));
         assert!(checked(&long).1[0].len() < 400);

@@ -37,39 +37,21 @@ pub(super) fn bar(
     let row = |i: f32| {
         Rect::from_min_size(rect.min + vec2(0.0, i * ROW), vec2(rect.width(), ROW)).shrink2(vec2(6.0, 2.0))
     };
-    let first = |name: &str| !arranging.largest_apart || name != LARGEST;
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
+    let right = Direction::right_to_left(Align::Center);
     ui.scope_builder(left(row(0.0)), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
-        let names: Vec<_> = Layout::ALL.iter().map(|layout| layout.name()).collect();
-        let chosen = Layout::ALL.iter().position(|layout| *layout == comparison.layout);
-        let tip = |ui: &mut Ui, i: usize| {
-            ui.set_max_width(280.0);
-            ui.label(Layout::ALL[i].summary());
-            if let Some(hint) = hint(Layout::ALL[i]) {
-                let text = hint(ui.ctx());
-                ui.label(theme::small(ui, text));
-            }
-        };
-        let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
-        let mut layout = comparison.layout;
-        if width + 16.0 > rect.width() {
-            choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary);
-        } else if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
-            layout = Layout::ALL[i];
-        }
-        if layout != comparison.layout {
-            actions.push(Action::Compare(CompareCommand::Layout(layout)));
-        }
+        let width = layouts(ui, rect.width(), comparison.layout, hint, actions);
         if wide {
             let room = rect.width() - width - 28.0;
-            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room, first));
+            let first = |name: &str| !arranging.largest_apart || name != LARGEST;
+            ui.with_layout(right, |ui| numbers(ui, session, room, first));
         }
     });
     if !wide {
         let last = row((rect.height() / ROW).round() - 1.0);
-        let right = UiBuilder::new().max_rect(last).layout(Direction::right_to_left(Align::Center));
-        ui.scope_builder(right, |ui| numbers(ui, session, last.width(), |_| true));
+        let place = UiBuilder::new().max_rect(last).layout(right);
+        ui.scope_builder(place, |ui| numbers(ui, session, last.width(), |_| true));
     }
     for i in 0..arranging.rows[usize::from(!wide)] {
         let mut now = comparison;
@@ -81,15 +63,44 @@ pub(super) fn bar(
             (arranging.choices)(ui, session, &mut now, i, wide);
             if arranging.largest_apart && wide {
                 let room = ui.available_width();
-                let largest = |name: &str| name == LARGEST;
-                let right = Direction::right_to_left(Align::Center);
-                ui.with_layout(right, |ui| numbers(ui, session, room, largest));
+                ui.with_layout(right, |ui| numbers(ui, session, room, |name| name == LARGEST));
             }
         });
         if now != comparison {
             actions.push(Action::Compare(CompareCommand::Set(now)));
         }
     }
+}
+
+/// The choice of the layout: side by side, or as a list if `most` is too narrow. Returns its width side by side.
+fn layouts(
+    ui: &mut Ui,
+    most: f32,
+    shown: Layout,
+    hint: impl Fn(Layout) -> Option<fn(&egui::Context) -> String>,
+    actions: &mut Vec<Action>,
+) -> f32 {
+    let names: Vec<_> = Layout::ALL.iter().map(|layout| layout.name()).collect();
+    let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
+    let chosen = Layout::ALL.iter().position(|layout| *layout == shown);
+    let tip = |ui: &mut Ui, i: usize| {
+        ui.set_max_width(280.0);
+        ui.label(Layout::ALL[i].summary());
+        if let Some(hint) = hint(Layout::ALL[i]) {
+            let text = hint(ui.ctx());
+            ui.label(theme::small(ui, text));
+        }
+    };
+    let mut layout = shown;
+    if width + 16.0 > most {
+        choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary);
+    } else if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
+        layout = Layout::ALL[i];
+    }
+    if layout != shown {
+        actions.push(Action::Compare(CompareCommand::Layout(layout)));
+    }
+    width
 }
 
 /// A drop-down list of options.

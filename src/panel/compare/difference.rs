@@ -11,7 +11,8 @@ use crate::{
     panel::{segmented::segmented, state::Session, theme},
     scene::{
         Comparison,
-        comparison::{AMPLIFICATIONS, Channel, Compared, Sign},
+        comparison::{Channel, Compared, Sign},
+        limits::Limits,
     },
 };
 
@@ -54,8 +55,9 @@ fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     // Equal views have no largest difference.
     let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
     let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
-    let mut factor = used.unwrap_or(*AMPLIFICATIONS.start());
-    let mut field = egui::DragValue::new(&mut factor).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+    let Limits { min, max, .. } = Comparison::amplification.limits();
+    let mut factor = used.unwrap_or(min as f32);
+    let mut field = egui::DragValue::new(&mut factor).range(min..=max).speed(0.2).max_decimals(0);
     if used.is_none() {
         field = field.custom_formatter(|_, _| "…".to_owned());
     }

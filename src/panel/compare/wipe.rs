@@ -1,10 +1,13 @@
 //! Two views over each other, and the edge between them.
 
-use bevy_egui::egui::{self, CursorIcon, Id, Key, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use bevy_egui::egui::{
+    self, CursorIcon, Id, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+};
 
 use super::place::{Arranging, over_each_other};
 use crate::{
     panel::{
+        focus,
         segmented::segmented,
         state::{Action, CompareCommand},
         theme,
@@ -56,58 +59,25 @@ fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
 fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
     let at = edge_of(rect, comparison);
     let upright = comparison.edge == Edge::Vertical;
-    let (place, cursor) = if upright {
-        (Rect::from_center_size(at, vec2(GRASP, rect.height())), CursorIcon::ResizeHorizontal)
+    let (size, cursor) = if upright {
+        (vec2(GRASP, rect.height()), CursorIcon::ResizeHorizontal)
     } else {
-        (Rect::from_center_size(at, vec2(rect.width(), GRASP)), CursorIcon::ResizeVertical)
+        (vec2(rect.width(), GRASP), CursorIcon::ResizeVertical)
     };
+    let place = Rect::from_center_size(at, size);
     let response = ui.interact(place, Id::new("edge of the wipe"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(true, f64::from(comparison.split), "Edge between the views"));
-    let painter = ui.painter_at(rect);
-    let ends = if upright {
-        [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
-    } else {
-        [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
-    };
-    let on = response.hovered() || response.dragged() || response.has_focus();
-    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
-    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
-    painter.line_segment(ends, Stroke::new(1.5, core));
-    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
-    let along = if upright { vec2(4.0, 0.0) } else { vec2(0.0, 4.0) };
-    let across = if upright { vec2(0.0, 3.0) } else { vec2(3.0, 0.0) };
-    for side in [-1.0, 1.0] {
-        let tip = at + side * 1.5 * along;
-        let back = at + side * 0.6 * along;
-        painter.line(vec![back + across, tip, back - across], Stroke::new(1.5, core));
-    }
+    paint(ui, rect, at, upright, &response);
     let mut split = comparison.split;
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-        split = if upright {
-            (pointer.x - rect.left()) / rect.width()
-        } else {
-            (pointer.y - rect.top()) / rect.height()
-        };
+        let t = (pointer - rect.min) / rect.size();
+        split = if upright { t.x } else { t.y };
     }
     if response.double_clicked() {
         split = 0.5;
     }
-    if response.has_focus() {
-        let keys = if upright { [Key::ArrowLeft, Key::ArrowRight] } else { [Key::ArrowUp, Key::ArrowDown] };
-        ui.memory_mut(|m| {
-            let filter = egui::EventFilter {
-                horizontal_arrows: upright,
-                vertical_arrows: !upright,
-                ..Default::default()
-            };
-            m.set_focus_lock_filter(response.id, filter);
-        });
-        for (key, step) in keys.into_iter().zip([-STEP, STEP]) {
-            if ui.input(|i| i.key_pressed(key)) {
-                split += step;
-            }
-        }
-    }
+    let steps = focus::steps(ui, &response, [upright, !upright])[usize::from(!upright)];
+    split += STEP * steps.clamp(-1.0, 1.0) as f32;
     if split != comparison.split {
         let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
         actions.push(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
@@ -116,4 +86,24 @@ fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Acti
         "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",
     );
     place
+}
+
+/// The edge through a point, with a grip that points to both sides.
+fn paint(ui: &Ui, rect: Rect, at: Pos2, upright: bool, response: &Response) {
+    let painter = ui.painter_at(rect);
+    let (ends, along, across) = if upright {
+        ([pos2(at.x, rect.top()), pos2(at.x, rect.bottom())], vec2(4.0, 0.0), vec2(0.0, 3.0))
+    } else {
+        ([pos2(rect.left(), at.y), pos2(rect.right(), at.y)], vec2(0.0, 4.0), vec2(3.0, 0.0))
+    };
+    let on = response.hovered() || response.dragged() || response.has_focus();
+    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
+    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
+    painter.line_segment(ends, Stroke::new(1.5, core));
+    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
+    for side in [-1.0, 1.0] {
+        let tip = at + side * 1.5 * along;
+        let back = at + side * 0.6 * along;
+        painter.line(vec![back + across, tip, back - across], Stroke::new(1.5, core));
+    }
 }

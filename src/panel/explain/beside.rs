@@ -57,14 +57,12 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
             factors || line.is_some_and(Line::is_equation)
         };
         for pair in all.iter().filter(shown) {
-            halves(ui, pair.differs(), |ui, i| {
-                let (own, model) = if i == 0 { (&pair.a, a) } else { (&pair.b, b) };
-                match own {
-                    Some(line) => {
-                        drop(lights::written(ui, line, &|symbol| lights::meaning(&model.model, symbol)))
-                    }
-                    None => drop(rows::note(ui, &format!("no line for {} here", pair.defines()))),
+            halves(ui, pair.differs(), |ui, i| match [&pair.a, &pair.b][i] {
+                Some(line) => {
+                    let model = &[a, b][i].model;
+                    drop(lights::written(ui, line, &|symbol| lights::meaning(model, symbol)));
                 }
+                None => drop(rows::note(ui, &format!("no line for {} here", pair.defines()))),
             });
         }
         halves(ui, first.contribution != second.contribution, |ui, i| {

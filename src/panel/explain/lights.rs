@@ -40,19 +40,7 @@ pub(super) fn lights(
         return;
     };
     if spots.len() > 1 {
-        let names = names(ui, &spots);
-        let names: Vec<_> = names.iter().map(String::as_str).collect();
-        let tip = |ui: &mut Ui, i: usize| {
-            ui.label(theme::strong(ui, name_of(spots[i], LONGEST)));
-            ui.label(if i < seen.spots.len() {
-                "A point at which the equation was evaluated"
-            } else {
-                "What per-pixel shading would give here, which is not what is shown"
-            });
-        };
-        if let Some(i) = segmented(ui, "Point", &names, Some(shown), tip) {
-            probe::choose(ui.ctx(), Choice { spot: Some(i), ..choice });
-        }
+        points(ui, seen, &spots, shown, choice);
     } else {
         rows::heading(ui, &format!("Light by light {}", at(seen, spot)));
     }
@@ -88,6 +76,23 @@ pub(super) fn lights(
     }
     if spot.is_replaced() {
         rows::light(ui, "what is no number counts as 0, and nothing beyond ±10³⁰:", spot.colour, true);
+    }
+}
+
+/// The choice of the point.
+fn points(ui: &mut Ui, seen: &Seen, spots: &[&Spot], shown: usize, choice: Choice) {
+    let names = names(ui, spots);
+    let names: Vec<_> = names.iter().map(String::as_str).collect();
+    let tip = |ui: &mut Ui, i: usize| {
+        ui.label(theme::strong(ui, name_of(spots[i], LONGEST)));
+        ui.label(if i < seen.spots.len() {
+            "A point at which the equation was evaluated"
+        } else {
+            "What per-pixel shading would give here, which is not what is shown"
+        });
+    };
+    if let Some(i) = segmented(ui, "Point", &names, Some(shown), tip) {
+        probe::choose(ui.ctx(), Choice { spot: Some(i), ..choice });
     }
 }
 

@@ -192,7 +192,7 @@ impl Work {
             let lobes = match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
                 Err(RecvTimeoutError::Timeout) => break,
                 Err(RecvTimeoutError::Disconnected) => {
-                    Err("No lobe: an error of this program while the model was asked.".to_owned())
+                    Err("No lobe: an internal error while the model was asked.".to_owned())
                 }
                 Ok(lobes) => Ok(lobes),
             };

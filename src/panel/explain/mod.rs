@@ -11,7 +11,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, PanelContext, Place, icon, keys, knob,
+    Panel, PanelContext, Place, icon, is_panel, keys, knob,
     segmented::segmented,
     state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ThemeChoice, ViewChange},
     theme::{self, Palette},
@@ -61,17 +61,7 @@ const GAP: f32 = 24.0;
 pub struct Explain;
 
 impl Panel for Explain {
-    fn id(&self) -> &'static str {
-        EXPLAIN_TAB
-    }
-
-    fn title(&self) -> &'static str {
-        "Explain"
-    }
-
-    fn place(&self) -> Place {
-        Place::Bottom
-    }
+    is_panel!(EXPLAIN_TAB, "Explain", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
@@ -302,8 +292,7 @@ fn remark(ui: &mut Ui, severity: Severity, text: &str) {
 /// A part of the explanation: relative width, and the function that shows it.
 type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 
-/// The explanation in columns that follow the light: from the surface and the lights to the display. With less width,
-/// the lights stand beside the two other parts; with little width, the parts are stacked.
+/// The explanation in columns that follow the light: from the surface and the lights to the display.
 fn columns(
     ui: &mut Ui,
     explained: &Arc<Explained>,
@@ -341,6 +330,11 @@ fn columns(
             None => vec![(0.36, Box::new(background)), end],
         },
     };
+    side_by_side(ui, parts);
+}
+
+/// Parts in columns. With less width, the middle part stands beside the two others; with little width, they are stacked.
+fn side_by_side(ui: &mut Ui, parts: Vec<Part>) {
     let room = ui.available_rect_before_wrap();
     let shares: Vec<_> = parts.iter().map(|(share, _)| *share).collect();
     let places = places(&shares, room.width());

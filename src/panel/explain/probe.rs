@@ -433,35 +433,12 @@ pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &R
     let probe = &mut *probe;
     probe.hovered = pointed.is_some();
     probe.pointed = pointed.or(probe.pointed);
-    let pin = session.view.pinned.or(probe.pointed).filter(|pin| pin.view <= session.document.variants.len());
-    let shown = |view: usize| {
-        let (size, _) = pixels(ctx, rect_of(area, view)?);
-        Some(Shown { view, size, terms: session.terms_of(view) })
-    };
-    let Some((pin, own)) = pin.and_then(|pin| Some((pin, shown(pin.view)?))) else {
+    let beside = probe.choice.beside && !session.document.variants.is_empty();
+    let Some(mut question) = probe.question(ctx, session, area, beside) else {
         probe.forget();
         return None;
     };
-    probe.pin = Some(pin);
-    let mut views = vec![own];
-    if session.view.pinned.is_some() && session.document.comparison.layout.is_beside() {
-        let others = area.cells.iter().map(|cell| cell.view).filter(|view| *view != pin.view);
-        views.extend(others.filter_map(shown));
-    }
-    let beside = probe.choice.beside && !session.document.variants.is_empty();
-    if beside && !views.iter().any(|shown| shown.view == beside_of(pin.view)) {
-        // A view outside the picture takes the size of the visible one.
-        let view = beside_of(pin.view);
-        views.push(Shown { view, terms: session.terms_of(view), ..own });
-    }
-    let mut question = Question {
-        revision: session.document.revision(),
-        pin,
-        held: probe.holding.now(session),
-        views,
-        observer: session.facts.observer(session.document.observer.field_of_view),
-        reloaded: session.shaders.last.clone(),
-    };
+    probe.pin = Some(question.pin);
     if probe.asked.as_ref() == Some(&question) {
         return None;
     }
@@ -477,7 +454,7 @@ pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &R
         probe.forget();
         return Some(Action::View(ViewChange::Pin(None)));
     }
-    probe.answer = probe.explain(&question, own, session, registry).map(Arc::new);
+    probe.answer = probe.explain(&question, question.views[0], session, registry).map(Arc::new);
     let seen = probe.answer.as_ref().and_then(|answer| answer.explanation.seen.as_ref());
     if let Some(seen) = seen.filter(|_| question.held.is_none())
         && let Some(()) = probe.holding.hold(session, seen)
@@ -496,6 +473,42 @@ pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &R
 }
 
 impl Probe {
+    /// The question about the pinned pixel, or else about the latest one under the pointer. `beside` asks for the view
+    /// beside it too.
+    fn question(
+        &self,
+        ctx: &Context,
+        session: &Session,
+        area: &PictureArea,
+        beside: bool,
+    ) -> Option<Question> {
+        let pin = session.view.pinned.or(self.pointed);
+        let pin = pin.filter(|pin| pin.view <= session.document.variants.len())?;
+        let shown = |view: usize| {
+            let (size, _) = pixels(ctx, rect_of(area, view)?);
+            Some(Shown { view, size, terms: session.terms_of(view) })
+        };
+        let own = shown(pin.view)?;
+        let mut views = vec![own];
+        if session.view.pinned.is_some() && session.document.comparison.layout.is_beside() {
+            let others = area.cells.iter().map(|cell| cell.view).filter(|view| *view != pin.view);
+            views.extend(others.filter_map(shown));
+        }
+        let view = beside_of(pin.view);
+        if beside && !views.iter().any(|shown| shown.view == view) {
+            // A view outside the picture takes the size of the visible one.
+            views.push(Shown { view, terms: session.terms_of(view), ..own });
+        }
+        Some(Question {
+            revision: session.document.revision(),
+            pin,
+            held: self.holding.now(session),
+            views,
+            observer: session.facts.observer(session.document.observer),
+            reloaded: session.shaders.last.clone(),
+        })
+    }
+
     /// Clears the explanation.
     fn forget(&mut self) {
         (self.asked, self.answer) = (None, None);

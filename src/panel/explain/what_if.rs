@@ -8,7 +8,7 @@ use super::{
     rows,
 };
 use crate::{
-    document::{Edit, LightField, ObjectField},
+    document::Edit,
     explain::{Influence, Knob, rounded},
     panel::{
         keys, knob, maths,
@@ -17,7 +17,7 @@ use crate::{
     },
     parameter::Value,
     registry::Registry,
-    scene::limits::{self, Limits},
+    scene::{Light, Part, limits::Limits},
 };
 
 /// Maximum number of listed numbers.
@@ -163,7 +163,7 @@ fn limits_of(influence: &Influence, session: &Session, registry: &Registry) -> L
             let parameter = model.and_then(|model| model.parameter(name));
             parameter.and_then(knob::limits_of).unwrap_or_else(|| Limits::between(0.0, 1.0))
         }
-        Knob::Intensity { .. } => limits::brightness(),
+        Knob::Intensity { .. } => Light::intensity.limits(),
     }
 }
 
@@ -171,14 +171,12 @@ fn edit(influence: &Influence, value: f32, session: &Session) -> Edit {
     match influence.knob {
         Knob::Material { object, name, whole } => {
             let whole = whole.then_some(Value::Integer(value.round() as i64));
-            Edit::Object(object, ObjectField::Material(name, whole.unwrap_or(Value::Number(value))))
+            Edit::material(Part::Object(object), name, whole.unwrap_or(Value::Number(value)))
         }
         Knob::Intensity { light } => {
             let flux = session.scene().lights.get(light).is_some_and(|light| light.luminous_flux.is_some());
-            Edit::Light(
-                light,
-                if flux { LightField::LuminousFlux(value) } else { LightField::Intensity(value) },
-            )
+            let field = if flux { Light::luminous_flux } else { Light::intensity };
+            Edit::set(Part::Light(light), field, value)
         }
     }
 }

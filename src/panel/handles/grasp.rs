@@ -10,10 +10,10 @@ use super::{
     shape::{Body, Placed, Target},
 };
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     panel::marks::{Lens, Ray},
     parameter::{Parameter, Value},
-    scene::{SceneSize, rotation::rotation},
+    scene::{Light, Object, Part, SceneSize, rotation::rotation},
 };
 
 /// Step of positions and sizes with Ctrl, in metres.
@@ -267,15 +267,15 @@ impl Grasp {
 
     /// The edit that gives the part a value.
     pub(super) fn edit(&self, dragged: Dragged) -> Option<Edit> {
-        Some(match (self.part, dragged) {
-            (Selection::Object(i), Dragged::Position(p)) => Edit::Object(i, ObjectField::Position(p)),
-            (Selection::Object(i), Dragged::Rotation(r, _)) => Edit::Object(i, ObjectField::Rotation(r)),
-            (Selection::Object(i), Dragged::Size(size)) => Edit::Object(i, ObjectField::Size(size)),
-            (Selection::Light(i), Dragged::Position(p)) => Edit::Light(i, LightField::Position(p)),
-            (Selection::Light(i), Dragged::Direction(d)) => Edit::Light(i, LightField::Direction(d)),
-            (Selection::Light(i), Dragged::Parameter(value)) => {
-                Edit::Light(i, LightField::Parameter(self.parameter?.0.name, Value::Number(value)))
+        let part = Part::from(self.part);
+        Some(match (part, dragged) {
+            (Part::Object(_), Dragged::Rotation(r, _)) => Edit::set(part, Object::rotation, r),
+            (Part::Object(_), Dragged::Size(size)) => Edit::set(part, Object::size, size),
+            (Part::Light(_), Dragged::Direction(d)) => Edit::set(part, Light::direction, d),
+            (Part::Light(_), Dragged::Parameter(value)) => {
+                Edit::parameter(part, self.parameter?.0.name, value)
             }
+            (_, Dragged::Position(p)) => Edit::set(part, Object::position, p),
             _ => return None,
         })
     }

@@ -2,6 +2,8 @@
 
 use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, WidgetType};
 
+use glam::Vec3;
+
 use super::{
     Handle,
     grasp::{Dragged, Grasp},
@@ -9,14 +11,15 @@ use super::{
     shape::{Placed, Target, placed},
 };
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     panel::{
         marks::{self, Lens},
         notice,
         state::{Action, HandleMode, Session},
     },
+    parameter::Value,
     registry::Registry,
-    scene::rotation::rotation,
+    scene::{Field, Light, Object, rotation::rotation},
 };
 
 /// Minimum picture size for handles, in points.
@@ -99,17 +102,20 @@ pub(in crate::panel) fn handles(
         && ui.input(|i| i.pointer.primary_pressed())
         && let Some(pointer) = ui.input(|i| i.pointer.press_origin())
     {
-        let grasp = Grasp::of(placed, &target, &lens, pointer);
-        if let Some(before) = value(&grasp, &target).and_then(|value| grasp.edit(value)) {
-            if let Selection::Light(i) = target.part {
-                marks::hold(ui.ctx(), Some((i, target.at)));
-            }
-            ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
-            ui.ctx().set_dragged_id(view.with(placed.handle));
-            actions.push(Action::BeginDrag);
-        }
+        actions.extend(take(ui, view, placed, &target, Grasp::of(placed, &target, &lens, pointer)));
     }
     (actions, places)
+}
+
+/// Takes hold of a handle, if its value can be edited.
+fn take(ui: &Ui, view: Id, placed: &Placed, target: &Target, grasp: Grasp) -> Option<Action> {
+    let before = value(&grasp, target).and_then(|value| grasp.edit(value))?;
+    if let Selection::Light(i) = target.part {
+        marks::hold(ui.ctx(), Some((i, target.at)));
+    }
+    ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
+    ui.ctx().set_dragged_id(view.with(placed.handle));
+    Some(Action::BeginDrag)
 }
 
 /// The latest reason to show the handles.
@@ -197,16 +203,19 @@ fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
 
 /// True if an edit leaves the scene as it is.
 fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
-    match (edit, now) {
-        // Different angles can describe the same rotation.
-        (Edit::Object(_, ObjectField::Rotation(a)), Some(Edit::Object(_, ObjectField::Rotation(b)))) => {
-            rotation(*a).angle_between(rotation(b)) < 1e-4
-        }
-        (Edit::Light(_, LightField::Direction(a)), Some(Edit::Light(_, LightField::Direction(b)))) => {
-            a.normalize_or_zero() == b.normalize_or_zero()
-        }
-        (edit, now) => now.as_ref() == Some(edit),
+    let vector = |edit: &Edit, field: Field| match edit.one() {
+        Some((_, key, Some(Value::Triple(v)))) if key == field.into() => Some(Vec3::from(*v)),
+        _ => None,
+    };
+    let both = |field| Some((vector(edit, field)?, now.as_ref().and_then(|now| vector(now, field))?));
+    // Different angles can describe the same rotation.
+    if let Some((a, b)) = both(Object::rotation) {
+        return rotation(a).angle_between(rotation(b)) < 1e-4;
     }
+    if let Some((a, b)) = both(Light::direction) {
+        return a.normalize_or_zero() == b.normalize_or_zero();
+    }
+    now.as_ref() == Some(edit)
 }
 
 /// Continues a drag, and paints its numbers.

@@ -2,9 +2,11 @@
 
 use bevy_egui::egui::{self, Align, Layout, Ui};
 
-use super::part::{direction_knob, header, position_limits, section};
+use glam::Vec3;
+
+use super::part::{header, knob_of, section, type_knob, vector};
 use crate::{
-    document::{Edit, LightField, Selection},
+    document::{Edit, Selection},
     light::LightEntry,
     optics::temperature,
     panel::{
@@ -16,9 +18,9 @@ use crate::{
         theme,
     },
     parameter::Value,
-    reflection::{EquationPart, Term, usage},
+    reflection::{EquationPart, Term},
     registry::Registry,
-    scene::{Light, limits},
+    scene::{Light, Part, limits},
 };
 
 pub(super) fn light(
@@ -29,100 +31,75 @@ pub(super) fn light(
     actions: &mut Vec<Action>,
 ) {
     let Some(light) = session.document.lights.get(i) else { return };
-    let set = |field: LightField| Action::Edit(Edit::Light(i, field));
+    let part = Part::Light(i);
     header(ui, session, registry, Selection::Light(i), light.name.as_deref(), actions);
-    let types: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
-    let names: Vec<_> = types.iter().map(|d| d.name).collect();
-    let chosen = registry.light_index(&light.light_type).map(|k| k as usize);
     section(ui, "Light", true, |ui| {
         linked::within(ui, Domain::Light, |ui| {
-            let help = chosen.map_or("", |k| types[k].summary);
-            let caption = Caption { label: "type", help, ..Caption::default() };
-            if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-                actions.push(set(LightField::Type(types[k].id.to_owned())));
+            let types = registry.lights().iter().map(|l| l.declaration);
+            let types = types.map(|d| [d.id, d.name, d.summary]);
+            if let Some(id) = type_knob(ui, types, &light.light_type) {
+                actions.push(Action::Edit(Edit::set(part, Light::light_type, id.to_owned())));
             }
             let Some(entry) = registry.light(&light.light_type) else {
-                ui.label("This type of light is not known here; choose another one.");
+                ui.label("This light type is unknown; choose another one.");
                 return;
             };
-            let d = entry.declaration;
-            if !d.summary.is_empty() {
-                ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
-            }
-            let part = [EquationPart { term: Term::Total, text: d.equation }];
-            maths::equation(ui, &part, |symbol| match symbol {
-                "I" => Some("the intensity of the light".to_owned()),
-                other => {
-                    let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
-                    own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
-                }
-            });
-            actions.extend(brightness(ui, light, entry).map(set));
-            actions.extend(light_colour(ui, light).map(set));
+            equation(ui, entry);
+            actions.extend(brightness(ui, part, light, entry).map(Action::Edit));
+            actions.extend(light_colour(ui, part, light).map(Action::Edit));
             for p in entry.parameters {
-                let unused = usage::unused(entry.parameters, p, &light.parameters);
-                if let Value::File(file) = light.parameters.get(p) {
-                    if knob::file_knob(ui, p, &file) {
-                        actions.push(Action::FileDialog(Selection::Light(i), p));
-                    }
-                    continue;
-                }
-                if let Some(v) =
-                    knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
+                if let Value::File(file) = light.parameters.get(p)
+                    && knob::file_knob(ui, p, &file)
                 {
-                    actions.push(set(LightField::Parameter(p.name, v)));
+                    actions.push(Action::FileDialog(Selection::Light(i), p));
+                }
+                if let Some(v) = knob_of(ui, p.name, p, entry.parameters, &light.parameters) {
+                    actions.push(Action::Edit(Edit::parameter(part, p.name, v)));
                 }
             }
         })
     });
     if light.position.is_some() || light.direction.is_some() {
         section(ui, "Position", true, |ui| {
-            if let Some(position) = light.position {
-                let caption = Caption {
-                    label: "position",
-                    unit: "m",
-                    help: "Position of the light; y is up, the origin is a corner of the room.",
-                    ..Caption::default()
-                };
-                if let Some(p) = knob::vector_knob(
-                    ui,
-                    "position",
-                    &caption,
-                    position,
-                    &position_limits(session.document.scene_size),
-                ) {
-                    actions.push(set(LightField::Position(p)));
-                }
-            }
-            if let Some(direction) = light.direction
-                && let Some(d) = direction_knob(
-                    ui,
-                    direction,
-                    "Direction in which the light shines; its length does not matter.",
-                )
-            {
-                actions.push(set(LightField::Direction(d)));
-            }
+            let room = session.document.scene_size;
+            let mut knob = |field, value: Option<Vec3>, help| {
+                let edit = value.and_then(|value| vector(ui, part, field, help, value, room));
+                actions.extend(edit.map(Action::Edit));
+            };
+            let help = "Position of the light; y is up, the origin is a corner of the room.";
+            knob(Light::position, light.position, help);
+            let help = "Direction in which the light shines; its length does not matter.";
+            knob(Light::direction, light.direction, help);
         });
     }
 }
 
+/// The summary of a type of light, and the equation of what it sends.
+fn equation(ui: &mut Ui, entry: &LightEntry) {
+    let d = entry.declaration;
+    if !d.summary.is_empty() {
+        ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
+    }
+    let part = [EquationPart { term: Term::Total, text: d.equation }];
+    maths::equation(ui, &part, |symbol| match symbol {
+        "I" => Some("the intensity of the light".to_owned()),
+        other => {
+            let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
+            own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
+        }
+    });
+}
+
 /// The brightness of a light: its intensity, or, for types that have one, its luminous flux.
-fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightField> {
+fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Option<Edit> {
     let d = entry.declaration;
     let intensity = f64::from(light.intensity_as(entry));
-    let caption = Caption {
-        symbol: "I",
-        label: "intensity",
-        unit: d.unit,
-        help: unit_help(d.unit),
-        ..Caption::default()
-    };
+    let caption = Caption { symbol: "I", unit: d.unit, ..Caption::of(&Light::intensity, unit_help(d.unit)) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
         let new = knob::number_knob(ui, "intensity", &caption, intensity, Some(default), &limits);
-        return new.map(|v| LightField::Intensity(v as f32));
+        return new.map(|v| Edit::set(part, Light::intensity, v as f32));
     };
     // Rounded where it is converted, to what can be told apart.
     let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
@@ -148,19 +125,18 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
     let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
     let out = if as_flux {
-        let caption =
-            Caption { symbol: "Φ", label: "luminous flux", unit: "lm", help: unit_help("lm"), ..caption };
+        let caption = Caption { symbol: "Φ", ..Caption::of(&Light::luminous_flux, unit_help("lm")) };
         let default = limits::significant(default * solid_angle, 3);
         let limits = limits::luminous_flux(d);
         knob::number_knob_beside(ui, "flux", &caption, flux, Some(default), &limits, beside)
-            .map(|v| LightField::LuminousFlux(v as f32))
+            .map(|v| Edit::set(part, Light::luminous_flux, v as f32))
     } else {
         knob::number_knob_beside(ui, "intensity", &caption, intensity, Some(default), &limits, beside)
-            .map(|v| LightField::Intensity(v as f32))
+            .map(|v| Edit::set(part, Light::intensity, v as f32))
     };
     match other_unit {
-        Some(0) => Some(LightField::Intensity(limits::significant(intensity, 6) as f32)),
-        Some(_) => Some(LightField::LuminousFlux(flux as f32)),
+        Some(0) => Some(Edit::set(part, Light::intensity, limits::significant(intensity, 6) as f32)),
+        Some(_) => Some(Edit::set(part, Light::luminous_flux, flux as f32)),
         None => out,
     }
 }
@@ -169,7 +145,7 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
 const SAMPLE: f32 = 44.0 + 22.0;
 
 /// The colour of a light: sRGB, or the temperature of a black body.
-fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
+fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
     let mut out = None;
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
@@ -188,9 +164,13 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
             });
         };
         match segmented(ui, "Colour by", &choices, Some(chosen), tip) {
-            Some(0) => out = Some(LightField::Colour(light.rgb8())),
+            Some(0) => out = Some(Edit::set(part, Light::colour, light.rgb8())),
             Some(_) => {
-                out = Some(LightField::ColourTemperature(temperature::nearest_temperature(light.colour)))
+                out = Some(Edit::set(
+                    part,
+                    Light::colour_temperature,
+                    temperature::nearest_temperature(light.colour),
+                ))
             }
             None => {}
         }
@@ -203,29 +183,21 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
     });
     let field = match light.colour_temperature {
         Some(kelvin) => {
-            let caption = Caption {
-                symbol: "T",
-                label: "colour temperature",
-                unit: "K",
-                help: "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
-                       midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. The luminance stays \
-                       that of a white light of this intensity.",
-                ..Caption::default()
-            };
+            let help = "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
+                        midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. The luminance stays \
+                        that of a white light of this intensity.";
+            let caption = Caption { symbol: "T", ..Caption::of(&Light::colour_temperature, help) };
             let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
-            let limits = limits::colour_temperature();
+            let limits = Light::colour_temperature.limits();
             knob::number_knob(ui, "temperature", &caption, f64::from(kelvin), default, &limits)
-                .map(|v| LightField::ColourTemperature(v as f32))
+                .map(|v| Edit::set(part, Light::colour_temperature, v as f32))
         }
         None => {
-            let caption = Caption {
-                label: "colour",
-                unit: "sRGB",
-                help: "The colour of the light; white leaves the materials as they are. Other colours are a filter: blue \
-                       alone has 7 % of the luminance of white.",
-                ..Caption::default()
-            };
-            knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])).map(LightField::Colour)
+            let help = "The colour of the light; white leaves the materials as they are. Other colours are a filter: blue \
+                        alone has 7 % of the luminance of white.";
+            let caption = Caption::of(&Light::colour, help);
+            knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3]))
+                .map(|rgb| Edit::set(part, Light::colour, rgb))
         }
     };
     out.or(field)

@@ -4,9 +4,9 @@ use bevy_egui::egui::{
     Align, Button, CollapsingHeader, FontId, Id, Layout, RichText, TextFormat, TextStyle, Ui, text::LayoutJob,
 };
 
-use super::{measured::measured, object::Shown, variant::marked};
+use super::{measured::measured, object::Shown, part::knob_of, variant::marked};
 use crate::{
-    document::{ObjectField, VariantField},
+    document::Edit,
     panel::{
         knob,
         lesson::point,
@@ -14,33 +14,30 @@ use crate::{
         theme::{self, Palette},
     },
     parameter::Parameter,
-    reflection::{ModelEntry, ungrouped, usage},
-    scene::Variant,
+    reflection::{ModelEntry, ungrouped},
+    scene::Key,
+    shading::ShadingEntry,
     text::plural,
 };
 
 impl Shown<'_> {
     /// The knobs of the parameters of the model, and the parameters that it does not use.
-    pub(super) fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
-        let Self { session, registry, object, model } = *self;
+    pub(super) fn material(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+        let Self { session, registry, part, object, model } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
             return;
         };
         if let Some(values) = measured(ui, registry, model, object) {
-            fields.push(ObjectField::Preset(values));
+            edits.push(Edit::materials(part, values, "Measured material"));
         }
         let listed = self.listed(ui, model);
         self.filter(ui, model, actions);
         let mut knob = |ui: &mut Ui, p: &'static Parameter| {
-            let unused = usage::unused(model.parameters, p, &object.material);
-            let own = |variant: &Variant| {
-                variant.material.0.contains_key(p.name).then_some(VariantField::Material(p.name, None))
-            };
-            let value = marked(ui, session, own, actions, |ui| {
-                knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref())
+            let value = marked(ui, session, Key::Material(p.name), actions, |ui| {
+                knob_of(ui, p.name, p, model.parameters, &object.material)
             });
-            fields.extend(value.map(|v| ObjectField::Material(p.name, v)));
+            edits.extend(value.map(|v| Edit::material(part, p.name, v)));
         };
         for p in ungrouped(model.groups, model.parameters).filter(|p| listed.contains(&p.name)) {
             knob(ui, p);
@@ -65,22 +62,30 @@ impl Shown<'_> {
         }
         let shading = registry.shading_model(session.scene().shading_model_of(object));
         if let Some(shading) = shading {
-            self.shading(ui, model, shading, fields);
+            self.shading(ui, model, shading, edits);
         }
         self.readouts(ui, model);
-        let unused: Vec<_> = registry
-            .material_parameters()
-            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
-            .filter(|p| shading.is_none_or(|s| s.parameter(p.name).is_none()))
-            .collect();
-        if !unused.is_empty() {
-            let reason = format!("Not used by {}", model.declaration.name);
-            ui.add_space(4.0);
-            ui.label(theme::small(ui, format!("{reason} (values kept)")));
-            ui.add_space(2.0);
-            for p in unused {
-                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
-            }
+        self.unused(ui, model, shading);
+    }
+
+    /// The parameters that have values, but neither the model nor the shading model uses.
+    fn unused(&self, ui: &mut Ui, model: &ModelEntry, shading: Option<&ShadingEntry>) {
+        let values = &self.object.material;
+        let unused = |p: &&'static Parameter| {
+            model.parameter(p.name).is_none()
+                && values.0.contains_key(p.name)
+                && shading.is_none_or(|s| s.parameter(p.name).is_none())
+        };
+        let unused: Vec<_> = self.registry.material_parameters().filter(unused).collect();
+        if unused.is_empty() {
+            return;
+        }
+        let reason = format!("Not used by {}", model.declaration.name);
+        ui.add_space(4.0);
+        ui.label(theme::small(ui, format!("{reason} (values kept)")));
+        ui.add_space(2.0);
+        for p in unused {
+            knob::parameter_knob(ui, p.name, p, &values.get(p), Some(&reason));
         }
     }
 

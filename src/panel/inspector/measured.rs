@@ -28,7 +28,16 @@ pub(super) fn measured(
     let measured = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).map(Offer::Measured);
     let looks = looks().iter().filter(|look| look.model == model.declaration.id).map(Offer::Look);
     let offered: Vec<_> = looks.chain(measured).collect();
-    let has_looks = matches!(offered.first()?, Offer::Look(_));
+    let (label, help) = match offered.first()? {
+        Offer::Look(_) => (
+            "material preset",
+            "Sets the parameters below to those of a material: one that artists reach for, which sets all of them, or one that was measured. Shows “none” once one of them differs.",
+        ),
+        Offer::Measured(_) => (
+            "measured material",
+            "Sets the parameters below to those measured on a real material, and those of the other physically based models too. Shows “none” once one of them differs.",
+        ),
+    };
     let is = |offer: &Offer| {
         let set = |(name, value): &(&str, Value)| {
             model.parameter(name).is_some_and(|p| object.material.get(p) == *value)
@@ -36,61 +45,29 @@ pub(super) fn measured(
         offer.values(model).iter().all(set)
     };
     let present = offered.iter().position(is);
-    let caption = if has_looks {
-        Caption {
-            label: "material preset",
-            help: "Sets the parameters below to those of a material: one that artists reach for, which sets all of them, or one that was measured. Shows “none” once one of them differs.",
-            ..Caption::default()
-        }
-    } else {
-        Caption {
-            label: "measured material",
-            help: "Sets the parameters below to those measured on a real material, and those of the other physically based models too. Shows “none” once one of them differs.",
-            ..Caption::default()
-        }
-    };
-    let words = chooser::Words {
-        label: "Search materials",
-        hint: "Search materials",
-        none: "No material has that in its name or source.",
-        foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
-        ..chooser::Words::default()
-    };
     let shown = present.map_or("none", |i| offered[i].name());
-    let chosen = knob::list_knob(ui, "measured material", &caption, shown, |ui, id| {
+    let chosen = knob::list_knob(ui, "measured material", &Caption::new(label, "", help), shown, |ui, id| {
         let height = 0.45 * ui.ctx().content_rect().height();
         let find = |search: &str| -> Vec<(usize, Offer)> {
             let hit = |(_, offer): &(usize, Offer)| chooser::matches(&offer.words(), search);
             offered.iter().copied().enumerate().filter(hit).collect()
         };
-        let entry = |(i, offer): &(usize, Offer)| chooser::Entry {
-            heading: offer.heading(),
-            name: offer.name(),
-            note: match offer {
-                Offer::Look(_) => String::new(),
-                Offer::Measured(m) => m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
-            },
-            swatch: match offer {
-                Offer::Look(_) => None,
-                Offer::Measured(m) => Some(theme::swatch(m.f0)),
-            },
-            current: present == Some(*i),
-            ..chooser::Entry::default()
-        };
-        let about = |ui: &mut Ui, (_, offer): &(usize, Offer)| match offer {
-            Offer::Look(look) => {
-                ui.label(theme::strong(ui, &look.name));
-                ui.label(&look.description);
-            }
-            Offer::Measured(m) => measurement(ui, m),
-        };
-        chooser::list(ui, id, words, height, find, entry, about)
+        let entry = |(i, offer): &(usize, Offer)| offer.entry(present == Some(*i));
+        chooser::list(ui, id, WORDS, height, find, entry, |ui, (_, offer)| offer.about(ui))
     });
     chosen.map(|(_, offer)| match offer {
         Offer::Look(_) => offer.values(model),
         Offer::Measured(material) => crate::registry::along(model, material, registry),
     })
 }
+
+const WORDS: chooser::Words = chooser::Words {
+    label: "Search materials",
+    hint: "Search materials",
+    none: "No material has that in its name or source.",
+    foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
+    roomy: false,
+};
 
 /// A material that can be chosen.
 #[derive(Clone, Copy)]
@@ -130,6 +107,28 @@ impl Offer {
         match self {
             Self::Look(look) => model.parameters.iter().map(|p| (p.name, look.material.get(p))).collect(),
             Self::Measured(m) => (model.preset)(m),
+        }
+    }
+
+    fn entry(self, current: bool) -> chooser::Entry<'static> {
+        let (note, swatch) = match self {
+            Self::Look(_) => (String::new(), None),
+            Self::Measured(m) => {
+                (m.f0.to_array().map(|v| format!("{v:.2}")).join("  "), Some(theme::swatch(m.f0)))
+            }
+        };
+        let (heading, name) = (self.heading(), self.name());
+        chooser::Entry { heading, name, note, swatch, current, ..chooser::Entry::default() }
+    }
+
+    /// The tooltip.
+    fn about(self, ui: &mut Ui) {
+        match self {
+            Self::Look(look) => {
+                ui.label(theme::strong(ui, &look.name));
+                ui.label(&look.description);
+            }
+            Self::Measured(m) => measurement(ui, m),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{ScrollArea, Ui};
 
-use super::{Panel, PanelContext, Place};
+use super::{Panel, PanelContext, Place, is_panel};
 use crate::document::Selection;
 use {light::light, object::object, observer::observer, room::room};
 
@@ -21,17 +21,7 @@ mod variant;
 pub struct Inspector;
 
 impl Panel for Inspector {
-    fn id(&self) -> &'static str {
-        "inspector"
-    }
-
-    fn title(&self) -> &'static str {
-        "Properties"
-    }
-
-    fn place(&self) -> Place {
-        Place::Right
-    }
+    is_panel!("inspector", "Properties", Place::Right);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);

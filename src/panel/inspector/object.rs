@@ -4,11 +4,11 @@ use bevy_egui::egui::{Align, Layout, Ui};
 
 use super::{
     model::{equation, missing_model, model_author, model_name, stage, terms},
-    part::{header, position_limits, section, thrice},
+    part::{header, knob_of, number, section, type_knob, vector},
     variant::marked,
 };
 use crate::{
-    document::{Edit, ObjectField, Selection, VariantField},
+    document::{Edit, Selection},
     panel::{
         knob::{self, Caption},
         linked::{self, Domain},
@@ -17,9 +17,9 @@ use crate::{
         theme,
     },
     parameter::Value,
-    reflection::{ModelEntry, usage},
+    reflection::ModelEntry,
     registry::Registry,
-    scene::{Object, Variant, limits},
+    scene::{Object, Part, Variant, limits},
     shading::ShadingEntry,
 };
 
@@ -33,32 +33,34 @@ pub(super) fn object(
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, session, registry, Selection::Object(i), object.name.as_deref(), actions);
     let model = registry.model(session.scene().model_of(object));
-    let shown = Shown { session, registry, object, model };
-    let mut fields = Vec::new();
+    let shown = Shown { session, registry, part: Part::Object(i), object, model };
+    let mut edits = Vec::new();
     shown.files(ui, i, actions);
-    section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
-    section(ui, "Material", true, |ui| shown.material(ui, &mut fields, actions));
+    section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut edits, actions));
+    section(ui, "Material", true, |ui| shown.material(ui, &mut edits, actions));
     section(ui, "Shape and position", true, |ui| {
-        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, &mut fields, actions));
+        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, &mut edits, actions));
     });
-    actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
+    actions.extend(edits.into_iter().map(Action::Edit));
 }
 
-/// The object that is shown, and its surroundings. The methods show it, and add new values of its fields.
+/// The object that is shown, and its surroundings. The methods show it, and add edits of it.
 pub(super) struct Shown<'a> {
     pub(super) session: &'a Session,
     pub(super) registry: &'a Registry,
+    pub(super) part: Part,
     pub(super) object: &'a Object,
     pub(super) model: Option<&'a ModelEntry>,
 }
 
 impl Shown<'_> {
     /// The model with its equation and terms, and the stage that evaluates it.
-    fn reflection(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
-        let Self { session, registry, object, model } = *self;
+    fn reflection(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+        let Self { session, registry, part, object, model } = *self;
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                fields.extend(model_override::control(ui, session, registry, object));
+                let chosen = model_override::control(ui, session, registry, object);
+                edits.extend(chosen.map(|(field, id)| Edit::put(part, field, id)));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
                         model_name(ui, model);
@@ -85,9 +87,9 @@ impl Shown<'_> {
         ui: &mut Ui,
         model: &ModelEntry,
         shading: &ShadingEntry,
-        fields: &mut Vec<ObjectField>,
+        edits: &mut Vec<Edit>,
     ) {
-        let Self { object, .. } = *self;
+        let Self { part, object, .. } = *self;
         let own: Vec<_> = shading.parameters.iter().filter(|p| model.parameter(p.name).is_none()).collect();
         if own.is_empty() {
             return;
@@ -95,71 +97,48 @@ impl Shown<'_> {
         ui.add_space(4.0);
         ui.label(theme::small(ui, format!("{} shading", shading.declaration.name)));
         for p in own {
-            let unused = usage::unused(shading.parameters, p, &object.material);
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
-                fields.push(ObjectField::Material(p.name, v));
+            if let Some(v) = knob_of(ui, p.name, p, shading.parameters, &object.material) {
+                edits.push(Edit::material(part, p.name, v));
             }
         }
     }
 
     /// The object type, its size and its place.
-    fn geometry(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
-        let Self { session, registry, object, .. } = *self;
-        let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
-        let names: Vec<_> = types.iter().map(|d| d.name).collect();
-        let chosen = types.iter().position(|d| d.id == object.object_type);
-        let help = chosen.map_or("", |k| types[k].summary);
-        let caption = Caption { label: "type", help, ..Caption::default() };
-        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-            fields.push(ObjectField::Type(types[k].id.to_owned()));
+    fn geometry(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+        let Self { session, registry, part, object, .. } = *self;
+        let types = registry.shapes().iter().map(|s| s.declaration);
+        if let Some(id) = type_knob(ui, types.map(|d| [d.id, d.name, d.summary]), &object.object_type) {
+            edits.push(Edit::set(part, Object::object_type, id.to_owned()));
         }
-        self.shape(ui, fields);
-        let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-        let size_limits = limits::object_size(session.document.scene_size);
-        let default = f64::from(crate::scene::DEFAULT_SIZE);
-        if let Some(v) =
-            knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
-        {
-            fields.push(ObjectField::Size(v as f32));
-        }
-        let caption = Caption {
-            label: "position",
-            unit: "m",
-            help: "Position of the centre; y is up, the origin is a corner of the room.",
-            ..Caption::default()
-        };
-        if let Some(p) = knob::vector_knob(
+        self.shape(ui, edits);
+        let room = session.document.scene_size;
+        let sizes = [object.size, Object::default().size];
+        edits.extend(number(
             ui,
-            "position",
-            &caption,
-            object.position,
-            &position_limits(session.document.scene_size),
-        ) {
-            fields.push(ObjectField::Position(p));
-        }
-        let caption = Caption {
-            label: "rotation",
-            unit: "°",
-            help: "Turned about x first, then y, then z of the room.",
-            ..Caption::default()
-        };
-        if let Some(r) =
-            knob::vector_knob(ui, "rotation", &caption, object.rotation, &thrice(limits::rotation()))
-        {
-            fields.push(ObjectField::Rotation(r));
-        }
+            part,
+            Object::size,
+            "The largest extent.",
+            sizes,
+            &limits::object_size(room),
+        ));
+        let help = "Position of the centre; y is up, the origin is a corner of the room.";
+        edits.extend(vector(ui, part, Object::position, help, object.position, room));
+        let help = "Turned about x first, then y, then z of the room.";
+        edits.extend(vector(ui, part, Object::rotation, help, object.rotation, room));
         if let Some(shape) = registry.shape(&object.object_type) {
             let d = shape.declaration;
-            let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
+            let caption = Caption::new("tessellation", "", d.tessellation_help);
             let value = f64::from(shape.tessellation(object.tessellation));
             let default = f64::from(d.default_tessellation);
-            let own = |variant: &Variant| variant.tessellation.map(|_| VariantField::Tessellation(None));
-            if let Some(v) = marked(ui, session, own, actions, |ui| {
+            if let Some(v) = marked(ui, session, Variant::tessellation, actions, |ui| {
                 let limits = limits::tessellation(d);
                 knob::number_knob(ui, "tessellation", &caption, value, Some(default), &limits)
             }) {
-                fields
-                    .push(ObjectField::Tessellation(Some(v as u32).filter(|n| *n != d.default_tessellation)));
+                edits.push(Edit::put(
+                    part,
+                    Object::tessellation,
+                    Some(v as u32).filter(|n| *n != d.default_tessellation),
+                ));
             }
         }
     }
@@ -178,17 +157,13 @@ impl Shown<'_> {
     }
 
     /// The knobs of the parameters of the object type; its files have theirs above.
-    fn shape(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
-        let Self { registry, object, .. } = *self;
+    fn shape(&self, ui: &mut Ui, edits: &mut Vec<Edit>) {
+        let Self { registry, part, object, .. } = *self;
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
-            if matches!(object.shape.get(p), Value::File(_)) {
-                continue;
-            }
-            let unused = usage::unused(shape.parameters, p, &object.shape);
             let salt = format!("shape {}", p.name);
-            if let Some(v) = knob::parameter_knob(ui, &salt, p, &object.shape.get(p), unused.as_deref()) {
-                fields.push(ObjectField::Shape(p.name, v));
+            if let Some(v) = knob_of(ui, &salt, p, shape.parameters, &object.shape) {
+                edits.push(Edit::parameter(part, p.name, v));
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Widgets that all parts of the scene share: headings, groups, text fields, knobs for positions and directions.
 
-use bevy_egui::egui::{self, CollapsingHeader, Key, RichText, TextEdit, Ui, WidgetInfo};
+use bevy_egui::egui::{self, CollapsingHeader, Key, RichText, TextEdit, Ui};
 use glam::Vec3;
 
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     panel::{
         icon::{self, Icon},
         keys,
@@ -13,9 +13,12 @@ use crate::{
         state::{Action, Session},
         theme::{self, Palette},
     },
+    parameter::{Parameter, Value, Values},
+    reflection::usage,
     registry::Registry,
     scene::{
-        SceneSize,
+        Field, Light, Part, SceneSize,
+        field::Kind,
         limits::{self, Limits},
     },
 };
@@ -52,11 +55,7 @@ pub(super) fn header(
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ui.available_width() - 76.0;
-        let rename = move |text: String| match part {
-            Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
-            Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
-            _ => Action::Edit(Edit::SceneName(text)),
-        };
+        let rename = move |text: String| Action::Edit(Edit::set(part.into(), Light::name, text));
         text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, Text::Heading, |text| {
             actions.push(rename(text))
         });
@@ -126,11 +125,7 @@ pub(super) fn text_field(
                 .inner_margin(egui::Margin::symmetric(6, 3)),
         );
     let response = ui.add(edit);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, value, &text, hint);
-        info.label = Some(label.to_owned());
-        info
-    });
+    theme::names_field(&response, label, [value, &text, hint]);
     if kind == Text::Sentences && response.has_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
         response.surrender_focus();
     }
@@ -147,15 +142,59 @@ pub(super) fn text_field(
     response.on_hover_text(if kind != Text::Sentences && !value.is_empty() { value } else { label });
 }
 
-pub(super) fn position_limits(size: SceneSize) -> [Limits; 3] {
-    [0, 1, 2].map(|axis| limits::position(size, axis))
+/// The knob of a vector of a part.
+pub(super) fn vector(
+    ui: &mut Ui,
+    part: Part,
+    field: Field,
+    help: &str,
+    value: Vec3,
+    room: SceneSize,
+) -> Option<Edit> {
+    let limits = [0, 1, 2].map(|axis| match field.kind {
+        Kind::Position => limits::position(room, axis),
+        _ => field.limits(),
+    });
+    let caption = Caption::of(&field, help);
+    knob::vector_knob(ui, field.label(), &caption, value, &limits).map(|v| Edit::set(part, field, v))
 }
 
-pub(super) fn thrice(limits: Limits) -> [Limits; 3] {
-    [limits.clone(), limits.clone(), limits]
+/// The knob of a number of a part, with its default.
+pub(super) fn number(
+    ui: &mut Ui,
+    part: Part,
+    field: Field,
+    help: &str,
+    [value, default]: [f32; 2],
+    limits: &Limits,
+) -> Option<Edit> {
+    let caption = Caption::of(&field, help);
+    let (value, default) = (f64::from(value), Some(default.into()));
+    knob::number_knob(ui, field.label(), &caption, value, default, limits)
+        .map(|v| Edit::set(part, field, v as f32))
 }
 
-pub(super) fn direction_knob(ui: &mut Ui, value: Vec3, help: &str) -> Option<Vec3> {
-    let caption = Caption { label: "direction", help, ..Caption::default() };
-    knob::vector_knob(ui, "direction", &caption, value, &thrice(limits::direction()))
+/// The choice of a type from the id, name and summary of each. Returns the id of another one.
+pub(super) fn type_knob<'t>(
+    ui: &mut Ui,
+    types: impl Iterator<Item = [&'t str; 3]>,
+    id: &str,
+) -> Option<&'t str> {
+    let types: Vec<_> = types.collect();
+    let names: Vec<_> = types.iter().map(|[_, name, _]| *name).collect();
+    let chosen = types.iter().position(|[known, ..]| *known == id);
+    let caption = Caption::new("type", "", chosen.map_or("", |k| types[k][2]));
+    knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names).map(|k| types[k][0])
+}
+
+/// The knob of a declared parameter of a part with these values; disabled if they leave it unused.
+pub(super) fn knob_of(
+    ui: &mut Ui,
+    salt: &str,
+    parameter: &Parameter,
+    all: &[Parameter],
+    values: &Values,
+) -> Option<Value> {
+    let unused = usage::unused(all, parameter, values);
+    knob::parameter_knob(ui, salt, parameter, &values.get(parameter), unused.as_deref())
 }

@@ -1,17 +1,9 @@
 //! Knobs for choices.
 
-use bevy_egui::egui::{
-    self, Button, Id, Popup, PopupCloseBehavior, RectAlign, Response, RichText, Ui, WidgetInfo, WidgetType,
-    vec2,
-};
+use bevy_egui::egui::{self, Id, Popup, PopupCloseBehavior, RectAlign, Response, Ui, WidgetInfo, WidgetType};
 
-use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
-use crate::panel::{
-    chooser,
-    lesson::point,
-    linked, menu,
-    theme::{self, Palette},
-};
+use super::line::{CHOICE, Caption, Words, button, choice_width, explain, head, knob, tooltip};
+use crate::panel::{chooser, menu, theme};
 
 /// A choice among many options: label at the left; a button at the right opens `list`, which receives its own id, until
 /// that returns a value.
@@ -22,18 +14,8 @@ pub fn list_knob<R>(
     shown: &str,
     list: impl FnOnce(&mut Ui, Id) -> Option<R>,
 ) -> Option<R> {
-    let palette = Palette::here(ui);
     let id = ui.make_persistent_id(salt);
-    let (label, button) = head(ui, caption, Words::Leave(CHOICE), |ui| {
-        ui.add_space(22.0);
-        let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
-        let button = Button::new(shown).right_text(RichText::new("▾").color(palette.weak)).truncate();
-        let button = ui.add_sized(vec2(width, 24.0), button);
-        button.widget_info(|| {
-            WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
-        });
-        button
-    });
+    let (label, button) = button(ui, caption, shown, "▾", WidgetType::ComboBox);
     explain(label, |ui| tooltip(ui, caption, "", ""));
     let out = drop_down(&button, id, WIDE, list);
     if out.is_some() {
@@ -90,38 +72,15 @@ pub fn choice_with_help(
     chosen: usize,
     options: &[[&str; 3]],
 ) -> Option<usize> {
-    let tip = |ui: &mut Ui, [name, author, summary]: [&str; 3]| {
-        ui.set_max_width(300.0);
-        ui.label(theme::strong(ui, name));
-        ui.label(summary);
-        if !author.is_empty() {
-            ui.label(theme::small(ui, author));
-        }
-    };
-    let mut out = None;
-    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    knob(ui, salt, caption, |ui| {
         let id = ui.make_persistent_id(salt);
-        let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
-            ui.add_space(22.0);
-            let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
+        let (label, out) = head(ui, caption, Words::Leave(CHOICE), |ui| {
+            let width = choice_width(ui);
             let now = options.get(chosen).copied();
             let [shown, _, summary] = now.unwrap_or(["–", "", ""]);
             let mut by_key = false;
-            let combo = egui::ComboBox::from_id_salt(id)
-                .width(width)
-                .truncate()
-                .selected_text(shown)
-                .show_ui(ui, |ui| {
-                    for (i, option) in options.iter().enumerate() {
-                        let response = menu::choice(ui, i == chosen, option[0], &mut by_key);
-                        if response.clicked() && i != chosen {
-                            out = Some(i);
-                        }
-                        if !option[2].is_empty() {
-                            response.on_hover_ui(|ui| tip(ui, *option));
-                        }
-                    }
-                });
+            let combo = egui::ComboBox::from_id_salt(id).width(width).truncate().selected_text(shown);
+            let combo = combo.show_ui(ui, |ui| list(ui, chosen, options, &mut by_key));
             combo.response.widget_info(|| {
                 WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
             });
@@ -133,11 +92,34 @@ pub fn choice_with_help(
             } else if !summary.is_empty() {
                 combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
             }
+            combo.inner.flatten()
         });
         explain(label, |ui| tooltip(ui, caption, "", ""));
         ui.add_space(4.0);
-    });
-    linked::touch(ui, shown.response.rect, &[caption.symbol]);
-    point::knob(ui, salt, shown.response.rect);
+        out
+    })
+}
+
+/// The open list of options. Returns the index of a new choice.
+fn list(ui: &mut Ui, chosen: usize, options: &[[&str; 3]], by_key: &mut bool) -> Option<usize> {
+    let mut out = None;
+    for (i, option) in options.iter().enumerate() {
+        let response = menu::choice(ui, i == chosen, option[0], by_key);
+        if response.clicked() && i != chosen {
+            out = Some(i);
+        }
+        if !option[2].is_empty() {
+            response.on_hover_ui(|ui| tip(ui, *option));
+        }
+    }
     out
+}
+
+fn tip(ui: &mut Ui, [name, author, summary]: [&str; 3]) {
+    ui.set_max_width(300.0);
+    ui.label(theme::strong(ui, name));
+    ui.label(summary);
+    if !author.is_empty() {
+        ui.label(theme::small(ui, author));
+    }
 }

@@ -1,18 +1,14 @@
 //! Knobs for colours.
 
-use bevy_egui::egui::{self, Color32, Id, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
     field::{complaint, field, text_field},
-    line::{Caption, NUMBER, Words, explain, head, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     picker::picker,
     vector::axis_letter,
 };
-use crate::{
-    panel::{lesson::point, linked, theme::Palette},
-    scene::limits::Limits,
-    text::capitalised,
-};
+use crate::{panel::theme::Palette, scene::limits::Limits, text::capitalised};
 
 /// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
 pub fn colour_knob(
@@ -23,11 +19,8 @@ pub fn colour_knob(
     default: Option<[u8; 3]>,
 ) -> Option<[u8; 3]> {
     let id = ui.make_persistent_id(salt);
-    let mut out = None;
-    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let out = knob(ui, salt, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let rule = "three whole numbers from 0 to 255: red, green, blue";
-        let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let [r, g, b] = value;
         let (label, hex) = head(ui, caption, Words::Leave(NUMBER), |ui| {
             unit(ui, "");
@@ -39,43 +32,49 @@ pub fn colour_knob(
             };
             text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
         });
-        out = hex.value;
-        let rule = format!("{rule}, encoded as sRGB. Default {default_text}");
+        let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
+        let rule = format!(
+            "three whole numbers from 0 to 255: red, green, blue, encoded as sRGB. Default {default_text}"
+        );
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
-        let mut wrong = hex.error.map(|e| (e, hex.response));
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let mut rgb = value;
-            swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
-            if rgb != value {
-                out = Some(rgb);
-            }
-            let limits = Limits::between(0.0, 255.0).whole();
-            for (channel, letter) in ["R", "G", "B"].into_iter().enumerate() {
-                let name = format!("{}: {}", caption.label, ["red", "green", "blue"][channel]);
-                axis_letter(ui, letter, &name, &limits, f64::from(value[channel]), |v| {
-                    let mut rgb = value;
-                    rgb[channel] = v as u8;
-                    out = Some(rgb);
-                });
-                let f = field(ui, id.with(channel), &name, f64::from(value[channel]), &limits, 40.0);
-                if let Some(v) = f.value {
-                    let mut rgb = value;
-                    rgb[channel] = v as u8;
-                    out = Some(rgb);
-                }
-                wrong = wrong.take().or(f.error.map(|e| (e, f.response)));
-            }
-            unit(ui, caption.unit);
-        });
-        if let Some((error, field)) = wrong {
+        let (new, wrong) = ui.horizontal(|ui| channels(ui, id, caption, value, default)).inner;
+        if let Some((error, field)) = hex.error.map(|e| (e, hex.response)).or(wrong) {
             complaint(ui, &field, &capitalised(&error), &format!("{r}, {g}, {b}"));
         }
         ui.add_space(6.0);
+        new.or(hex.value)
     });
-    linked::touch(ui, shown.response.rect, &[caption.symbol]);
-    point::knob(ui, salt, shown.response.rect);
     out.filter(|c| *c != value)
+}
+
+/// The swatch, and a field for each channel. Returns the new value, and the first error with the field.
+fn channels(
+    ui: &mut Ui,
+    id: Id,
+    caption: &Caption,
+    value: [u8; 3],
+    default: Option<[u8; 3]>,
+) -> (Option<[u8; 3]>, Option<(String, Response)>) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    let mut rgb = value;
+    swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
+    let (mut out, mut wrong) = (Some(rgb).filter(|rgb| *rgb != value), None);
+    let limits = Limits::between(0.0, 255.0).whole();
+    for (channel, (letter, word)) in [("R", "red"), ("G", "green"), ("B", "blue")].into_iter().enumerate() {
+        let name = format!("{}: {word}", caption.label);
+        let mut set = |v: f64| {
+            let mut rgb = value;
+            rgb[channel] = v as u8;
+            out = Some(rgb);
+        };
+        let now = f64::from(value[channel]);
+        axis_letter(ui, letter, &name, &limits, now, &mut set);
+        let f = field(ui, id.with(channel), &name, now, &limits, 40.0);
+        f.value.into_iter().for_each(set);
+        wrong = wrong.or(f.error.map(|e| (e, f.response)));
+    }
+    unit(ui, caption.unit);
+    (out, wrong)
 }
 
 /// The colour swatch: a click opens the picker, a double-click sets the default.

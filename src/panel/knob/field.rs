@@ -4,13 +4,13 @@
 //! Escape.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, TextStyle, Ui, pos2,
+    vec2,
 };
 
 use super::slider::{nudge, round_to};
 use crate::{
-    panel::theme::Palette,
+    panel::theme::{self, Palette},
     scene::limits::{Limits, number},
 };
 
@@ -54,82 +54,82 @@ pub(super) fn read(text: &str, limits: &Limits) -> Result<f64, String> {
 /// A field for one number. `name` is for screen readers.
 pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
     let draft_id = id.with("draft");
-    let mut draft: Option<Draft> = ui.data(|d| d.get_temp(draft_id));
-    // The value changed elsewhere, which makes the edited text obsolete.
-    if draft.as_ref().is_some_and(|d| d.last != value) {
-        draft = None;
-    }
-    let focused = ui.memory(|m| m.has_focus(id));
+    // A value changed elsewhere makes the edited text obsolete.
+    let mut draft = ui.data(|d| d.get_temp::<Draft>(draft_id)).filter(|d| d.last == value);
+    let begun = |text: String| Draft { text, before: value, last: value };
     let whole = number(value);
     let mut text = match &draft {
         Some(draft) => draft.text.clone(),
-        None if focused => whole.clone(),
+        None if ui.memory(|m| m.has_focus(id)) => whole.clone(),
         None => fitted(ui, value, width - PADDING),
     };
     let cut = draft.is_none() && text != whole;
-    let problem = |text: &str| read(text, limits).err();
-    let wrong = draft.as_ref().and_then(|d| problem(&d.text));
-
-    // The arrow keys step the value; consumed before the text field sees them.
-    let mut step = 0.0;
-    if focused {
-        ui.input_mut(|i| {
-            for (key, sign) in [(Key::ArrowUp, 1.0), (Key::ArrowDown, -1.0)] {
-                for (modifiers, factor) in [(egui::Modifiers::SHIFT, 10.0), (egui::Modifiers::NONE, 1.0)] {
-                    if i.consume_key(modifiers, key) {
-                        step += sign * factor;
-                    }
-                }
-            }
-        });
-    }
-
-    let mut response = text_edit(ui, id, name, &whole, "", &mut text, width, wrong.is_some());
+    let problem = |draft: &Draft| read(&draft.text, limits).err();
+    let wrong = draft.as_ref().and_then(problem).is_some();
+    let steps = steps(ui, id);
+    let mut response = text_edit(ui, id, name, &whole, "", &mut text, width, wrong);
     if cut && !response.has_focus() {
         response = response.on_hover_text(&whole);
     }
 
     let mut out = None;
     if response.gained_focus() {
-        let text = if response.changed() { text.clone() } else { whole };
-        draft = Some(Draft { text, before: value, last: value });
+        draft = Some(begun(if response.changed() { text.clone() } else { whole }));
     }
     if response.changed() {
-        let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
+        let d = draft.get_or_insert_with(|| begun(String::new()));
         d.text.clone_from(&text);
         // The prefixes of an invalid number (3, 30, 300) were never intended: restore the value from before.
         out =
             read(&text, limits).ok().or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
     }
-    if step != 0.0 {
-        let base = read(&text, limits).unwrap_or(value);
-        let v = round_to(base + step * nudge(limits, base), nudge(limits, base))
-            .clamp(limits.min.max(-1e12), limits.max);
-        let v = if limits.is_above_zero() && v <= limits.min { base } else { v };
-        if limits.allows(v) {
-            out = Some(v);
-            let d = draft.get_or_insert_with(|| Draft { before: value, last: value, text: String::new() });
-            d.text = number(v);
-        }
+    if steps != 0.0
+        && let Some(v) = stepped(read(&text, limits).unwrap_or(value), steps, limits)
+    {
+        out = Some(v);
+        draft.get_or_insert_with(|| begun(String::new())).text = number(v);
     }
     // egui itself drops the focus on Escape.
     let escape = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
     if escape && let Some(d) = draft.take() {
         out = Some(d.before).filter(|v| *v != value && limits.allows(*v));
-    } else if response.lost_focus() && draft.as_ref().is_some_and(|d| problem(&d.text).is_none()) {
-        draft = None;
+    } else if response.lost_focus() {
+        draft = draft.filter(|d| problem(d).is_some());
     }
     if let (Some(v), Some(d)) = (out, draft.as_mut()) {
         d.last = f64::from(v as f32);
     }
-    let error = draft.as_ref().and_then(|d| problem(&d.text));
+    let error = draft.as_ref().and_then(problem);
     ui.data_mut(|d| match draft {
-        Some(draft) => {
-            d.insert_temp(draft_id, draft);
-        }
+        Some(draft) => _ = d.insert_temp(draft_id, draft),
         None => d.remove::<Draft>(draft_id),
     });
     Field { response, value: out.filter(|v| *v as f32 != value as f32 || limits.whole && *v != value), error }
+}
+
+/// Steps that the arrow keys ask of a field; consumed before the text field sees them.
+fn steps(ui: &Ui, id: Id) -> f64 {
+    let mut steps = 0.0;
+    if ui.memory(|m| m.has_focus(id)) {
+        let keys = [(Key::ArrowUp, 1.0), (Key::ArrowDown, -1.0)];
+        for (modifiers, factor) in [(egui::Modifiers::SHIFT, 10.0), (egui::Modifiers::NONE, 1.0)] {
+            let pressed = keys.map(|(key, _)| ui.input_mut(|i| i.consume_key(modifiers, key)));
+            steps += keys
+                .iter()
+                .zip(pressed)
+                .map(|((_, sign), on)| if on { sign * factor } else { 0.0 })
+                .sum::<f64>();
+        }
+    }
+    steps
+}
+
+/// The value some steps from another, if it is valid.
+fn stepped(base: f64, steps: f64, limits: &Limits) -> Option<f64> {
+    let step = nudge(limits, base);
+    let v = round_to(base + steps * step, step).clamp(limits.min.max(-1e12), limits.max);
+    let v = if limits.is_above_zero() && v <= limits.min { base } else { v };
+    limits.allows(v).then_some(v)
 }
 
 /// Horizontal padding of the text in a field, in points.
@@ -148,15 +148,6 @@ fn fitted(ui: &Ui, value: f64, room: f32) -> String {
     let rounded = (0..4).rev().map(|decimals| round_to(value, 0.1_f64.powi(decimals)));
     // A small number must not appear as 0.
     rounded.filter(|v| *v != 0.0).map(number).find(fits).unwrap_or(whole)
-}
-
-fn select_all(ui: &Ui, id: Id, text: &str) {
-    use egui::text::{CCursor, CCursorRange};
-    if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
-        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
-        state.cursor.set_char_range(Some(all));
-        state.store(ui.ctx(), id);
-    }
 }
 
 /// Space for an error, and the distance of the error from the panel, in points.
@@ -223,14 +214,10 @@ fn text_edit(
         .text_color(if wrong { palette.error } else { palette.text })
         .frame(frame);
     let response = ui.add_sized(vec2(width, 22.0), edit);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &*text, hint);
-        info.label = Some(name.to_owned());
-        info
-    });
+    theme::names_field(&response, name, [shown, &*text, hint]);
     if response.gained_focus() {
         // The text may have been rounded until now.
-        select_all(ui, id, if shown.len() > text.len() { shown } else { text });
+        theme::select_all(ui, id, if shown.len() > text.len() { shown } else { text });
     }
     response
 }

@@ -1,13 +1,19 @@
 //! The line of a knob: symbol and label at the left, the widgets at the right, and the tooltip.
 
-use bevy_egui::egui::{self, Align, Response, RichText, Sense, TextStyle, Ui, pos2, vec2};
+use bevy_egui::egui::{
+    self, Align, Button, Response, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
 
 use crate::{
     panel::{
+        lesson::point,
         linked, maths,
         theme::{self, Palette},
     },
-    scene::limits::{Limits, number},
+    scene::{
+        Field,
+        limits::{Limits, number},
+    },
     text::capitalised,
 };
 
@@ -28,6 +34,20 @@ pub struct Caption<'a> {
     pub indent: f32,
 }
 
+impl<'a> Caption<'a> {
+    /// A label with a unit and a description, either of which may be empty, for a value without a symbol.
+    #[must_use]
+    pub fn new(label: &'a str, unit: &'a str, help: &'a str) -> Self {
+        Self { label, unit, help, ..Self::default() }
+    }
+
+    /// The caption of a field of a scene.
+    #[must_use]
+    pub fn of(field: &Field, help: &'a str) -> Self {
+        Self::new(field.label(), field.unit, help)
+    }
+}
+
 /// Width of symbol and label in the line of a knob.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Words {
@@ -35,6 +55,38 @@ pub(super) enum Words {
     Leave(f32),
     /// A column of the same width in every knob, so that sliders are aligned.
     Column,
+}
+
+/// A knob with its lines. It can be disabled; the equation and a lesson can point at it.
+pub(super) fn knob<R>(ui: &mut Ui, salt: &str, caption: &Caption, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let shown = ui.add_enabled_ui(caption.disabled.is_none(), add);
+    linked::touch(ui, shown.response.rect, &[caption.symbol]);
+    point::knob(ui, salt, shown.response.rect);
+    shown.inner
+}
+
+/// The line of a knob with a button at the right, which shows a text and a sign.
+pub(super) fn button(
+    ui: &mut Ui,
+    caption: &Caption,
+    text: &str,
+    sign: &str,
+    role: WidgetType,
+) -> (Response, Response) {
+    let weak = Palette::here(ui).weak;
+    head(ui, caption, Words::Leave(CHOICE), |ui| {
+        let width = choice_width(ui);
+        let button = Button::new(text).right_text(RichText::new(sign).color(weak)).truncate();
+        let button = ui.add_sized(vec2(width, 24.0), button);
+        button.widget_info(|| WidgetInfo::labeled(role, true, format!("{}: {text}", caption.label)));
+        button
+    })
+}
+
+/// Leaves the room of a unit. Returns the width of a choice beside it.
+pub(super) fn choice_width(ui: &mut Ui) -> f32 {
+    ui.add_space(22.0);
+    (ui.available_width() - 4.0).clamp(80.0, 190.0)
 }
 
 /// The line of a knob: symbol and label at the left, the widgets of `right` at the right.

@@ -4,11 +4,11 @@ use bevy_egui::egui::{self, CursorIcon, Sense, Stroke, TextStyle, Ui, WidgetInfo
 
 use super::{
     field::{complaint, field},
-    line::{Caption, NUMBER, Words, explain, head, range, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, knob, range, tooltip, unit},
     slider::slider,
 };
 use crate::{
-    panel::{lesson::point, linked, menu, theme::Palette},
+    panel::{menu, theme::Palette},
     scene::limits::{Limits, number},
     text::capitalised,
 };
@@ -72,8 +72,7 @@ pub fn number_knob_beside(
     beside: impl FnOnce(&mut Ui),
 ) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
-    let mut out = None;
-    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    knob(ui, salt, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
         let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
@@ -83,7 +82,7 @@ pub fn number_knob_beside(
             let width = (ui.available_width() - 2.0).max(24.0);
             (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
         });
-        out = field.value;
+        let mut out = field.value;
         let (rule, default_text) = (range(limits), default.map(number).unwrap_or_default());
         let tip = |ui: &mut Ui| tooltip(ui, caption, &rule, &default_text);
         explain(label, tip);
@@ -98,8 +97,6 @@ pub fn number_knob_beside(
             None => explain(field.response, tip),
         }
         ui.add_space(3.0);
-    });
-    linked::touch(ui, shown.response.rect, &[caption.symbol]);
-    point::knob(ui, salt, shown.response.rect);
-    out
+        out
+    })
 }

@@ -1,11 +1,11 @@
 //! The colour picker: a square of saturation and brightness above a bar of hues, for the mouse and the arrow keys.
 
 use bevy_egui::egui::{
-    Color32, CornerRadius, EventFilter, Frame, Id, Key, Mesh, Pos2, Rect, Response, Sense, Stroke,
-    StrokeKind, Ui, Vec2, WidgetInfo, WidgetType, ecolor::HsvaGamma, pos2, vec2,
+    Color32, CornerRadius, Frame, Id, Mesh, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2,
+    WidgetInfo, WidgetType, ecolor::HsvaGamma, pos2, vec2,
 };
 
-use crate::panel::theme::Palette;
+use crate::panel::{focus, theme::Palette};
 
 const SQUARE: Vec2 = vec2(220.0, 150.0);
 const BAR: Vec2 = vec2(220.0, 18.0);
@@ -75,16 +75,8 @@ fn area(
         response.request_focus();
         *place = ((pointer - rect.min) / size).clamp(Vec2::ZERO, Vec2::ONE);
     }
-    if response.has_focus() {
-        let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
-        let step = ui.input(|i| {
-            let presses = |more, less| i.num_presses(more) as f32 - i.num_presses(less) as f32;
-            let step = if i.modifiers.shift { 10.0 * STEP } else { STEP };
-            step * vec2(presses(Key::ArrowRight, Key::ArrowLeft), presses(Key::ArrowDown, Key::ArrowUp))
-        });
-        *place = (*place + step).clamp(Vec2::ZERO, Vec2::ONE);
-    }
+    let [right, down] = focus::steps(ui, &response, [true; 2]).map(|steps| steps as f32 * STEP);
+    *place = (*place + vec2(right, down)).clamp(Vec2::ZERO, Vec2::ONE);
     if rows == 1 {
         place.y = 0.5;
     }

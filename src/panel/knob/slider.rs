@@ -1,8 +1,11 @@
 //! The slider of a number.
 
-use bevy_egui::egui::{self, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use bevy_egui::egui::{CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::{panel::theme::Palette, scene::limits::Limits};
+use crate::{
+    panel::{focus, theme::Palette},
+    scene::limits::Limits,
+};
 
 /// Step of an arrow key: about a hundredth of the range, rounded.
 pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
@@ -43,6 +46,9 @@ fn from_slider(limits: &Limits, t: f64) -> f64 {
     if limits.is_above_zero() && value < step { step.min(limits.max) } else { value }
 }
 
+/// Half the height of the handle, in points.
+const RADIUS: f32 = 6.0;
+
 /// A slider. A double-click sets the default; arrow keys step; Home and End go to the ends.
 pub(super) fn slider(
     ui: &mut Ui,
@@ -52,15 +58,26 @@ pub(super) fn slider(
     limits: &Limits,
     width: f32,
 ) -> (Response, Option<f64>) {
-    let palette = Palette::here(ui);
-    let height = 16.0;
-    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
-    let radius = 6.0;
-    let rail = Rect::from_min_max(
-        pos2(rect.left() + radius, rect.center().y - 1.5),
-        pos2(rect.right() - radius, rect.center().y + 1.5),
-    );
+    let rail = rect.shrink2(vec2(RADIUS, 6.5));
+    let out = asked(ui, &response, rail, value, default, limits);
+    if ui.is_rect_visible(rect) {
+        paint(ui, &response, rail, (value, out.unwrap_or(value)), default, limits);
+    }
+    let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
+}
+
+/// The value that pointer or keys ask for.
+fn asked(
+    ui: &Ui,
+    response: &Response,
+    rail: Rect,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+) -> Option<f64> {
     let mut out = None;
     if let Some(pointer) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())
@@ -71,65 +88,57 @@ pub(super) fn slider(
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
-    if response.double_clicked()
-        && let Some(default) = default
-    {
-        out = Some(default);
+    if response.double_clicked() {
+        out = default.or(out);
+    }
+    let [steps, _] = focus::steps(ui, response, [true, false]);
+    if steps != 0.0 {
+        let step = nudge(limits, value);
+        let v = round_to(value + steps * step, step).clamp(limits.min.max(limits.slider_min), limits.max);
+        out = Some(if limits.allows(v) { v } else { value });
     }
     if response.has_focus() {
-        let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
-        ui.input(|i| {
-            let factor = if i.modifiers.shift { 10.0 } else { 1.0 };
-            let presses = i.num_presses(Key::ArrowRight) as f64 - i.num_presses(Key::ArrowLeft) as f64;
-            if presses != 0.0 {
-                let step = nudge(limits, value);
-                let v = round_to(value + presses * factor * step, step)
-                    .clamp(limits.min.max(limits.slider_min), limits.max);
-                out = Some(if limits.allows(v) { v } else { value });
-            }
-            if i.key_pressed(Key::Home) {
-                out = Some(from_slider(limits, 0.0));
-            }
-            if i.key_pressed(Key::End) {
-                out = Some(from_slider(limits, 1.0));
-            }
-            if i.key_pressed(Key::Backspace) {
-                out = default.or(out);
-            }
-        });
-    }
-    if ui.is_rect_visible(rect) {
-        let painter = ui.painter();
-        let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
-        painter.rect_filled(rail, 1.5, palette.line);
-        let handle = pos2(x(out.unwrap_or(value)), rail.center().y);
-        painter.rect_filled(Rect::from_min_max(rail.min, pos2(handle.x, rail.bottom())), 1.5, palette.accent);
-        if let Some(default) = default {
-            let tick = x(default);
-            painter.vline(
-                tick,
-                rail.center().y + 3.5..=rail.center().y + 7.0,
-                Stroke::new(1.0, palette.weak),
-            );
+        let pressed = |key| ui.input(|i| i.key_pressed(key));
+        for (key, end) in [(Key::Home, 0.0), (Key::End, 1.0)] {
+            out = if pressed(key) { Some(from_slider(limits, end)) } else { out };
         }
-        let hot = response.hovered() || response.dragged() || response.has_focus();
-        let r = if hot { radius } else { radius - 1.0 };
-        let outside = value < limits.slider_min || value > limits.slider_max;
-        let fill = if outside {
-            palette.panel
-        } else if ui.is_enabled() {
-            palette.text
-        } else {
-            palette.weak
-        };
-        painter.circle(handle, r, fill, Stroke::new(2.0, if hot { palette.accent } else { palette.panel }));
-        if outside {
-            painter.circle_stroke(handle, r, Stroke::new(1.5, palette.text));
-        }
+        out = default.filter(|_| pressed(Key::Backspace)).or(out);
     }
-    let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
-    (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
+    out
+}
+
+/// Paints the slider of a value, with its handle at `now`.
+fn paint(
+    ui: &Ui,
+    response: &Response,
+    rail: Rect,
+    (value, now): (f64, f64),
+    default: Option<f64>,
+    limits: &Limits,
+) {
+    let (palette, painter) = (Palette::here(ui), ui.painter());
+    let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
+    painter.rect_filled(rail, 1.5, palette.line);
+    let handle = pos2(x(now), rail.center().y);
+    painter.rect_filled(rail.with_max_x(handle.x), 1.5, palette.accent);
+    if let Some(default) = default {
+        let tick = rail.center().y + 3.5..=rail.center().y + 7.0;
+        painter.vline(x(default), tick, Stroke::new(1.0, palette.weak));
+    }
+    let hot = response.hovered() || response.dragged() || response.has_focus();
+    let r = if hot { RADIUS } else { RADIUS - 1.0 };
+    let outside = value < limits.slider_min || value > limits.slider_max;
+    let fill = if outside {
+        palette.panel
+    } else if ui.is_enabled() {
+        palette.text
+    } else {
+        palette.weak
+    };
+    painter.circle(handle, r, fill, Stroke::new(2.0, if hot { palette.accent } else { palette.panel }));
+    if outside {
+        painter.circle_stroke(handle, r, Stroke::new(1.5, palette.text));
+    }
 }
 
 #[cfg(test)]

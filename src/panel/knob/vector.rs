@@ -7,15 +7,11 @@ use glam::Vec3;
 
 use super::{
     field::{complaint, field, read, text_field},
-    line::{Caption, NUMBER, Words, explain, head, tooltip, unit},
+    line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     slider::round_to,
 };
 use crate::{
-    panel::{
-        lesson::point,
-        linked,
-        theme::{self, Palette},
-    },
+    panel::theme::{self, Palette},
     scene::limits::{Limits, number},
     text::capitalised,
 };
@@ -104,8 +100,7 @@ pub fn vector_knob(
 ) -> Option<Vec3> {
     const LETTERS: [&str; 3] = ["x", "y", "z"];
     let id = ui.make_persistent_id(salt);
-    let mut out = None;
-    let row = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    knob(ui, salt, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
         let colour = Palette::here(ui).text;
@@ -130,19 +125,18 @@ pub fn vector_knob(
             word(ui);
             None
         };
-        ui.horizontal(|ui| {
+        let row = ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             word.into_iter().for_each(|word| word(ui));
             let (new, wrong) = three_fields(ui, id, caption, LETTERS, value, limits);
-            out = new;
             if let Some((error, kept, field)) = wrong {
                 complaint(ui, &field, &error, &number(kept));
             }
+            new
         });
         ui.add_space(6.0);
-    });
-    point::knob(ui, salt, row.response.rect);
-    out
+        row.inner
+    })
 }
 
 /// A knob for a number in red, green and blue: one field for all three, and one for each.
@@ -155,8 +149,7 @@ pub fn triple_knob(
     limits: &Limits,
 ) -> Option<[f32; 3]> {
     let id = ui.make_persistent_id(salt);
-    let mut out = None;
-    let shown = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    let out = knob(ui, salt, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
@@ -168,7 +161,7 @@ pub fn triple_knob(
             let name = format!("{}: all three", caption.label);
             text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
         });
-        out = all.value;
+        let mut out = all.value;
         let rule = format!("each {}. Default {}", limits.rule(), list(default));
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
@@ -183,8 +176,7 @@ pub fn triple_knob(
             complaint(ui, &field, &error, &kept);
         }
         ui.add_space(6.0);
+        out
     });
-    linked::touch(ui, shown.response.rect, &[caption.symbol]);
-    point::knob(ui, salt, shown.response.rect);
     out.filter(|v| *v != value)
 }

@@ -10,6 +10,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, PanelContext, Place, focus,
     icon::{self, Icon},
+    is_panel,
     state::{Action, LessonCommand, LessonSource, OpenLesson, Session, Severity, problem_of},
     theme::{self, Palette},
 };
@@ -31,17 +32,7 @@ pub(super) const SHARE: f32 = 0.31;
 pub struct LessonPanel;
 
 impl Panel for LessonPanel {
-    fn id(&self) -> &'static str {
-        "lesson"
-    }
-
-    fn title(&self) -> &'static str {
-        "Lesson"
-    }
-
-    fn place(&self) -> Place {
-        Place::Left
-    }
+    is_panel!("lesson", "Lesson", Place::Left);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let session = context.session();

@@ -106,19 +106,24 @@ fn predict(
             actions.push(Action::Lesson(LessonCommand::Answer(i)));
         }
         if known && (chosen == Some(i) || choice.right) {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 0.0;
-                ui.add_space(CIRCLE * theme::scale_here(ui));
-                ui.vertical(|ui| {
-                    verdict(ui, choice.right, open.is_done());
-                    if !choice.feedback.is_empty() {
-                        paragraph(ui, &choice.feedback);
-                    }
-                });
-            });
-            ui.add_space(2.0);
+            feedback(ui, choice, open.is_done());
         }
     }
+}
+
+/// The verdict on an answer and its reason, below the text of the answer.
+fn feedback(ui: &mut Ui, choice: &AnswerChoice, done: bool) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.add_space(CIRCLE * theme::scale_here(ui));
+        ui.vertical(|ui| {
+            verdict(ui, choice.right, done);
+            if !choice.feedback.is_empty() {
+                paragraph(ui, &choice.feedback);
+            }
+        });
+    });
+    ui.add_space(2.0);
 }
 
 /// Correct or wrong, in a word and a colour.

@@ -46,6 +46,23 @@ fn clear_end(frame: Rect, overlays: &[Rect], outside: &Outside) -> Pos2 {
     places.map(|l| frame.center() + outside.way * l).find(free).unwrap_or(end)
 }
 
+/// Paints the arrow for some lights, with their number.
+fn paint(painter: &Painter, at: Pos2, way: Vec2, count: usize, colour: Color32) {
+    let (ahead, side) = (way * ARROW, way.rot90() * ARROW);
+    // So slim that it cannot be taken for an arrow in another direction.
+    let (tip, back) = (at + ahead * 1.2, at - ahead);
+    let triangle = vec![tip, back + side * 0.7, back - side * 0.7];
+    painter.add(Shape::convex_polygon(triangle, colour, Stroke::new(RIM, OUTLINE)));
+    if count > 1 {
+        let font = FontId::new(10.5, theme::semibold());
+        let text = painter.layout_no_wrap(count.to_string(), font, colour);
+        let middle = at - way * (ARROW + 0.5 * text.size().max_elem() + 3.0);
+        let plate = Rect::from_center_size(middle, text.size() + vec2(6.0, 2.0));
+        painter.rect_filled(plate, 3.0, OUTLINE);
+        painter.galley(Align2::CENTER_CENTER.anchor_size(middle, text.size()).min, text, colour);
+    }
+}
+
 /// The arrows. Where many would overlap, one stands for them and says how many.
 pub(super) fn arrows(
     ui: &Ui,
@@ -77,19 +94,7 @@ pub(super) fn arrows(
         // A light that shines goes before those that are off.
         let lit = lights.iter().position(|i| session.document.lights[*i].enabled);
         let colour = colour_of(lights[chosen.or(lit).unwrap_or(0)]);
-        let (ahead, side) = (way * ARROW, way.rot90() * ARROW);
-        // So slim that it cannot be taken for an arrow in another direction.
-        let (tip, back) = (at + ahead * 1.2, at - ahead);
-        let triangle = vec![tip, back + side * 0.7, back - side * 0.7];
-        painter.add(Shape::convex_polygon(triangle, colour, Stroke::new(RIM, OUTLINE)));
-        if lights.len() > 1 {
-            let font = FontId::new(10.5, theme::semibold());
-            let text = painter.layout_no_wrap(lights.len().to_string(), font, colour);
-            let middle = at - way * (ARROW + 0.5 * text.size().max_elem() + 3.0);
-            let plate = Rect::from_center_size(middle, text.size() + vec2(6.0, 2.0));
-            painter.rect_filled(plate, 3.0, OUTLINE);
-            painter.galley(Align2::CENTER_CENTER.anchor_size(middle, text.size()).min, text, colour);
-        }
+        paint(painter, at, way, lights.len(), colour);
         let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
         let id = Id::new(("light outside the view", lights[0]));
         let response = ui.interact(place, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);

@@ -185,50 +185,12 @@ fn lamp(
     size: Size,
 ) {
     let direction = light.direction.and_then(Vec3::try_normalize);
-    let place = ink.lens.project(position);
-    let points = if size == Size::Long { LONG } else { SHORT };
-    let reach = reach_of(&ink.lens, position, points, scene);
     if let Some(direction) = direction {
-        let turn = Quat::from_rotation_arc(Vec3::Z, direction);
-        match entry.cone_angle(&light.parameters) {
-            _ if size == Size::Dot => ink.path(&[position, position + direction * (0.5 * reach)], colour),
-            Some(angle) => {
-                let angle = angle.to_radians();
-                // The rim on a sphere around the light: also a half angle of 90° has one.
-                let rim = position + direction * (reach * angle.cos());
-                let radius = reach * angle.sin();
-                let around = |turns: f32| {
-                    let (y, x) = (turns * std::f32::consts::TAU).sin_cos();
-                    rim + turn * Vec3::new(x, y, 0.0) * radius
-                };
-                ink.path(&(0..=48).map(|k| around(k as f32 / 48.0)).collect::<Vec<_>>(), colour);
-                for side in [0.0, 0.25, 0.5, 0.75] {
-                    ink.path(&[position, around(side)], colour);
-                }
-                if size == Size::Long {
-                    ink.arrow(position, position + direction * reach * AXIS, colour);
-                }
-            }
-            // Several would look like light from a direction.
-            None if !entry.declaration.sizes.is_empty() => {
-                ink.arrow(position, position + direction * reach, colour);
-            }
-            None => {
-                let sides = [Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y];
-                // Side by side as the camera sees them: so few cannot hide each other.
-                let across = ink.lens.across(position, direction);
-                let (sides, apart) = match size {
-                    Size::Long => (sides.map(|side| turn * side), 0.3),
-                    _ => ([Vec3::ZERO, across, -across, Vec3::ZERO, Vec3::ZERO], 0.4),
-                };
-                for side in &sides[..if size == Size::Long { 5 } else { 3 }] {
-                    let start = position + *side * (apart * reach);
-                    ink.arrow(start, start + direction * reach, colour);
-                }
-            }
-        }
+        let points = if size == Size::Long { LONG } else { SHORT };
+        let reach = reach_of(&ink.lens, position, points, scene);
+        beam(ink, light, entry, (position, direction, reach), colour, size);
     }
-    let Some(at) = place else { return };
+    let Some(at) = ink.lens.project(position) else { return };
     if size == Size::Dot {
         ink.disc(at, DOT, colour);
     } else if light.position.is_some() {
@@ -242,6 +204,53 @@ fn lamp(
     } else {
         // Seen from their ends, its arrows are nearly points.
         ink.disc(at, 1.4 * DOT, colour);
+    }
+}
+
+/// The cone or the arrows of a light that shines in a direction, from its position and as far as `reach`.
+fn beam(
+    ink: &mut Ink,
+    light: &Light,
+    entry: &LightEntry,
+    (position, direction, reach): (Vec3, Vec3, f32),
+    colour: Color32,
+    size: Size,
+) {
+    let turn = Quat::from_rotation_arc(Vec3::Z, direction);
+    match entry.cone_angle(&light.parameters) {
+        _ if size == Size::Dot => ink.path(&[position, position + direction * (0.5 * reach)], colour),
+        Some(angle) => {
+            let angle = angle.to_radians();
+            // The rim on a sphere around the light: also a half angle of 90° has one.
+            let rim = position + direction * (reach * angle.cos());
+            let radius = reach * angle.sin();
+            let around = |turns: f32| {
+                let (y, x) = (turns * std::f32::consts::TAU).sin_cos();
+                rim + turn * Vec3::new(x, y, 0.0) * radius
+            };
+            ink.path(&(0..=48).map(|k| around(k as f32 / 48.0)).collect::<Vec<_>>(), colour);
+            for side in [0.0, 0.25, 0.5, 0.75] {
+                ink.path(&[position, around(side)], colour);
+            }
+            if size == Size::Long {
+                ink.arrow(position, position + direction * reach * AXIS, colour);
+            }
+        }
+        // Several would look like light from a direction.
+        None if !entry.declaration.sizes.is_empty() => {
+            ink.arrow(position, position + direction * reach, colour);
+        }
+        None => {
+            // Side by side as the camera sees them: so few cannot hide each other.
+            let across = ink.lens.across(position, direction);
+            let around = [Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y].map(|side| turn * side);
+            let few = [Vec3::ZERO, across, -across];
+            let (sides, apart) = if size == Size::Long { (&around[..], 0.3) } else { (&few[..], 0.4) };
+            for side in sides {
+                let start = position + *side * (apart * reach);
+                ink.arrow(start, start + direction * reach, colour);
+            }
+        }
     }
 }
 

@@ -1,13 +1,14 @@
 //! The direction of the light, as a handle in the plot.
 
 use bevy_egui::egui::{
-    Align2, CursorIcon, EventFilter, Key, Pos2, Rect, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, vec2,
+    Align2, CursorIcon, Key, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, vec2,
 };
 
 use super::{pen::Screen, reading::degrees};
 use crate::{
     curves::draw::Ground,
     panel::{
+        focus,
         state::{Action, MOST_LIGHT, PlotCommand},
         theme::Palette,
     },
@@ -26,31 +27,14 @@ pub(super) fn show(
     unit: impl Fn(Pos2) -> [f64; 2],
     actions: &mut Vec<Action>,
 ) {
-    let palette = Palette::here(ui);
-    let (at, angle_of): (Pos2, Box<dyn Fn([f64; 2]) -> f64>) = match ground {
-        Ground::Plot([left, top, right, bottom]) => {
-            let x = |angle: f64| left + (angle + 90.0) / 180.0 * (right - left);
-            let line = |angle: f64| [screen.place([x(angle), *top]), screen.place([x(angle), *bottom])];
-            let stroke = Stroke::new(1.0, palette.weak);
-            ui.painter().extend(Shape::dashed_line(&line(theta_i), stroke, 2.0, 3.0));
-            ui.painter().line_segment(line(-theta_i), Stroke::new(1.0, palette.accent));
-            let font = TextStyle::Small.resolve(ui.style());
-            let text = |angle: f64, text: String, align: Align2, right: f32| {
-                let at = screen.place([x(angle), *top]) + vec2(right, -2.0);
-                ui.painter().text(at, align, text, font.clone(), palette.weak);
-            };
-            text(-theta_i, format!("light {}", degrees(theta_i)), Align2::LEFT_BOTTOM, 14.0);
-            // Where it would stand over the light's.
-            if theta_i > 25.0 {
-                text(theta_i, "mirror".to_owned(), Align2::CENTER_BOTTOM, 0.0);
-            }
-            let (left, width) = (*left, right - left);
-            let at = screen.place([x(-theta_i), *top]);
-            (at, Box::new(move |[x, _]| 90.0 - 180.0 * (x - left) / width))
+    let (at, angle_of): (Pos2, Box<dyn Fn([f64; 2]) -> f64>) = match *ground {
+        Ground::Plot(place) => {
+            let [left, _, right, _] = place;
+            let at = lines(ui, screen, place, theta_i);
+            (at, Box::new(move |[x, _]| 90.0 - 180.0 * (x - left) / (right - left)))
         }
-        Ground::Polar { centre, radius } => {
+        Ground::Polar { centre: [x, y], radius } => {
             let (sin, cos) = theta_i.to_radians().sin_cos();
-            let [x, y] = *centre;
             // The circle has the label.
             let out = 0.88 * radius;
             let at = screen.place([x - out * sin, y - out * cos]);
@@ -61,18 +45,7 @@ pub(super) fn show(
     let place = Rect::from_center_size(at, vec2(20.0, 20.0));
     let response = ui.interact(place, ui.id().with("light"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(true, theta_i, NAME));
-    let hot = response.hovered() || response.dragged() || response.has_focus();
-    let radius = if hot { 7.5 } else { 6.0 };
-    ui.painter().circle(at, radius, palette.accent, Stroke::new(1.5, palette.panel));
-    // The sign of a light.
-    let ray = |i: u8| {
-        let (sin, cos) = (f32::from(i) * std::f32::consts::FRAC_PI_4).sin_cos();
-        let way = vec2(cos, sin);
-        [at + (radius + 1.5) * way, at + (radius + 4.0) * way]
-    };
-    for i in 0..8 {
-        ui.painter().line_segment(ray(i), Stroke::new(1.5, palette.accent));
-    }
+    paint(ui, &response, at);
     let mut wanted = None;
     if response.dragged()
         && let Some(pointer) = response.interact_pointer_pos()
@@ -84,27 +57,51 @@ pub(super) fn show(
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
+    let [right, down] = focus::steps(ui, &response, [true; 2]);
+    // The light is at the left of the normal.
+    if down != right {
+        wanted = Some(theta_i + down - right);
+    }
     if response.has_focus() {
-        let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
-        ui.input(|input| {
-            let presses = |key| input.num_presses(key) as f64;
-            // The light is at the left of the normal.
-            let by = presses(Key::ArrowLeft) + presses(Key::ArrowDown)
-                - presses(Key::ArrowRight)
-                - presses(Key::ArrowUp);
-            if by != 0.0 {
-                wanted = Some(theta_i + by * if input.modifiers.shift { 10.0 } else { 1.0 });
-            }
-            if input.key_pressed(Key::Home) {
-                wanted = Some(0.0);
-            }
-            if input.key_pressed(Key::End) {
-                wanted = Some(MOST_LIGHT);
-            }
-        });
+        for (key, angle) in [(Key::Home, 0.0), (Key::End, MOST_LIGHT)] {
+            wanted = if ui.input(|input| input.key_pressed(key)) { Some(angle) } else { wanted };
+        }
     }
     let wanted = wanted.map(|angle| angle.clamp(0.0, MOST_LIGHT)).filter(|angle| *angle != theta_i);
     actions.extend(wanted.map(|angle| Action::Plot(PlotCommand::Light(angle))));
     response.on_hover_and_drag_cursor(CursorIcon::Grab).on_hover_text(HELP);
+}
+
+/// The directions of the light and of its mirror image in a plot over the angle. Returns the upper end of the light's.
+fn lines(ui: &Ui, screen: &Screen, [left, top, right, bottom]: [f64; 4], theta_i: f64) -> Pos2 {
+    let palette = Palette::here(ui);
+    let x = |angle: f64| left + (angle + 90.0) / 180.0 * (right - left);
+    let line = |angle: f64| [screen.place([x(angle), top]), screen.place([x(angle), bottom])];
+    let stroke = Stroke::new(1.0, palette.weak);
+    ui.painter().extend(Shape::dashed_line(&line(theta_i), stroke, 2.0, 3.0));
+    ui.painter().line_segment(line(-theta_i), Stroke::new(1.0, palette.accent));
+    let font = TextStyle::Small.resolve(ui.style());
+    let text = |angle: f64, text: String, align: Align2, right: f32| {
+        let at = screen.place([x(angle), top]) + vec2(right, -2.0);
+        ui.painter().text(at, align, text, font.clone(), palette.weak);
+    };
+    text(-theta_i, format!("light {}", degrees(theta_i)), Align2::LEFT_BOTTOM, 14.0);
+    // Where it would stand over the light's.
+    if theta_i > 25.0 {
+        text(theta_i, "mirror".to_owned(), Align2::CENTER_BOTTOM, 0.0);
+    }
+    screen.place([x(-theta_i), top])
+}
+
+/// The sign of a light.
+fn paint(ui: &Ui, response: &Response, at: Pos2) {
+    let palette = Palette::here(ui);
+    let hot = response.hovered() || response.dragged() || response.has_focus();
+    let radius = if hot { 7.5 } else { 6.0 };
+    ui.painter().circle(at, radius, palette.accent, Stroke::new(1.5, palette.panel));
+    for i in 0..8_u8 {
+        let (sin, cos) = (f32::from(i) * std::f32::consts::FRAC_PI_4).sin_cos();
+        let ray = [radius + 1.5, radius + 4.0].map(|out| at + out * vec2(cos, sin));
+        ui.painter().line_segment(ray, Stroke::new(1.5, palette.accent));
+    }
 }

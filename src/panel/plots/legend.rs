@@ -177,13 +177,12 @@ fn row(
         style(ui, panel, entry, &name, kind, actions);
         ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            match entry.slot {
-                Slot::Pin(number) => {
-                    if icon::button(ui, Icon::Cross, &format!("Remove the curve of {name}")).clicked() {
-                        actions.push(Action::Plot(PlotCommand::Remove(number)));
-                    }
+            if let Slot::Pin(number) = entry.slot {
+                if icon::button(ui, Icon::Cross, &format!("Remove the curve of {name}")).clicked() {
+                    actions.push(Action::Plot(PlotCommand::Remove(number)));
                 }
-                Slot::Live => ui.add_space(icon::SIZE + 4.0),
+            } else {
+                ui.add_space(icon::SIZE + 4.0);
             }
             if let Some(value) = value(panel, entry, drawn.map(|drawn| &**drawn)) {
                 ui.label(theme::strong(ui, value));
@@ -256,31 +255,34 @@ fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, 
     let response = response.on_hover_text("Colour and dash");
     let mut by_key = false;
     let popup = Popup::menu(&response).close_behavior(PopupCloseBehavior::CloseOnClick).width(190.0);
-    let picked = popup.show(|ui| {
-        ui.set_min_width(190.0);
-        let mut picked = None;
-        let mut offer = |ui: &mut Ui, chosen: bool, name: &str, style: Style| {
-            let text = format!("{name}{}", " ".repeat(16));
-            let response = menu::choice(ui, chosen, text, &mut by_key);
-            let series = Series { colour: style.colour, line: style.line, ..plain.clone() };
-            sample(ui, right_end(response.rect.with_max_x(ui.max_rect().right())), &series);
-            if response.clicked() {
-                picked = Some(style);
-            }
-        };
-        for (colour, name) in COLOUR_NAMES.into_iter().enumerate() {
-            offer(ui, entry.style.colour == colour, name, Style { colour, ..entry.style });
-        }
-        ui.separator();
-        for line in Line::ALL {
-            offer(ui, entry.style.line == line, dash_name(line), Style { line, ..entry.style });
-        }
-        picked
-    });
+    let picked = popup.show(|ui| picked(ui, entry.style, &plain, &mut by_key));
     if by_key {
         response.request_focus();
     }
     if let Some(style) = picked.and_then(|shown| shown.inner) {
         actions.push(Action::Plot(PlotCommand::Style(entry.slot, style)));
     }
+}
+
+/// The colours and dashes that a curve can have. Returns the chosen style.
+fn picked(ui: &mut Ui, now: Style, plain: &Series, by_key: &mut bool) -> Option<Style> {
+    ui.set_min_width(190.0);
+    let mut picked = None;
+    let mut offer = |ui: &mut Ui, name: &str, style: Style| {
+        let text = format!("{name}{}", " ".repeat(16));
+        let response = menu::choice(ui, style == now, text, by_key);
+        let series = Series { colour: style.colour, line: style.line, ..plain.clone() };
+        sample(ui, right_end(response.rect.with_max_x(ui.max_rect().right())), &series);
+        if response.clicked() {
+            picked = Some(style);
+        }
+    };
+    for (colour, name) in COLOUR_NAMES.into_iter().enumerate() {
+        offer(ui, name, Style { colour, ..now });
+    }
+    ui.separator();
+    for line in Line::ALL {
+        offer(ui, dash_name(line), Style { line, ..now });
+    }
+    picked
 }

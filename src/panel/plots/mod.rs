@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bevy_egui::egui::{self, Align, Layout, Rect, Ui, UiBuilder, vec2};
 
 use super::{
-    Panel, PanelContext, Place, linked,
+    Panel, PanelContext, Place, is_panel, linked,
     state::{PLOTS_TAB, Slot},
     theme::Palette,
 };
@@ -69,17 +69,7 @@ struct Built {
 }
 
 impl Panel for PlotPanel {
-    fn id(&self) -> &'static str {
-        PLOTS_TAB
-    }
-
-    fn title(&self) -> &'static str {
-        "Plots"
-    }
-
-    fn place(&self) -> Place {
-        Place::Bottom
-    }
+    is_panel!(PLOTS_TAB, "Plots", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);

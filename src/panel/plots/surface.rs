@@ -1,8 +1,8 @@
 //! The plot itself, and what is read from it.
 
 use bevy_egui::egui::{
-    Align2, EventFilter, Key, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui,
-    WidgetInfo, WidgetType, pos2, vec2,
+    Align2, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, WidgetType,
+    pos2, vec2,
 };
 
 use super::{
@@ -16,7 +16,7 @@ use crate::{
         draw::{Figure, GAP, Ground, Ink, Pen, Series},
     },
     panel::{
-        linked,
+        focus, linked,
         state::{Action, Slot},
         theme::{self, Palette},
     },
@@ -185,18 +185,13 @@ fn walked(
     request: &Request,
     [from, to]: [f64; 2],
 ) -> Option<Reading> {
-    let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    let [step, _] = focus::steps(ui, response, [true, false]);
     let start = if request.setup.kind.has_light() { request.setup.theta_i } else { 0.0 };
     let angle = match now {
         Some(Reading::Angle(angle)) => angle,
         Some(other) => return Some(other),
         None => start,
     };
-    let step = ui.input(|input| {
-        let presses = input.num_presses(Key::ArrowRight) as f64 - input.num_presses(Key::ArrowLeft) as f64;
-        presses * if input.modifiers.shift { 10.0 } else { 1.0 }
-    });
     Some(Reading::Angle((angle + step).clamp(from, to)))
 }
 

@@ -179,7 +179,7 @@ impl Shared {
                 Ok(Err(NoCurve::Cancelled)) => return false,
                 Ok(Err(NoCurve::Because(why))) => Err(why),
                 Ok(Ok(drawn)) => Ok(Arc::new(drawn)),
-                Err(_) => Err(format!("{}: an error of this program", item.recipe.name())),
+                Err(_) => Err(format!("{}: an internal error", item.recipe.name())),
             };
             let (slot, key, setup) = (item.slot, item.key.clone(), job.setup);
             // What failed will not do better with more points.

@@ -130,26 +130,19 @@ impl Stage {
             all.retain(|b| within(b, limit));
         }
         let discs = discs(session, whole);
-        let hidden = |plate: Rect| {
-            let share =
-                |d: &(Pos2, f32)| if covers(plate, *d) || covers(caption, *d) { d.1 * d.1 } else { 0.0 };
-            discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
-        };
         let mut over = all.iter().filter(|b| b.size.y <= tall).flat_map(|block| {
             [Align2::LEFT_TOP, Align2::RIGHT_TOP, Align2::LEFT_BOTTOM]
                 .map(|corner| (block, corner.align_size_within_rect(block.size_with(padding), room)))
         });
-        if let Some((block, plate)) = over.find(|(_, plate)| hidden(*plate) <= HIDDEN) {
+        if let Some((block, plate)) = over.find(|(_, plate)| hidden(&discs, [*plate, caption]) <= HIDDEN) {
             let block = (*block).clone();
             return Self { whole, picture: whole, equation, block, plate, caption, parts };
         }
         // Beside or above the picture, whichever leaves the larger picture.
-        let beside = |b: &Block| {
-            let plate = Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
-            (b.clone(), plate, room.with_min_x(plate.right()))
-        };
+        let plate = |b: &Block| Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
+        let beside = |b: &Block| (b.clone(), plate(b), room.with_min_x(plate(b).right()));
         let above = |b: &Block| {
-            let plate = Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
+            let plate = plate(b);
             (b.clone(), plate, room.with_min_y(plate.bottom().min(room.bottom() - 0.2 * room.height())))
         };
         let scale = |r: &Rect| (r.width() / whole.width()).min(r.height() / whole.height());
@@ -315,6 +308,12 @@ fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
         Some((at, lens.project(o.position + radius * right)?.distance(at)))
     };
     session.scene().shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
+}
+
+/// The share of the discs that rectangles hide, by their areas.
+fn hidden(discs: &[(Pos2, f32)], plates: [Rect; 2]) -> f32 {
+    let share = |d: &(Pos2, f32)| if plates.iter().any(|p| covers(*p, *d)) { d.1 * d.1 } else { 0.0 };
+    discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
 }
 
 /// True if a rectangle hides part of a disc.

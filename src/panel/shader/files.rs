@@ -67,6 +67,15 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
     (name.to_owned(), help)
 }
 
+fn origin(files: &[File], registry: &Registry) -> &'static str {
+    let own = files.iter().any(|file| file.path.starts_with("models/"));
+    match files.iter().any(|file| registry.is_foreign(&file.path)) {
+        true => "Some are of this program, the others built in.",
+        false if own => "All but the model is built in.",
+        false => "The shaders are built in.",
+    }
+}
+
 pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let (Some(model), Some(shading)) =
         (registry.model(session.model_shown()), registry.shading_model(session.shading_shown()))
@@ -86,17 +95,10 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let label = egui::Label::new(theme::strong(ui, title)).truncate();
                 ui.add(label).on_hover_text("The picture is made of these files.");
-                if session.shaders.folders.shaders.is_none() {
-                    let own = files.iter().any(|file| file.path.starts_with("models/"));
-                    let added = files.iter().any(|file| registry.is_foreign(&file.path));
-                    let text = match (own, added) {
-                        (_, true) => "Some are of this program, the others built in.",
-                        (true, false) => "All but the model is built in.",
-                        (false, false) => "The shaders are built in.",
-                    };
-                    if theme::small_width(ui, text) <= ui.available_width() {
-                        ui.label(theme::small(ui, text));
-                    }
+                let text = origin(&files, registry);
+                let folder = &session.shaders.folders.shaders;
+                if folder.is_none() && theme::small_width(ui, text) <= ui.available_width() {
+                    ui.label(theme::small(ui, text));
                 }
             });
         });

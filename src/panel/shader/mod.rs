@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
 use super::{
-    Panel, PanelContext, Place, author, export, laws,
+    Panel, PanelContext, Place, author, export, is_panel, laws,
     state::{Action, SHADER_TAB, Session, Severity},
     theme::{self, Palette},
 };
@@ -25,17 +25,7 @@ pub use trouble::{Excerpt, consequence, excerpt, report};
 pub struct Shader;
 
 impl Panel for Shader {
-    fn id(&self) -> &'static str {
-        SHADER_TAB
-    }
-
-    fn title(&self) -> &'static str {
-        "Shader"
-    }
-
-    fn place(&self) -> Place {
-        Place::Bottom
-    }
+    is_panel!(SHADER_TAB, "Shader", Place::Bottom);
 
     fn note(&self, session: &Session) -> Option<(Severity, String)> {
         let count = session.shaders.troubles.len();
@@ -79,12 +69,12 @@ pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String
         session.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
     match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
         Some(why) => format!(
-            "There is no version of the file {path} yet that works: {} Correct the file, or choose another model.",
+            "The file {path} has no working version yet: {} Correct the file, or choose another model.",
             sentence(&why)
         ),
         None => format!(
-            "There is no reflection model “{id}”: the file {path} is gone. Restore it to get the model back, or choose \
-             another model."
+            "There is no reflection model “{id}”: the file {path} is missing. Restore it, or choose another \
+             model."
         ),
     }
 }

@@ -19,7 +19,7 @@ use crate::{
 #[must_use]
 pub fn consequence(trouble: &Trouble) -> String {
     if trouble.stale.is_empty() {
-        return "Nothing on the picture depends on it.".to_owned();
+        return "Nothing in the picture depends on it.".to_owned();
     }
     format!("The picture shows {} until this is corrected.", shown_instead(&trouble.stale))
 }

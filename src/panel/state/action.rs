@@ -8,11 +8,9 @@ use super::{
     CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange,
 };
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection, VariantField},
-    optics::TermSelection,
+    document::{Edit, Selection},
     parameter::Parameter,
     registry::Registry,
-    scene::{Display, limits},
 };
 
 /// An action of the user, as returned by panels.
@@ -228,48 +226,18 @@ impl Session {
 
     pub(super) fn carry_out(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         match action {
-            Action::New => return self.unless_unsaved(Action::New, |session| session.start_new()),
-            Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
-            Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
-            Action::Open(path) if std::mem::take(&mut self.questions.may_discard) => {
-                return vec![Effect::OpenFile(path)];
-            }
-            Action::Open(path) => {
-                let again = Action::Open(path.clone());
-                return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
-            }
-            Action::Drop(paths) => return self.dropped(paths, registry),
-            Action::Manual => return vec![Effect::OpenManual],
-            Action::OpenExample(i) => {
-                return self
-                    .unless_unsaved(Action::OpenExample(i), |session| session.open_example(i, registry));
-            }
-            Action::Reload => {
-                return match self.path.clone() {
-                    Some(path) => self.unless_unsaved(Action::Reload, |_| vec![Effect::OpenFile(path)]),
-                    None => Vec::new(),
-                };
-            }
-            Action::Save => {
-                return match self.path.clone() {
-                    Some(path) => vec![Effect::SaveFile { path, overwrite: false }],
-                    None => vec![Effect::PickSave],
-                };
-            }
+            Action::New
+            | Action::OpenDialog
+            | Action::Open(_)
+            | Action::OpenExample(_)
+            | Action::Reload
+            | Action::Quit => return self.unless_unsaved(action, registry),
+            Action::Save => return vec![self.save()],
             Action::SaveAsDialog => return vec![Effect::PickSave],
-            Action::FileDialog(part, parameter) => return vec![Effect::PickFile(part, parameter)],
             Action::SaveAs(path) => return self.save_as(&path, registry),
-            Action::ClearRecent => {
-                self.recent_files.clear();
-                return vec![Effect::SaveSettings];
-            }
-            Action::Answer(answer) => {
-                let mut effects = self.answer(answer, registry);
-                if self.questions.open.is_none() && std::mem::take(&mut self.disk.deferred) {
-                    effects.push(Effect::CheckFile { discard: false });
-                }
-                return effects;
-            }
+            Action::FileDialog(part, parameter) => return vec![Effect::PickFile(part, parameter)],
+            Action::ClearRecent => return self.clear_recent(),
+            Action::Answer(answer) => return self.answered(answer, registry),
             Action::Select(selection) => self.select(selection),
             Action::SelectNext => self.step_selection(1),
             Action::SelectPrevious => self.step_selection(-1),
@@ -277,68 +245,27 @@ impl Session {
             Action::AddObject(id) => self.add_object(&id, registry),
             Action::Duplicate(part) => self.duplicate(part, registry),
             Action::Remove(part) => self.remove(part, registry),
-            Action::Toggle(part) => match part {
-                Selection::Light(i) if self.exists(part) => {
-                    let on = !self.document.lights[i].enabled;
-                    self.edit(Edit::Light(i, LightField::Enabled(on)), registry);
-                }
-                Selection::Object(i) if self.exists(part) => {
-                    let on = !self.document.objects[i].visible;
-                    self.edit(Edit::Object(i, ObjectField::Visible(on)), registry);
-                }
-                _ => self.say(Severity::Info, "Select an object to hide it, or a light to switch it off."),
-            },
-            Action::BeginRename(part) => {
-                self.select(part);
-                self.renaming = Some(part);
-            }
+            Action::Toggle(part) => self.toggle(part, registry),
+            Action::Drop(paths) => return self.dropped(paths, registry),
+            Action::Manual => return vec![Effect::OpenManual],
+            Action::BeginRename(part) => self.begin_rename(part),
             Action::CancelRename => self.renaming = None,
             Action::BeginDrag => self.document.end_gesture(),
             Action::Nudge(way) => self.nudge(way, registry),
             Action::Edit(edit) => self.edit(edit, registry),
-            Action::Undo => match self.document.done().checked_sub(1) {
-                Some(done) => self.go_to_step(done, registry),
-                None => self.say(Severity::Info, "There is nothing to undo."),
-            },
-            Action::Redo if self.document.done() == self.document.steps().len() => {
-                self.say(Severity::Info, "There is nothing to redo.");
-            }
-            Action::Redo => self.go_to_step(self.document.done() + 1, registry),
+            Action::Undo => self.undo(registry),
+            Action::Redo => self.redo(registry),
             Action::GoToStep(done) => self.go_to_step(done, registry),
-            Action::RecentModel(slot) => {
-                if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
-                    self.edit(edit, registry);
-                }
-            }
-            Action::Expose(ev) => {
-                let exposure = self.scene().display.exposure + ev;
-                if limits::exposure().allows(f64::from(exposure)) {
-                    self.edit(Edit::Display(Display { exposure, ..self.scene().display }), registry);
-                }
-            }
-            Action::NextTerms => {
-                let offered = self.offered_terms(registry);
-                let shown = self.terms();
-                let next = match offered.iter().position(|t| *t == shown) {
-                    Some(at) => offered[(at + 1) % offered.len()],
-                    None => TermSelection::All,
-                };
-                if offered.len() == 1 && shown == next {
-                    self.say(
-                        Severity::Info,
-                        "The equation has one term here: there is nothing to take apart.",
-                    );
-                }
-                return self.carry_out(Action::View(ViewChange::Terms(next)), registry);
-            }
-            Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {
-                let edit = Edit::Variant(self.active() - 1, VariantField::Terms(Some(terms)));
-                self.edit_here(edit, registry);
-            }
+            Action::RecentModel(slot) => self.choose_recent(slot, registry),
+            Action::Expose(ev) => self.expose(ev, registry),
+            Action::NextTerms => return self.next_terms(registry),
             Action::Compare(command) => self.compare(command, registry),
             Action::Match(command) => return self.matching(command, registry),
             Action::Plot(command) => return self.plot(command),
             Action::Lesson(command) => return self.lesson(command, registry),
+            Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {
+                self.override_terms(terms, registry)
+            }
             Action::View(change) => return self.change_view(change),
             Action::Pin => self.toggle_pin(),
             Action::HomeView => return vec![Effect::HomeView],

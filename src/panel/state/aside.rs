@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{ModelSlots, OnDisk, Pin, Plots, Session, StashedValues, View};
+use super::{Desk, Pin, Session, View};
 use crate::{
     channel::DebugChannel,
     document::{Document, Selection},
@@ -55,14 +55,11 @@ impl Shown {
 pub struct Aside {
     document: Document,
     path: Option<PathBuf>,
-    disk: OnDisk,
-    stashed: StashedValues,
     selection: Selection,
+    desk: Desk,
     shown: Shown,
     left_open: bool,
     examples_open: bool,
-    plots: Plots,
-    model_slots: ModelSlots,
 }
 
 impl Aside {
@@ -73,26 +70,13 @@ impl Aside {
         Self {
             document,
             path: None,
-            disk: OnDisk::default(),
-            stashed: StashedValues::default(),
             selection: Selection::Room,
+            desk: Desk { model_slots: session.model_slots.clone(), ..Desk::default() },
             shown: Shown::of(&view),
             left_open: true,
             examples_open: false,
-            plots: Plots::default(),
-            model_slots: session.model_slots.clone(),
         }
     }
-
-    fn is_dirty(&self) -> bool {
-        self.disk.lacks_document() || self.document.differs()
-    }
-}
-
-/// The title of a document: name of the scene, otherwise of the file.
-fn title_of(document: &Document, path: Option<&Path>) -> String {
-    let file = || Some(printable(&path?.file_stem()?.to_string_lossy()).into_owned());
-    document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
 }
 
 impl Session {
@@ -101,11 +85,8 @@ impl Session {
         self.document.end_gesture();
         swap(&mut self.document, &mut aside.document);
         swap(&mut self.path, &mut aside.path);
-        swap(&mut self.disk, &mut aside.disk);
-        swap(&mut self.stashed, &mut aside.stashed);
         swap(&mut self.selection, &mut aside.selection);
-        swap(&mut self.plots, &mut aside.plots);
-        swap(&mut self.model_slots, &mut aside.model_slots);
+        swap(&mut self.desk, &mut aside.desk);
         swap(&mut self.view.left_open, &mut aside.left_open);
         swap(&mut self.view.examples_open, &mut aside.examples_open);
         let shown = std::mem::replace(&mut aside.shown, Shown::of(&self.view));
@@ -114,10 +95,18 @@ impl Session {
         self.messages.another_document();
     }
 
+    /// The user's own document with what belongs to it, even while a lesson is open.
+    fn own(&self) -> (&Document, &Desk) {
+        match &self.lesson {
+            Some(lesson) => (&lesson.aside.document, &lesson.aside.desk),
+            None => (&self.document, &self.desk),
+        }
+    }
+
     /// The user's own document, even while a lesson is open.
     #[must_use]
     pub fn own_document(&self) -> &Document {
-        self.lesson.as_ref().map_or(&self.document, |lesson| &lesson.aside.document)
+        self.own().0
     }
 
     /// File of the user's own document.
@@ -129,16 +118,16 @@ impl Session {
     /// Title of the user's own document: name of the scene, otherwise of the file.
     #[must_use]
     pub fn own_title(&self) -> String {
-        title_of(self.own_document(), self.own_path())
+        let (document, path) = (self.own_document(), self.own_path());
+        let file = || Some(printable(&path?.file_stem()?.to_string_lossy()).into_owned());
+        document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
     /// True if the user's own document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        match &self.lesson {
-            Some(lesson) => lesson.aside.is_dirty(),
-            None => self.disk.lacks_document() || self.document.differs(),
-        }
+        let (document, desk) = self.own();
+        desk.disk.lacks_document() || document.differs()
     }
 
     /// True if the user's own document is shown and differs from its file. Changes to a scene of a lesson are no loss.

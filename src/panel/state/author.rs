@@ -50,8 +50,8 @@ pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem
         Ok(id) => id,
         Err(bad) => {
             let instead = bad.instead.map(|id| free_id(&id, registry));
-            let hint = instead.as_ref().map_or_else(String::new, |id| format!(": “{id}” would do"));
-            let rule = "Only letters a–z, digits and spaces, beginning with a letter, at most 40";
+            let hint = instead.as_ref().map_or_else(String::new, |id| format!(", for example “{id}”"));
+            let rule = "Use only letters a–z, digits and spaces, beginning with a letter, at most 40";
             return problem(format!("{rule}{hint}."), instead);
         }
     };
@@ -84,7 +84,7 @@ impl Session {
             ModelCommand::Duplicate => {
                 let of = self.model_shown().to_owned();
                 if registry.model(&of).is_none() {
-                    self.say(Severity::Warning, format!("The model “{of}” is not there to be copied."));
+                    self.say(Severity::Warning, format!("There is no model “{of}” to copy."));
                     return Vec::new();
                 }
                 let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
@@ -181,14 +181,14 @@ mod tests {
         }
         for (bad, word) in [
             ("", "such as My velvet"),
-            ("2 fast", "“fast” would do"),
-            ("../evil", "“evil” would do"),
-            ("velvet.wgsl", "“velvet_wgsl” would do"),
-            ("größe", "“groesse” would do"),
-            ("Évolué", "“evolue” would do"),
-            ("漢字", "“han_zi” would do"),
+            ("2 fast", "for example “fast”"),
+            ("../evil", "for example “evil”"),
+            ("velvet.wgsl", "for example “velvet_wgsl”"),
+            ("größe", "for example “groesse”"),
+            ("Évolué", "for example “evolue”"),
+            ("漢字", "for example “han_zi”"),
             ("42", "at most 40."),
-            (&"x".repeat(41), &format!("“{}” would do", "x".repeat(40))),
+            (&"x".repeat(41), &format!("for example “{}”", "x".repeat(40))),
         ] {
             let said = check_name(bad, &registry).expect_err(bad).why;
             assert!(said.contains(word), "{bad}: {said}");

@@ -5,13 +5,15 @@ use std::sync::Arc;
 use super::{Converging, Session, Severity};
 use crate::{
     channel::DebugChannel,
-    document::{Edit, Extent, ObjectField, Revision, Selection, VariantField},
+    document::{Edit, Extent, Revision, Selection},
     optics::TermSelection,
     parameter::{Value, Values},
     registry::Registry,
     scene::{
-        Comparison, Scene, Variant,
+        Comparison, Key, Object, Part, Scene, Variant,
         comparison::{Compared, Layout},
+        field::Kind,
+        part::{Fields as _, Structure as _},
         variant::{LETTERS, MAX_VARIANTS},
     },
 };
@@ -37,13 +39,23 @@ pub enum CompareCommand {
     Set(Comparison),
     /// Show the other view while the key is held, where views are shown [in turn](Layout::is_in_turn).
     Blink(bool),
-    /// Remove one override of a view: the field is `None`.
-    Reset(usize, VariantField),
+    /// Remove one override of a view.
+    Reset(usize, Key),
 }
 
 /// The scene as seen in the active view, unless that is the scene itself.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen(Option<(Revision, usize, Arc<Scene>)>);
+pub(super) struct Seen(Option<InView>);
+
+/// What a view showed at a revision of the document.
+#[derive(Clone, Debug)]
+struct InView {
+    at: (Revision, usize),
+    variant: Variant,
+    /// The models of the scene itself.
+    models: [String; 2],
+    scene: Arc<Scene>,
+}
 
 impl Session {
     /// The active view, which the panels show and change: 0 is the scene itself, 1 view B.
@@ -56,10 +68,8 @@ impl Session {
     #[must_use]
     pub fn scene(&self) -> &Scene {
         match &self.seen.0 {
-            Some((revision, view, scene))
-                if *view == self.active() && *view > 0 && *revision == self.document.revision() =>
-            {
-                scene
+            Some(seen) if self.active() > 0 && seen.at == (self.document.revision(), self.active()) => {
+                &seen.scene
             }
             _ => &self.document,
         }
@@ -85,7 +95,7 @@ impl Session {
                 Some(format!("Not compared: A shows {}, {letter} shows {}.", name(a), name(b)))
             }
             [Some(channel), _] if self.document.comparison.values == Compared::Light => {
-                Some(format!("Not compared: {} is no light.", channel.name()))
+                Some(format!("Not compared: {} is not light; compare display codes instead.", channel.name()))
             }
             _ => None,
         }
@@ -118,14 +128,39 @@ impl Session {
     #[must_use]
     pub fn is_stale(&self) -> bool {
         let now = (self.active() > 0).then(|| (self.document.revision(), self.active()));
-        self.seen.0.as_ref().map(|(revision, view, _)| (*revision, *view)) != now
+        self.seen.0.as_ref().map(|seen| seen.at) != now
     }
 
-    /// Updates [`scene`](Self::scene) to the active view.
+    /// Updates [`scene`](Self::scene) to the active view. Where little has changed since, it costs as little.
     pub fn look(&mut self, registry: &Registry) {
         self.view.active = self.active();
-        let seen = self.document.seen(self.view.active, registry).filter(|_| self.view.active > 0);
-        self.seen.0 = seen.map(|(scene, _)| (self.document.revision(), self.view.active, Arc::new(scene)));
+        let view = self.view.active;
+        let before = self.seen.0.take();
+        let Some(variant) = self.document.overrides(view) else { return };
+        let document: &Scene = &self.document;
+        let models = [document.reflection_model.clone(), document.shading_model.clone()];
+        let same = |seen: &InView| {
+            seen.at.1 == view && seen.models == models && seen.variant.shows_objects_like(&variant)
+        };
+        let kept = before.filter(same).and_then(|seen| {
+            let parts = self.document.changes_since(seen.at.0)?;
+            Some((parts, seen.scene))
+        });
+        let scene = match kept {
+            Some((parts, mut scene)) => {
+                let seen = Arc::make_mut(&mut scene);
+                for part in parts {
+                    part.copy(document, seen);
+                    match part {
+                        Extent::Object(i) => variant.apply_to_object(seen, i, registry),
+                        _ => variant.lay_over_rest(seen),
+                    }
+                }
+                scene
+            }
+            None => Arc::new(variant.applied(document, registry)),
+        };
+        self.seen.0 = Some(InView { at: (self.document.revision(), view), variant, models, scene });
     }
 
     /// Overrides of the active view; `None` for view A.
@@ -162,46 +197,34 @@ impl Session {
         }
     }
 
-    /// The edits that have the effect of `edit` in the active view. What a variant cannot override is changed in the
-    /// scene itself.
-    pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Vec<Edit> {
-        let Some(i) = self.active().checked_sub(1) else { return vec![edit] };
-        let put = |field: VariantField| vec![Edit::Variant(i, field)];
+    /// The edit that has the effect of `edit` in the active view. What a variant cannot override is changed in the scene
+    /// itself.
+    pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Edit {
+        let Some(i) = self.active().checked_sub(1) else { return edit };
+        let overrides = |(key, _): &(Key, Option<Value>)| match key {
+            Key::Material(_) => true,
+            Key::Own(name) => {
+                Variant::FIELDS.iter().any(|field| field.key == *name && !matches!(field.kind, Kind::Text(_)))
+            }
+        };
         match edit {
-            Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => {
-                put(VariantField::Model(Some(id)))
-            }
-            Edit::ShadingModel(id) | Edit::Object(_, ObjectField::ShadingModel(Some(id))) => {
-                put(VariantField::ShadingModel(Some(id)))
-            }
-            Edit::Object(_, ObjectField::Model(None)) => put(VariantField::Model(None)),
-            Edit::Object(_, ObjectField::ShadingModel(None)) => put(VariantField::ShadingModel(None)),
-            Edit::Object(_, ObjectField::Material(name, value)) => {
-                put(VariantField::Material(name, Some(value)))
-            }
-            Edit::Object(_, ObjectField::Preset(all)) => {
-                put(VariantField::Materials(all, "Measured material"))
-            }
-            Edit::Object(o, ObjectField::Tessellation(count)) => {
-                let object = self.document.objects.get(o);
-                let shape = object.and_then(|object| registry.shape(&object.object_type));
-                put(VariantField::Tessellation(count.or(shape.map(|shape| shape.tessellation(None)))))
-            }
-            Edit::Display(display) => {
-                let now = self.scene().display;
-                let mut edits = Vec::new();
-                if display.tone_mapping != now.tone_mapping {
-                    edits.push(VariantField::ToneMapping(Some(display.tone_mapping)));
+            Edit::Set { part: from @ (Part::Scene | Part::Display | Part::Object(_)), mut values, what }
+                if values.iter().all(overrides) =>
+            {
+                if let Part::Object(o) = from
+                    && let Some(object) = self.document.objects.get(o)
+                    && let [(key, value @ None)] = &mut values[..]
+                    && *key == Object::tessellation.into()
+                {
+                    *value = registry.shape(&object.object_type).map(|shape| shape.tessellation(None).into());
                 }
-                if display.exposure != now.exposure {
-                    edits.push(VariantField::Exposure(Some(display.exposure)));
+                if from == Part::Display {
+                    let now = self.scene().display;
+                    values.retain(|(key, value)| now.value(*key) != *value);
                 }
-                if display.encoding != now.encoding {
-                    edits.push(VariantField::Encoding(Some(display.encoding)));
-                }
-                edits.into_iter().map(|field| Edit::Variant(i, field)).collect()
+                Edit::Set { part: Part::Variant(i), values, what }
             }
-            edit => vec![edit],
+            edit => edit,
         }
     }
 
@@ -244,9 +267,9 @@ impl Session {
             }
             CompareCommand::Swap(view) => self.swap_views(view, registry),
             CompareCommand::Blink(on) => self.view.blinking = on,
-            CompareCommand::Reset(view, field) => {
+            CompareCommand::Reset(view, key) => {
                 if let Some(i) = view.checked_sub(1) {
-                    self.edit_here(Edit::Variant(i, field), registry);
+                    self.edit_here(Edit::put(Part::Variant(i), key, None::<Value>), registry);
                 }
             }
         }
@@ -255,7 +278,7 @@ impl Session {
 
     fn set(&mut self, comparison: Comparison, registry: &Registry) {
         if comparison != self.document.comparison {
-            self.edit_here(Edit::Comparison(comparison), registry);
+            self.edit_here(Edit::from(comparison), registry);
         }
     }
 
@@ -329,13 +352,13 @@ fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<Scene, Str
         return Err("the view inherits from another".to_owned());
     }
     if variant.terms.is_some() {
-        return Err("the view shows terms of its own, which the scene itself has not".to_owned());
+        return Err("the view has its own choice of terms, which the scene itself cannot have".to_owned());
     }
     /// The common value of all objects.
     fn one<T: PartialEq>(mut all: impl Iterator<Item = T>, what: &str) -> Result<Option<T>, String> {
         let Some(first) = all.next() else { return Ok(None) };
         if all.any(|other| other != first) {
-            return Err(format!("the objects differ in {what}, which the other view has once for all"));
+            return Err(format!("the objects differ in {what}, but the other view has one for all of them"));
         }
         Ok(Some(first))
     }
@@ -395,10 +418,10 @@ mod tests {
         let before = session.document.clone();
         session.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)), &registry);
         assert_eq!((session.active(), session.document.variants.len()), (1, 1));
-        session.apply(Action::Edit(Edit::Model("phong".to_owned())), &registry);
+        session.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")), &registry);
         session.look(&registry);
-        let alpha = ObjectField::Material("alpha", Value::Integer(30));
-        session.apply(Action::Edit(Edit::Object(0, alpha)), &registry);
+        let alpha = Edit::material(Part::Object(0), "alpha", Value::Integer(30));
+        session.apply(Action::Edit(alpha), &registry);
         session.look(&registry);
         session.apply(Action::Expose(0.5), &registry);
         session.look(&registry);
@@ -410,10 +433,10 @@ mod tests {
         assert_eq!(variant.exposure, Some(0.5));
         assert_eq!(session.scene().objects[0].material.0["alpha"], Value::Integer(30));
         // Properties that a variant cannot override change the scene.
-        session.apply(Action::Edit(Edit::Object(0, ObjectField::Size(1.0))), &registry);
+        session.apply(Action::Edit(Edit::set(Part::Object(0), Object::size, 1.0)), &registry);
         assert_eq!(session.document.objects[0].size, 1.0);
         // Back to A, one by one, and all at once.
-        session.apply(Action::Compare(CompareCommand::Reset(1, VariantField::Exposure(None))), &registry);
+        session.apply(Action::Compare(CompareCommand::Reset(1, Variant::exposure.into())), &registry);
         assert_eq!(session.variant().and_then(|v| v.exposure), None);
         session.apply(Action::Compare(CompareCommand::LikeA(1)), &registry);
         assert_eq!(session.variant(), Some(&Variant::default()));
@@ -442,10 +465,10 @@ mod tests {
     fn swapping_twice_changes_nothing_that_is_seen_and_what_cannot_be_swapped_stays() {
         let (mut session, registry) = session();
         session.apply(Action::Compare(CompareCommand::Add), &registry);
-        session.apply(Action::Edit(Edit::Model("phong".to_owned())), &registry);
+        session.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")), &registry);
         session.look(&registry);
-        let alpha = ObjectField::Material("alpha", Value::Integer(30));
-        session.apply(Action::Edit(Edit::Object(0, alpha)), &registry);
+        let alpha = Edit::material(Part::Object(0), "alpha", Value::Integer(30));
+        session.apply(Action::Edit(alpha), &registry);
         let both = |session: &Session| {
             [0, 1].map(|view| {
                 let (scene, _) = session.document.seen(view, &registry).expect("both views are there");

@@ -84,8 +84,8 @@ impl Session {
             path,
             "changed on disk: showing yours",
             &format!(
-                "{} was changed by another program, and there are changes here that are not saved. Saving asks which \
-                 of both to keep.",
+                "{} was changed by another program, and you have unsaved changes. Saving asks which version \
+                 to keep.",
                 path.shown()
             ),
         );

@@ -9,7 +9,7 @@ use crate::{
     document::{Edit, Selection},
     parameter::{Parameter, ParameterKind, Value},
     registry::Registry,
-    scene::formats,
+    scene::{Part, formats},
 };
 
 /// True if a file has one of these extensions, ignoring case.
@@ -70,7 +70,7 @@ impl Session {
         let id = lamp.declaration.id;
         match selected.filter(|(_, known)| *known == id) {
             Some((i, _)) => {
-                let edit = Edit::Light(i, crate::document::LightField::Parameter(parameter.name, file));
+                let edit = Edit::parameter(Part::Light(i), parameter.name, file);
                 self.edit(edit, registry);
             }
             None => self.add_light_with(id, |light| light.parameters.set(parameter.name, file), registry),
@@ -106,7 +106,7 @@ impl Session {
             }
             None => {
                 let text = format!(
-                    "{} is not in the folder of custom models. A copy there can be used.",
+                    "{} is not in the folder of custom models. Copy it there to use it.",
                     path.shown()
                 );
                 let copy = Action::Model(ModelCommand::Adopt(path.to_owned()));

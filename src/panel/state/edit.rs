@@ -1,49 +1,44 @@
 //! Edits of the scene, undo and redo.
 
-use super::{Session, Severity, messages::Step};
-use crate::{
-    document::{Document, Edit, Extent, LightField, ObjectField, Selection, VariantField},
-    panel::follow::{follow_model, follow_registry},
-    registry::Registry,
-    scene::{Object, Scene},
+use super::{
+    Session, Severity,
+    follow::{follow_model, follow_registry},
+    messages::Step,
 };
-
-/// A scene default that objects may override.
-const MODEL: &str = "reflection model";
+use crate::{
+    document::{Document, Edit, Extent, Selection},
+    parameter::Value,
+    registry::Registry,
+    scene::{Display, Field, Light, Object, Part, Scene, part::Fields as _},
+};
 
 impl Session {
     /// Applies an edit in the active view.
     pub(super) fn edit(&mut self, edit: Edit, registry: &Registry) {
-        for edit in self.redirected(edit, registry) {
-            self.edit_here(edit, registry);
-        }
+        let edit = self.redirected(edit, registry);
+        self.edit_here(edit, registry);
     }
 
     /// Applies an edit to the scene.
     pub(super) fn edit_here(&mut self, edit: Edit, registry: &Registry) {
-        let model = match &edit {
-            Edit::Model(id)
-            | Edit::Object(_, ObjectField::Model(Some(id)))
-            | Edit::Variant(_, VariantField::Model(Some(id))) => Some(id.clone()),
+        let (part, values) = edit.values();
+        let sets = |field: Field| values.iter().any(|(key, _)| *key == field.into());
+        let model = values.iter().find_map(|(key, value)| match value {
+            Some(Value::Choice(id)) if *key == Scene::reflection_model.into() => {
+                Some(id.clone().into_owned())
+            }
             _ => None,
-        };
-        let scene_choice = match &edit {
-            Edit::Model(_) => Some(MODEL),
-            Edit::ShadingModel(_) => Some("shading model"),
-            _ => None,
-        };
-        let other_model = matches!(
-            edit,
-            Edit::Model(_)
-                | Edit::ShadingModel(_)
-                | Edit::Object(_, ObjectField::Model(_) | ObjectField::ShadingModel(_))
-        );
+        });
+        let chosen = [Scene::reflection_model, Scene::shading_model].into_iter().find(|field| sets(*field));
+        let scene_choice = chosen.filter(|_| part == Part::Scene);
+        let other_model = chosen.is_some() && matches!(part, Part::Scene | Part::Object(_));
+        let named = sets(Light::name) && matches!(part, Part::Light(_) | Part::Object(_));
         let before = self.document.revision();
-        let named =
-            matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
-        let done = match edit {
-            Edit::Light(i, LightField::Type(id)) => self.change_light_type(i, &id, registry),
-            edit => self.document.edit(edit, self.selection, registry),
+        let done = match edit.one() {
+            Some((Part::Light(i), key, Some(Value::Choice(id)))) if key == Light::light_type.into() => {
+                self.change_light_type(i, id, registry)
+            }
+            _ => self.document.edit(edit, self.selection, registry),
         };
         if let Err(why) = done {
             return self.say(Severity::Warning, why);
@@ -55,12 +50,10 @@ impl Session {
             // Models may allow different values of a parameter that they share.
             follow_model(self, registry);
         }
-        if let Some(what) = scene_choice {
-            let own = |o: &Object| match what {
-                MODEL => o.reflection_model.is_some(),
-                _ => o.shading_model.is_some(),
-            };
+        if let Some(field) = scene_choice {
+            let own = |o: &Object| o.value(field.into()).is_some();
             if self.document.shown().next().is_some() && self.document.shown().all(own) {
+                let what = field.label();
                 let text = format!(
                     "Every visible object overrides the {what}, so the scene’s does not show. Select an object to change its own."
                 );
@@ -98,11 +91,7 @@ impl Session {
         &mut self,
         change: impl FnOnce(&mut Document, Selection) -> Result<(), String>,
     ) -> Result<(), String> {
-        let selected = match self.selection {
-            Selection::Light(i) => self.document.light_id(i),
-            Selection::Object(i) => self.document.object_id(i),
-            Selection::Room | Selection::Observer => None,
-        };
+        let selected = self.selected_id();
         let before = (self.document.revision(), self.selection);
         change(&mut self.document, self.selection)?;
         if let Some(id) = selected {
@@ -132,6 +121,37 @@ impl Session {
         self.document.change_light_type(i, id, place, self.selection, registry)
     }
 
+    pub(super) fn undo(&mut self, registry: &Registry) {
+        match self.document.done().checked_sub(1) {
+            Some(done) => self.go_to_step(done, registry),
+            None => self.say(Severity::Info, "There is nothing to undo."),
+        }
+    }
+
+    pub(super) fn redo(&mut self, registry: &Registry) {
+        match self.document.done() {
+            done if done == self.document.steps().len() => {
+                self.say(Severity::Info, "There is nothing to redo.");
+            }
+            done => self.go_to_step(done + 1, registry),
+        }
+    }
+
+    /// Changes the exposure, within its limits.
+    pub(super) fn expose(&mut self, ev: f32, registry: &Registry) {
+        let exposure = self.scene().display.exposure + ev;
+        if Display::exposure.limits().allows(f64::from(exposure)) {
+            self.edit(Edit::set(Part::Display, Display::exposure, exposure), registry);
+        }
+    }
+
+    /// Selects a recent model.
+    pub(super) fn choose_recent(&mut self, slot: usize, registry: &Registry) {
+        if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
+            self.edit(edit, registry);
+        }
+    }
+
     /// Undoes or redoes until this number of steps is applied.
     pub(super) fn go_to_step(&mut self, done: usize, registry: &Registry) {
         let model = self.document.reflection_model.clone();
@@ -145,7 +165,7 @@ impl Session {
         }
         self.renaming = None;
         if self.document.reflection_model != model {
-            self.model_slots.take(&self.document.reflection_model);
+            self.desk.model_slots.take(&self.document.reflection_model);
         }
         // The models may have changed since the step was made.
         follow_registry(self, registry);

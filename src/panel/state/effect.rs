@@ -145,6 +145,34 @@ pub enum Effect {
     ExportShaders(PathBuf),
 }
 
+impl Effect {
+    /// True if it shows a dialog: see [`Dialogs`](crate::panel::Dialogs).
+    pub(crate) fn is_dialog(&self) -> bool {
+        matches!(
+            self,
+            Self::PickOpen
+                | Self::PickSave
+                | Self::PickFile(..)
+                | Self::PickExport(_)
+                | Self::PickPicture(_)
+                | Self::PickPlot
+                | Self::PickLesson
+                | Self::PickShaderFolder
+        )
+    }
+
+    /// True if it writes files of custom models or shaders.
+    pub(crate) fn is_authoring(&self) -> bool {
+        matches!(
+            self,
+            Self::NewModel { .. }
+                | Self::DuplicateModel { .. }
+                | Self::AdoptModel(_)
+                | Self::ExportShaders(_)
+        )
+    }
+}
+
 /// Change of the camera when the user's own document is set aside or restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraChange {

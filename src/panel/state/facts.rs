@@ -45,8 +45,8 @@ impl Facts {
 
     /// An observer at the camera.
     #[must_use]
-    pub fn observer(&self, field_of_view: f32) -> Observer {
-        Observer { position: self.eye, direction: self.camera * Vec3::NEG_Z, field_of_view }
+    pub fn observer(&self, of: Observer) -> Observer {
+        Observer { position: self.eye, direction: self.camera * Vec3::NEG_Z, ..of }
     }
 
     /// Frames per second; 0 if not yet known.
@@ -111,6 +111,8 @@ pub struct Clipping {
 }
 
 impl Clipping {
+    /// Share of clipped pixels that raises no warning: sharp highlights. New lights stay within this share.
+    pub const TOLERATED: f64 = 0.001;
     /// Size of the grid in which clipped pixels are counted, across and down.
     pub const GRID: [usize; 2] = [128, 96];
 

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use super::{Action, Effect, Note, Session, Severity};
 use crate::files::Shown as _;
 use crate::{
-    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
+    document::{Document, Edit, Extent, Selection},
     files,
     optics::TermSelection,
     parameter::{NamedFile, Parameter, ParameterKind, Value, Values, outside},
     registry::Registry,
-    scene::{Scene, examples::EXAMPLES, formats},
+    scene::{Part, Scene, examples::EXAMPLES, formats},
 };
 
 /// Maximum length of the list of recent files.
@@ -53,6 +53,14 @@ impl Session {
         self.remember_file(&path);
         self.replace_document(Some(path), scene);
         vec![Effect::DocumentChanged, Effect::SaveSettings]
+    }
+
+    /// Saves the document to its file, or asks for one.
+    pub(super) fn save(&self) -> Effect {
+        match self.path.clone() {
+            Some(path) => Effect::SaveFile { path, overwrite: false },
+            None => Effect::PickSave,
+        }
     }
 
     /// Saves the document to a file with the typed name.
@@ -136,8 +144,8 @@ impl Session {
     ) -> Option<Edit> {
         let file = self.chosen(parameter, path)?;
         match part {
-            Selection::Light(i) => Some(Edit::Light(i, LightField::Parameter(parameter.name, file))),
-            Selection::Object(i) => Some(Edit::Object(i, ObjectField::Shape(parameter.name, file))),
+            Selection::Light(i) => Some(Edit::parameter(Part::Light(i), parameter.name, file)),
+            Selection::Object(i) => Some(Edit::parameter(Part::Object(i), parameter.name, file)),
             _ => None,
         }
     }
@@ -230,13 +238,18 @@ impl Session {
         self.view.terms = TermSelection::All;
         self.view.channels = Default::default();
         self.select_first();
-        self.model_slots.take(&self.document.reflection_model);
+        self.desk.model_slots.take(&self.document.reflection_model);
     }
 
     /// Makes the scene of a recovery copy the document, with unsaved changes.
     pub(in crate::panel) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.replace_document(path, scene);
         self.disk.recovered = true;
+    }
+
+    pub(super) fn clear_recent(&mut self) -> Vec<Effect> {
+        self.recent_files.clear();
+        vec![Effect::SaveSettings]
     }
 
     pub(super) fn remember_file(&mut self, path: &Path) {

@@ -10,6 +10,7 @@ use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
     PLOTS_TAB, Past, Pin, Plots, Session, Severity, View,
     aside::Shown,
+    follow::follow_registry,
     open_lesson::{Entered, problem_of},
 };
 use crate::files::Shown as _;
@@ -17,7 +18,6 @@ use crate::{
     document::Document,
     files,
     lesson::{Goal, Lesson, Problem, Task, WindowChange, shipped::LESSONS},
-    panel::follow::follow_registry,
     registry::Registry,
     scene::Scene,
     text::plural,

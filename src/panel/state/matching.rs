@@ -2,11 +2,11 @@
 
 use super::{Effect, Session, Severity};
 use crate::{
-    document::{Edit, VariantField},
+    document::Edit,
     matching::{Match, MatchError, What, digits, parameters},
     parameter::Parameter,
     registry::Registry,
-    scene::{Scene, variant::LETTERS},
+    scene::{Part, Scene, variant::LETTERS},
     text::listed,
 };
 
@@ -55,7 +55,7 @@ impl Session {
                 if parameters.is_empty() {
                     let letter = LETTERS.get(view).copied().unwrap_or("?");
                     let text = format!(
-                        "View {letter} shows nothing that could be matched: no visible object has a number or a colour."
+                        "View {letter} shows nothing that could be matched: no visible object has a numeric or colour parameter."
                     );
                     self.say(Severity::Info, text);
                 } else {
@@ -84,54 +84,20 @@ impl Session {
         registry: &Registry,
     ) {
         let letter = LETTERS.get(view).copied().unwrap_or("?");
-        let found = match outcome {
-            Some(Ok(found)) => found,
-            Some(Err(MatchError::Cancelled)) => {
-                let text = format!("The match of view {letter} was cancelled; nothing was changed.");
-                return self.say(Severity::Info, text);
-            }
-            Some(Err(why)) => {
-                return self.say(Severity::Error, format!("View {letter} was not matched: {why}."));
-            }
-            None => {
-                let text = format!("The match of view {letter} broke off: an error of this program.");
-                return self.say(Severity::Error, text);
-            }
+        let found = match self.applicable(scene, letter, what, outcome) {
+            Ok(found) => found,
+            Err((severity, text)) => return self.say(severity, text),
         };
-        // The arrangement of the views does not matter.
-        if (Scene { comparison: self.document.comparison, ..scene.clone() }) != *self.document {
-            let text = format!(
-                "The scene was changed while view {letter} was matched, so nothing was applied. Match it again."
-            );
-            return self.say(Severity::Warning, text);
-        }
-        if found.values.is_empty() {
-            let text = format!(
-                "View {letter} stays as it is: no other values come nearer to view A. Error: {} ({}).",
-                digits(found.before),
-                what.unit()
-            );
-            return self.say(Severity::Info, text);
-        }
-        let values: Vec<_> = found
-            .values
-            .iter()
-            .map(|(name, value)| {
-                let parameter = registry.material_parameter(name);
-                format!("{} {value}", parameter.map_or(*name, |p| p.label))
-            })
-            .collect();
-        let kept: Vec<_> = found
-            .kept
-            .iter()
-            .map(|name| registry.material_parameter(name).map_or(*name, |parameter| parameter.label))
-            .collect();
+        let label = |name: &&'static str| registry.material_parameter(name).map_or(*name, |p| p.label);
+        let values: Vec<_> =
+            found.values.iter().map(|(name, value)| format!("{} {value}", label(name))).collect();
+        let kept: Vec<_> = found.kept.iter().map(label).collect();
         let kept = match kept.as_slice() {
             [] => String::new(),
             names => format!(" Unchanged: {}.", listed(names, "and")),
         };
         let steps = self.document.done();
-        let edit = Edit::Variant(view - 1, VariantField::Materials(found.values, "Match"));
+        let edit = Edit::materials(Part::Variant(view - 1), found.values, "Match");
         self.edit_here(edit, registry);
         self.look(registry);
         if self.document.done() != steps {
@@ -145,6 +111,41 @@ impl Session {
             );
             let step = self.last_step();
             self.messages.offer_undo(text, step);
+        }
+    }
+
+    /// The match of a view, unless there is nothing to apply; then why.
+    fn applicable(
+        &self,
+        scene: &Scene,
+        letter: &str,
+        what: What,
+        outcome: Option<Result<Match, MatchError>>,
+    ) -> Result<Match, (Severity, String)> {
+        // The arrangement of the views does not matter.
+        let is_same = || Scene { comparison: self.document.comparison, ..scene.clone() } == *self.document;
+        match outcome {
+            None => Err((Severity::Error, format!("The match of view {letter} failed: an internal error."))),
+            Some(Err(MatchError::Cancelled)) => Err((
+                Severity::Info,
+                format!("The match of view {letter} was cancelled; nothing was changed."),
+            )),
+            Some(Err(why)) => Err((Severity::Error, format!("View {letter} was not matched: {why}."))),
+            Some(Ok(_)) if !is_same() => Err((
+                Severity::Warning,
+                format!(
+                    "The scene was changed while view {letter} was matched, so nothing was applied. Match it again."
+                ),
+            )),
+            Some(Ok(found)) if found.values.is_empty() => Err((
+                Severity::Info,
+                format!(
+                    "View {letter} stays as it is: no other values come nearer to view A. Error: {} ({}).",
+                    digits(found.before),
+                    what.unit()
+                ),
+            )),
+            Some(Ok(found)) => Ok(found),
         }
     }
 }

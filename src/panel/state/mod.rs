@@ -14,6 +14,7 @@ pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
 pub use compare::CompareCommand;
+pub use desk::Desk;
 pub use disk::OnDisk;
 pub use effect::{CameraChange, Effect, LabEffect, RecoveryChoice, Steer};
 pub use facts::{Clipping, Converging, Exporting, Facts, LARGEST, Matching, Numbers};
@@ -26,12 +27,13 @@ pub use open_lesson::OpenLesson;
 pub(super) use open_lesson::problem_of;
 pub use own_keys::{GivenKeys, OwnKeys, Pairs, Replaced};
 pub use pictures::PictureEnd;
-pub use place::{PanelInfo, Place};
+pub use place::{Over, PanelInfo, Place};
 pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
 pub use probe::{EXPLAIN_TAB, Pin};
 pub use progress::{Past, Progress};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;
+pub use settings::Settings;
 pub use severity::Severity;
 pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
@@ -42,7 +44,8 @@ pub use view::{
     ViewChange, nearest_scale,
 };
 
-use super::terms::KnownTerms;
+use terms::KnownTerms;
+
 use crate::{
     document::{Document, Selection},
     library::status::ShaderStatus,
@@ -54,6 +57,7 @@ mod area;
 mod aside;
 mod author;
 mod compare;
+mod desk;
 mod disk;
 mod dropped;
 mod edit;
@@ -61,6 +65,7 @@ mod effect;
 mod export;
 mod facts;
 mod files;
+pub mod follow;
 mod learning;
 mod lesson;
 mod lobe;
@@ -72,38 +77,36 @@ mod own_keys;
 mod parts;
 mod pictures;
 mod place;
+mod placing;
 mod plots;
 mod probe;
 mod progress;
 mod question;
 mod recovery;
 mod selection;
+mod settings;
 mod severity;
 mod shortcut;
 mod shown;
 mod slots;
 mod stash;
+mod terms;
 mod view;
 
-/// The state of the window.
+/// The state of the window. What belongs to the open document besides its scene and file stands in the [`Desk`].
 #[derive(Clone, Debug, Resource)]
 pub struct Session {
     /// The document: the scene and its edit history.
     pub document: Document,
     /// The file that the document came from or was last saved to.
     pub path: Option<PathBuf>,
-    /// State of the document's file on disk.
-    pub disk: OnDisk,
-    /// Values of the document that no model accepts at present.
-    pub(super) stashed: StashedValues,
     /// The part shown in the properties panel.
     pub selection: Selection,
+    desk: Desk,
     /// The part being renamed in the scene list.
     pub renaming: Option<Selection>,
     /// View settings.
     pub view: View,
-    /// Display options of the plots.
-    pub plots: Plots,
     /// The open lesson; its scene is shown while the user's own document is set aside.
     pub lesson: Option<OpenLesson>,
     /// A lesson that is interrupted by a question about the user's own document.
@@ -118,8 +121,6 @@ pub struct Session {
     pub recent_files: Vec<PathBuf>,
     /// The keys that the user gave to commands.
     pub keys: OwnKeys,
-    /// The models that keys 1–9 choose.
-    pub model_slots: ModelSlots,
     /// Facts that the app provides without marking the session as changed.
     pub facts: Facts,
     /// Folders and problems of the shaders, provided by the app.
@@ -154,13 +155,13 @@ impl Session {
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let mut session = Self {
+            facts: Facts::at(&scene.observer),
+            document: Document::new(scene),
             path: None,
-            disk: OnDisk::default(),
-            stashed: StashedValues::default(),
             selection: Selection::Room,
+            desk: Desk::default(),
             renaming: None,
             view: View::default(),
-            plots: Plots::default(),
             lesson: None,
             parked: None,
             progress: Progress::default(),
@@ -168,8 +169,6 @@ impl Session {
             questions: Questions::default(),
             recent_files: Vec::new(),
             keys: OwnKeys::default(),
-            model_slots: ModelSlots::default(),
-            facts: Facts::at(&scene.observer),
             shaders: ShaderStatus::default(),
             seen_troubles: Vec::new(),
             draft: None,
@@ -180,10 +179,9 @@ impl Session {
             wanted_dialog: None,
             known_terms: KnownTerms::default(),
             seen: compare::Seen::default(),
-            document: Document::new(scene),
         };
         session.select_first();
-        session.model_slots.take(&session.document.reflection_model);
+        session.desk.model_slots.take(&session.document.reflection_model);
         session
     }
 }

@@ -6,12 +6,12 @@ use glam::{Quat, Vec3};
 
 use super::{HandleMode, Session, Severity};
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     light::LightEntry,
     parameter::Value,
     registry::Registry,
     scene::{
-        Light, limits,
+        Light, Object, Part, limits,
         rotation::{rotation, turned},
     },
 };
@@ -28,17 +28,17 @@ fn tidy(v: Vec3) -> Vec3 {
 
 /// The roll of a light after one step about an axis, if the light's direction is closer to parallel than to
 /// perpendicular to that axis.
-fn rolled(light: &Light, entry: &LightEntry, axis: Vec3) -> Option<LightField> {
+fn rolled(part: Part, light: &Light, entry: &LightEntry, axis: Vec3) -> Option<Edit> {
     let parameter = entry.roll_parameter()?;
     let along = light.direction?.normalize_or_zero().dot(axis);
     let degrees = light.parameters.number(parameter) + DEGREES * along.signum();
     let roll = parameter.nearest_angle(degrees).filter(|_| along.abs() > FRAC_1_SQRT_2)?;
-    Some(LightField::Parameter(parameter.name, roll))
+    Some(Edit::parameter(part, parameter.name, roll))
 }
 
 /// The cone or a size of a light, enlarged or reduced by one step. A sideways direction stands for the first size,
 /// other directions for the second.
-fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<LightField> {
+fn resized(part: Part, light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<Edit> {
     let sizes = entry.declaration.sizes;
     let size = sizes.get(if way.x == 0.0 { 1 } else { 0 }).or(sizes.last());
     let parameter = size.map_or(entry.cone_parameter(), |size| entry.parameter(size.parameter()))?;
@@ -52,7 +52,7 @@ fn resized(light: &Light, entry: &LightEntry, way: Vec3, sign: f32) -> Option<Li
         }
     };
     let nearest = parameter.nearest(&Value::Number(tidy(Vec3::splat(wanted)).x))?;
-    Some(LightField::Parameter(parameter.name, nearest))
+    Some(Edit::parameter(part, parameter.name, nearest))
 }
 
 impl Session {
@@ -74,46 +74,47 @@ impl Session {
         // Right, up and backwards enlarge.
         let sign = (way.x + way.y - way.z).signum();
         let room = self.document.scene_size;
+        let part = Part::from(self.selection);
         match self.selection {
             Selection::Object(i) if self.exists(self.selection) => {
                 let object = &self.document.objects[i];
-                let field = match self.view.handles {
+                let edit = match self.view.handles {
                     HandleMode::Move => {
-                        ObjectField::Position(room.nearest(tidy(object.position + METRES * way)))
+                        Edit::set(part, Object::position, room.nearest(tidy(object.position + METRES * way)))
                     }
-                    HandleMode::Turn => {
-                        ObjectField::Rotation(turned(rotation(object.rotation), way, DEGREES.to_radians()))
-                    }
+                    HandleMode::Turn => Edit::set(
+                        part,
+                        Object::rotation,
+                        turned(rotation(object.rotation), way, DEGREES.to_radians()),
+                    ),
                     HandleMode::Size => {
                         let most = limits::object_size(room).max as f32;
                         let size = tidy(Vec3::splat(object.size + METRES * sign)).x;
                         // Small objects stay as they are.
                         let least = object.size.min(METRES);
-                        ObjectField::Size(size.max(least).min(most))
+                        Edit::set(part, Object::size, size.max(least).min(most))
                     }
                 };
-                Ok(Edit::Object(i, field))
+                Ok(edit)
             }
             Selection::Light(i) if self.exists(self.selection) => {
                 let light = &self.document.lights[i];
                 let entry = registry.light(&light.light_type);
-                let field = match (self.view.handles, light.position, light.direction) {
+                let edit = match (self.view.handles, light.position, light.direction) {
                     (HandleMode::Move, Some(at), _) => {
-                        LightField::Position(room.nearest(tidy(at + METRES * way)))
+                        Edit::set(part, Light::position, room.nearest(tidy(at + METRES * way)))
                     }
                     (HandleMode::Move, None, _) => return has_no("position"),
-                    (HandleMode::Turn, _, Some(direction)) => match entry.and_then(|e| rolled(light, e, way))
-                    {
-                        Some(field) => field,
-                        None => LightField::Direction(tidy(turn * direction)),
-                    },
+                    (HandleMode::Turn, _, Some(direction)) => entry
+                        .and_then(|e| rolled(part, light, e, way))
+                        .unwrap_or_else(|| Edit::set(part, Light::direction, tidy(turn * direction))),
                     (HandleMode::Turn, _, None) => return has_no("direction"),
-                    (HandleMode::Size, ..) => match entry.and_then(|e| resized(light, e, way, sign)) {
+                    (HandleMode::Size, ..) => match entry.and_then(|e| resized(part, light, e, way, sign)) {
                         Some(field) => field,
                         None => return has_no("size"),
                     },
                 };
-                Ok(Edit::Light(i, field))
+                Ok(edit)
             }
             _ => Err("Select an object or a light to move it.".to_owned()),
         }

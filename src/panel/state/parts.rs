@@ -1,26 +1,34 @@
 //! Adding, copying and removing lights and objects.
 
-use super::{Session, Severity};
+use super::{Session, Severity, placing::Stand};
 use crate::{
     document::{Selection, names::free_name},
     light::MAX_LIGHTS,
-    panel::placing::Stand,
     registry::Registry,
     scene::{Light, MAX_OBJECTS, Object},
 };
 
+/// Parts of which a scene has at most so many.
+const LIGHTS: (&str, usize) = ("lights", MAX_LIGHTS);
+const OBJECTS: (&str, usize) = ("objects", MAX_OBJECTS);
+
 impl Session {
+    /// True if another part has room; says so otherwise.
+    fn has_room(&mut self, (parts, most): (&str, usize)) -> bool {
+        let count = if parts == LIGHTS.0 { self.document.lights.len() } else { self.document.objects.len() };
+        if count >= most {
+            self.say(Severity::Info, format!("A scene has at most {most} {parts}."));
+        }
+        count < most
+    }
+
     pub(super) fn add_light(&mut self, id: &str, registry: &Registry) {
         self.add_light_with(id, |_| (), registry);
     }
 
     /// Adds a light of a type; `with` sets further properties.
     pub(super) fn add_light_with(&mut self, id: &str, with: impl FnOnce(&mut Light), registry: &Registry) {
-        let Some(entry) = registry.light(id) else { return };
-        if self.document.lights.len() >= MAX_LIGHTS {
-            self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
-            return;
-        }
+        let Some(entry) = registry.light(id).filter(|_| self.has_room(LIGHTS)) else { return };
         let d = entry.declaration;
         let stand = self.stand(registry);
         let position = stand.light(None);
@@ -56,11 +64,7 @@ impl Session {
         with: impl FnOnce(&mut Object),
         registry: &Registry,
     ) {
-        if registry.shape(id).is_none() {
-            return;
-        }
-        if self.document.objects.len() >= MAX_OBJECTS {
-            self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+        if registry.shape(id).is_none() || !self.has_room(OBJECTS) {
             return;
         }
         let (position, size) = self.stand(registry).object(id);
@@ -76,8 +80,7 @@ impl Session {
     pub(super) fn duplicate(&mut self, part: Selection, registry: &Registry) {
         match part {
             Selection::Light(i) if i < self.document.lights.len() => {
-                if self.document.lights.len() >= MAX_LIGHTS {
-                    self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
+                if !self.has_room(LIGHTS) {
                     return;
                 }
                 let mut copy = self.document.lights[i].clone();
@@ -87,8 +90,7 @@ impl Session {
                 self.select_new(Selection::Light(i + 1));
             }
             Selection::Object(i) if i < self.document.objects.len() => {
-                if self.document.objects.len() >= MAX_OBJECTS {
-                    self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+                if !self.has_room(OBJECTS) {
                     return;
                 }
                 let mut copy = self.document.objects[i].clone();
@@ -108,10 +110,7 @@ impl Session {
     pub(super) fn remove(&mut self, part: Selection, registry: &Registry) {
         match part {
             Selection::Light(_) if self.document.lights.len() <= 1 => {
-                self.say(
-                    Severity::Info,
-                    "The last light stays: a scene needs at least one to show anything.",
-                );
+                self.say(Severity::Info, "Can’t delete the last light: a scene needs at least one.");
             }
             Selection::Object(_) if self.document.objects.len() <= 1 => {
                 self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
@@ -134,7 +133,7 @@ impl Session {
                 self.messages.offer_undo(text, self.last_step());
             }
             Selection::Observer => {
-                self.say(Severity::Info, "The observer stays: a scene has exactly one.");
+                self.say(Severity::Info, "Can’t delete the observer: a scene needs exactly one.");
             }
             _ => self.say(Severity::Info, "Select a light or an object to remove it."),
         }

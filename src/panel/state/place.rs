@@ -13,6 +13,23 @@ pub enum Place {
     Bottom,
     /// The status line.
     Status,
+    /// In a strip below the picture.
+    Strip,
+    /// Between all others.
+    Picture,
+    /// Over all others.
+    Over(Over),
+}
+
+/// The kinds of overlays, from the lowest to the highest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Over {
+    /// A list that a click elsewhere closes.
+    List,
+    /// A window beside which everything can be used.
+    Window,
+    /// A question, which takes the input from everything else until it is answered.
+    Question,
 }
 
 /// Entry of a panel in menus.

@@ -119,18 +119,23 @@ impl Questions {
 }
 
 impl Session {
-    pub(super) fn unless_unsaved(
-        &mut self,
-        action: Action,
-        go: impl FnOnce(&mut Self) -> Vec<Effect>,
-    ) -> Vec<Effect> {
-        if self.is_dirty() {
+    /// Performs an action that replaces the document. If that has unsaved changes, asks the user first.
+    pub(super) fn unless_unsaved(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        let is_free = match &action {
+            Action::Open(_) => std::mem::take(&mut self.questions.may_discard),
+            Action::Reload => self.path.is_none(),
+            _ => false,
+        };
+        if self.is_dirty() && !is_free {
             // The question is about the user's own document, so show that.
             let effects = self.park_lesson();
             self.questions.open = Some(Question::Unsaved { then: Box::new(action) });
             return effects;
         }
-        go(self)
+        match action {
+            Action::OpenDialog => vec![Effect::PickOpen],
+            action => self.confirmed(action, registry),
+        }
     }
 
     /// Performs an action for which the user has accepted to lose unsaved changes. The changes are kept until it
@@ -150,7 +155,16 @@ impl Session {
         }
     }
 
-    pub(super) fn answer(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
+    /// Handles the answer to the open question. A file that changed meanwhile is looked at afterwards.
+    pub(super) fn answered(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
+        let mut effects = self.answer(answer, registry);
+        if self.questions.open.is_none() && std::mem::take(&mut self.disk.deferred) {
+            effects.push(Effect::CheckFile { discard: false });
+        }
+        effects
+    }
+
+    fn answer(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
         let Some(question) = self.questions.open.take() else { return Vec::new() };
         match (question, answer) {
             (Question::Unsaved { then }, Answer::Discard) => self.confirmed(*then, registry),

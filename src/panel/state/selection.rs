@@ -1,12 +1,25 @@
 //! The selected part.
 
-use super::Session;
-use crate::document::Selection;
+use super::{Session, Severity};
+use crate::{
+    document::{Edit, PartId, Selection},
+    registry::Registry,
+    scene::{Light, Object, Part},
+};
 
 impl Session {
     pub(super) fn select_first(&mut self) {
         self.selection =
             if self.document.objects.is_empty() { Selection::Room } else { Selection::Object(0) };
+    }
+
+    /// The id of the selected light or object.
+    pub(in crate::panel) fn selected_id(&self) -> Option<PartId> {
+        match self.selection {
+            Selection::Light(i) => self.document.light_id(i),
+            Selection::Object(i) => self.document.object_id(i),
+            Selection::Room | Selection::Observer => None,
+        }
     }
 
     pub(super) fn exists(&self, part: Selection) -> bool {
@@ -30,6 +43,26 @@ impl Session {
     pub(super) fn select_new(&mut self, selection: Selection) {
         self.select(selection);
         self.document.selected(self.selection);
+    }
+
+    pub(super) fn begin_rename(&mut self, part: Selection) {
+        self.select(part);
+        self.renaming = Some(part);
+    }
+
+    /// Hides or shows an object; switches a light on or off.
+    pub(super) fn toggle(&mut self, part: Selection, registry: &Registry) {
+        match part {
+            Selection::Light(i) if self.exists(part) => {
+                let on = !self.document.lights[i].enabled;
+                self.edit(Edit::set(Part::Light(i), Light::enabled, on), registry);
+            }
+            Selection::Object(i) if self.exists(part) => {
+                let on = !self.document.objects[i].visible;
+                self.edit(Edit::set(Part::Object(i), Object::visible, on), registry);
+            }
+            _ => self.say(Severity::Info, "Select an object to hide it, or a light to switch it off."),
+        }
     }
 
     pub(super) fn step_selection(&mut self, by: isize) {

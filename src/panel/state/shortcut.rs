@@ -90,7 +90,7 @@ impl Shortcut {
                 "shift" => shortcut.shift = true,
                 "alt" | "option" => shortcut.alt = true,
                 _ => {
-                    return Err(format!("{} is not a modifier; those are Ctrl, Shift and Alt", quoted(word)));
+                    return Err(format!("{} is not a modifier; use Ctrl, Shift or Alt", quoted(word)));
                 }
             }
         }
@@ -124,9 +124,12 @@ impl Shortcut {
 fn unknown_key(name: &str) -> String {
     let names = Key::ALL.iter().filter(|key| is_command_key(**key)).map(|key| (key.name(), key.name()));
     match nearest(name, names) {
-        _ if name.is_empty() => "it names no key".to_owned(),
+        _ if name.is_empty() => "it has no key".to_owned(),
         Some(near) => format!("{} is not a key; did you mean {}?", quoted(name), quoted(near)),
-        None => format!("{} is not a key; such are S, 7, F4, Left, PageUp, Space and Comma", quoted(name)),
+        None => format!(
+            "{} is not a key; keys are, for example, S, 7, F4, Left, PageUp, Space and Comma",
+            quoted(name)
+        ),
     }
 }
 
@@ -177,10 +180,10 @@ mod tests {
     #[test]
     fn what_is_no_key_is_refused_with_what_would_be_one() {
         for (written, part) in [
-            ("Strg+S", "\"Strg\" is not a modifier; those are Ctrl, Shift and Alt"),
+            ("Strg+S", "\"Strg\" is not a modifier; use Ctrl, Shift or Alt"),
             ("Ctrl+Spcae", "did you mean \"Space\"?"),
-            ("Ctrl+", "it names no key"),
-            ("", "it names no key"),
+            ("Ctrl+", "it has no key"),
+            ("", "it has no key"),
             ("Ctrl+Shift", "\"Shift\" is not a key"),
             ("ShiftLeft", "is not a key"),
             ("Ctrl+S Ctrl+T", "\"S Ctrl\" is not a modifier"),

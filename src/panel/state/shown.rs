@@ -2,13 +2,13 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use super::Session;
+use super::{Action, Effect, Session, Severity, ViewChange};
 use crate::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     files::printable,
     optics::TermSelection,
     registry::Registry,
-    scene::{Scene, check::same_place},
+    scene::{Object, Part, Scene, Variant, check::same_place},
 };
 
 impl Session {
@@ -52,26 +52,27 @@ impl Session {
         self.document.name_of(part, registry)
     }
 
+    /// The selected object; none in a presentation.
+    fn object_chosen(&self) -> Option<(usize, &Object)> {
+        let Selection::Object(i) = self.selection else { return None };
+        let object = self.scene().objects.get(i).filter(|_| !self.view.presenting)?;
+        Some((i, object))
+    }
+
     /// The selected object, if it overrides the scene's reflection model. The menu at the top then applies to that
     /// object, since the scene's model does not affect it. In a presentation, which shows no selection, the menu
     /// applies to the scene.
     #[must_use]
     pub fn model_override(&self) -> Option<(usize, &str)> {
-        let Selection::Object(i) = self.selection else { return None };
-        if self.view.presenting {
-            return None;
-        }
-        Some((i, self.scene().objects.get(i)?.reflection_model.as_deref()?))
+        let (i, object) = self.object_chosen()?;
+        Some((i, object.reflection_model.as_deref()?))
     }
 
     /// The selected object, if it overrides the scene's shading model.
     #[must_use]
     pub fn shading_override(&self) -> Option<(usize, &str)> {
-        let Selection::Object(i) = self.selection else { return None };
-        if self.view.presenting {
-            return None;
-        }
-        Some((i, self.scene().objects.get(i)?.shading_model.as_deref()?))
+        let (i, object) = self.object_chosen()?;
+        Some((i, object.shading_model.as_deref()?))
     }
 
     /// Id of the reflection model shown at the top of the window.
@@ -90,8 +91,8 @@ impl Session {
     #[must_use]
     pub fn edit_model(&self, id: &str) -> Edit {
         match self.model_override() {
-            Some((i, _)) => Edit::Object(i, ObjectField::Model(Some(id.to_owned()))),
-            None => Edit::Model(id.to_owned()),
+            Some((i, _)) => Edit::set(Part::Object(i), Object::reflection_model, id.to_owned()),
+            None => Edit::set(Part::Scene, Scene::reflection_model, id.to_owned()),
         }
     }
 
@@ -99,8 +100,8 @@ impl Session {
     #[must_use]
     pub fn edit_shading_model(&self, id: &str) -> Edit {
         match self.shading_override() {
-            Some((i, _)) => Edit::Object(i, ObjectField::ShadingModel(Some(id.to_owned()))),
-            None => Edit::ShadingModel(id.to_owned()),
+            Some((i, _)) => Edit::set(Part::Object(i), Object::shading_model, id.to_owned()),
+            None => Edit::set(Part::Scene, Scene::shading_model, id.to_owned()),
         }
     }
 
@@ -108,6 +109,26 @@ impl Session {
     #[must_use]
     pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
         self.known_terms.offered(self.scene(), registry)
+    }
+
+    /// Isolates the next term of the equation.
+    pub(super) fn next_terms(&mut self, registry: &Registry) -> Vec<Effect> {
+        let offered = self.offered_terms(registry);
+        let shown = self.terms();
+        let next = match offered.iter().position(|t| *t == shown) {
+            Some(at) => offered[(at + 1) % offered.len()],
+            None => TermSelection::All,
+        };
+        if offered.len() == 1 && shown == next {
+            self.say(Severity::Info, "The equation has only one term here: there is nothing to separate.");
+        }
+        self.carry_out(Action::View(ViewChange::Terms(next)), registry)
+    }
+
+    /// Isolates terms in the active view alone.
+    pub(super) fn override_terms(&mut self, terms: TermSelection, registry: &Registry) {
+        let edit = Edit::set(Part::Variant(self.active() - 1), Variant::terms, terms);
+        self.edit_here(edit, registry);
     }
 
     /// True if nothing in a view's picture has the isolated term.
@@ -131,7 +152,7 @@ impl Session {
             .any(|p| same_place(p, self.facts.eye));
         match scene.scene_size.contains(self.facts.eye) {
             false => Some("The view is outside the room."),
-            true if taken => Some("The view is from the place of a light or an object."),
+            true if taken => Some("The view is at the position of a light or an object."),
             true => None,
         }
     }

@@ -88,11 +88,11 @@ fn a_file_with_many_names_is_read_once_and_counts_once() {
     read_within(two.iter(), 16, 16).expect("little");
     assert_eq!(
         read_within(two.iter(), 15, 16),
-        Err("names files of 1 MiB together; at most 0 MiB are read".to_owned())
+        Err("names files of 1 MiB in total; at most 0 MiB are read".to_owned())
     );
     assert_eq!(
         read_within(two.iter(), 16, 15),
-        Err("names files with more than 15 numbers together, the most that are read".to_owned())
+        Err("names files with more than 15 numbers in total, the most allowed".to_owned())
     );
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::scene::Object;
 use crate::scene::{Observer, Scene};
 
 const SIZE: [u32; 2] = [320, 180];
@@ -14,7 +15,7 @@ fn cube() -> Scene {
     let eye = Vec3::new(7.0, 7.0, 9.0);
     Scene {
         objects: vec![Object { position: Vec3::splat(5.0), ..cube }],
-        observer: Observer { position: eye, direction: Vec3::splat(5.0) - eye, field_of_view: 45.0 },
+        observer: Observer { position: eye, direction: Vec3::splat(5.0) - eye, ..Observer::default() },
         ..Scene::default()
     }
 }
@@ -51,7 +52,7 @@ fn of_a_cube_nine_edges_and_seven_corners_are_in_sight() {
     }
     // A wrong twin: seen from the other side, the cube shows other corners.
     let eye = Vec3::new(3.0, 3.0, 1.0);
-    let behind = Observer { position: eye, direction: Vec3::splat(5.0) - eye, field_of_view: 45.0 };
+    let behind = Observer { position: eye, direction: Vec3::splat(5.0) - eye, ..Observer::default() };
     let other = wires(&Scene { observer: behind, ..scene }, DebugChannel::Vertices);
     assert!(other.dots.iter().any(|dot| dot.at.distance(Vec3::splat(4.0)) < 1e-3));
 }

@@ -17,7 +17,7 @@ pub fn check(mesh: &PolygonMesh) -> Result<(), String> {
     let count = mesh.positions.len();
     if count == 0 || mesh.polygons.is_empty() {
         let what = format!("has {count} vertices and {} polygons", mesh.polygons.len());
-        return Err(format!("{what}, but must have at least three and one"));
+        return Err(format!("{what}, but must have at least three vertices and one polygon"));
     }
     if let Some(i) = mesh.positions.iter().position(|p| !p.is_finite()) {
         return Err(format!("vertex {i} is {}, but must be three finite numbers", mesh.positions[i]));
@@ -42,7 +42,7 @@ pub fn check(mesh: &PolygonMesh) -> Result<(), String> {
     let centre = (low + high) / 2.0;
     if centre.abs().max_element() > TOLERANCE {
         return Err(format!(
-            "its middle is at {centre}, but must be at the origin; PolygonMesh::normalise moves it"
+            "its centre is at {centre}, but must be at the origin; PolygonMesh::normalise moves it"
         ));
     }
     let edges = edges(mesh)?;
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(said(|_| {}), "");
         assert_eq!(
             said(|m| m.polygons.clear()),
-            "has 8 vertices and 0 polygons, but must have at least three and one"
+            "has 8 vertices and 0 polygons, but must have at least three vertices and one polygon"
         );
         assert!(said(|m| m.positions[3].y = f32::NAN).contains("vertex 3 is"));
         assert_eq!(
@@ -116,7 +116,7 @@ mod tests {
         );
         assert!(
             said(|m| m.positions.iter_mut().for_each(|p| p.x += 0.5))
-                .contains("its middle is at [0.5, 0, 0]")
+                .contains("its centre is at [0.5, 0, 0]")
         );
         let back = |p: &Polygon| {
             let c = p.corners();

@@ -37,7 +37,7 @@ fn ensure(right: bool, otherwise: impl FnOnce() -> String) -> Check {
 /// Checks an id or the name of a parameter.
 fn name(name: &str) -> Check {
     identifier(name).map_err(|rule| match as_identifier(name) {
-        Some(meant) => format!("{rule}; {meant} would do"),
+        Some(meant) => format!("{rule}; for example {meant}"),
         None => rule,
     })?;
     ensure(allowed_in_wgsl(name) && !JSON_WORDS.contains(&name), || {
@@ -68,7 +68,7 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files
             of(format!("the name is that of another key of {part} in scene files; choose another"))
         })?;
         ensure(files || !matches!(p.kind, ParameterKind::File { .. }), || {
-            of("is a file, which light types and object types alone may have".to_owned())
+            of("is a file, which only light types and object types may have".to_owned())
         })?;
         kind(p).map_err(of)?;
         if let Some(problem) = usage::problem(all, p) {
@@ -98,7 +98,7 @@ fn kind(p: &Parameter) -> Check {
             let mut known = HashSet::new();
             for (id, _) in *options {
                 ensure(!id.is_empty() && known.insert(id), || {
-                    format!("the choice \"{id}\" is empty or there twice; each needs a name of its own")
+                    format!("the choice \"{id}\" is empty or given twice; each needs a name of its own")
                 })?;
                 // Files write these without quotes.
                 ensure(p.is_flag() || id.parse::<bool>().is_err(), || {
@@ -146,7 +146,7 @@ fn path(registry: &Registry, source: &Source, replaced: Option<&str>) -> Check {
     let of_parts = registry.parts().filter(|(id, _)| replaced != Some(*id)).map(|(_, source)| source);
     let differs = |other: Source| other.path == source.path && other.text != source.text;
     ensure(!others.chain(of_parts).any(differs), || {
-        is("which is that of another text; each needs a path of its own")
+        is("which is that of another shader; each needs a path of its own")
     })
 }
 
@@ -189,7 +189,7 @@ fn shared(
     others: impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone,
 ) -> Check {
     let end = layout(all).last().map_or(0, |f| f.2 + 12);
-    ensure(end <= BLOCK_BYTES, || format!("its parameters take {end} bytes, at most {BLOCK_BYTES} fit"))?;
+    ensure(end <= BLOCK_BYTES, || format!("its parameters take {end} bytes, but at most {BLOCK_BYTES} fit"))?;
     for p in all {
         let differs = |other: &&Parameter| other.name == p.name && other.kind.name() != p.kind.name();
         let other = others.clone().find_map(|(id, all)| Some((id, all.iter().find(differs)?)));
@@ -230,7 +230,9 @@ pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check 
     of_material(entry.parameters, models.chain(shadings.map(|s| (s.declaration.id, s.parameters))))?;
     let words = crate::parameter::words(entry.parameters, &Values::default(), Encoding::default()).len();
     ensure(words <= PARAMETER_WORDS, || {
-        format!("its parameters take {words} numbers, at most {PARAMETER_WORDS} fit; a colour takes three")
+        format!(
+            "its parameters take {words} numbers, but at most {PARAMETER_WORDS} fit; a colour takes three"
+        )
     })?;
     let is = |what: String| format!("its key is '{}', {what}", d.key);
     ensure(d.key.is_ascii_uppercase(), || is("but must be a letter from A to Z".to_owned()))?;
@@ -238,7 +240,7 @@ pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check 
         let others = registry.shading_models().iter().map(|s| s.declaration.key);
         let taken: HashSet<_> = WINDOW_KEYS.iter().copied().chain(others).collect();
         let free: String = ('A'..='Z').filter(|key| !taken.contains(key)).collect();
-        is(format!("which has another use in the window; free are {free}"))
+        is(format!("which the window uses already; available are {free}"))
     })?;
     let mut others = registry.shading_models().iter().filter(|s| s.declaration.id != d.id);
     if let Some(other) = others.find(|s| s.declaration.key == d.key) {
@@ -269,7 +271,7 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     for (what, name) in others.into_iter().filter_map(|(what, name)| Some((what, name?))).chain(sizes) {
         let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
         ensure(entry.parameter(name).is_some_and(number), || {
-            format!("its {what} is parameter `{name}`, but must be one of its numbers")
+            format!("its {what} is parameter `{name}`, but must be a parameter of type number")
         })?;
     }
     ensure(d.sizes.is_empty() || d.has_position, || {
@@ -283,7 +285,7 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     }
     let known = registry.light(d.id).is_some();
     ensure(known || registry.lights().len() < MAX_LIGHT_TYPES, || {
-        format!("there are {MAX_LIGHT_TYPES} light types already, and there is no room for more")
+        format!("there are already {MAX_LIGHT_TYPES} light types, the most allowed")
     })?;
     path(registry, &d.wgsl, registry.light(d.id).map(|l| l.declaration.id))
 }

@@ -43,7 +43,7 @@ impl Function {
         let hint = named.map_or_else(String::new, |(_, name)| format!("; did you name it {name}?"));
         Some((
             named.map(|(at, _)| *at),
-            format!("the function {name} is missing; it is fn {name}{signature}{hint}"),
+            format!("the function {name} is missing; define fn {name}{signature}{hint}"),
         ))
     }
 
@@ -265,7 +265,7 @@ mod tests {
                 "incident_spot",
                 "incident_sport",
                 &[
-                    "the function incident_spot is missing; it is fn incident_spot(light: Light, m: SpotParameters, p: vec3<f32>) -> Incident",
+                    "the function incident_spot is missing; define fn incident_spot(light: Light, m: SpotParameters, p: vec3<f32>) -> Incident",
                     "did you name it incident_sport?",
                 ],
             ),

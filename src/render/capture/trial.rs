@@ -178,7 +178,7 @@ impl Stage {
             Ok(time) if time <= SLOWEST => (Answer::Good, true),
             Ok(time) => {
                 let message = format!(
-                    "drawing {SIDE} × {SIDE} pixels with it takes {} ms, at most {} ms are allowed; is there a loop of very many rounds?",
+                    "drawing {SIDE} × {SIDE} pixels with it takes {} ms, but at most {} ms are allowed; is there a loop with very many iterations?",
                     time.as_millis(),
                     SLOWEST.as_millis()
                 );
@@ -239,7 +239,7 @@ impl Stage {
             time = time.min(self.picture());
         }
         if self.renderer.is_waiting().map_err(|e| e.to_string())? {
-            return Err("something that it imports is missing".to_owned());
+            return Err("one of its imports is missing".to_owned());
         }
         match self.failure.take() {
             Some(what) => Err(what),

@@ -10,7 +10,7 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::{
-    document::{Edit, LightField, ObjectField, PartId, Selection, VariantField},
+    document::{Edit, PartId, Selection},
     light::{Ambient, Point, Spot},
     parameter::Value,
     reflection::laws::Random,
@@ -25,7 +25,7 @@ use crate::{
         shown::{Shown, ShownObject, show_lights},
         typed::{PartTypes, know_types},
     },
-    scene::{Comparison, Display, Light, Object, Scene, Variant, check, comparison::Layout},
+    scene::{Comparison, Display, Light, Object, Part, Scene, Variant, check, comparison::Layout},
     shape::{Cube, Sphere, Torus},
 };
 
@@ -189,23 +189,23 @@ fn edit(
     let mut edit = |edit| drop(document.edit(edit, Selection::Room, registry));
     match below(10) {
         0 => {
-            edit(Edit::Object(i, ObjectField::Size(amount)));
+            edit(Edit::set(Part::Object(i), Object::size, amount));
             "size"
         }
         1 => {
-            edit(Edit::Object(i, ObjectField::Position(Vec3::splat(amount))));
+            edit(Edit::set(Part::Object(i), Object::position, Vec3::splat(amount)));
             "place"
         }
         2 => {
-            edit(Edit::Light(j, LightField::Intensity(amount)));
+            edit(Edit::set(Part::Light(j), Light::intensity, amount));
             "intensity"
         }
         3 => {
-            edit(Edit::Light(j, LightField::Type("spot".to_owned())));
+            edit(Edit::set(Part::Light(j), Light::light_type, "spot"));
             "light type"
         }
         4 => {
-            edit(Edit::Model("phong".to_owned()));
+            edit(Edit::set(Part::Scene, Scene::reflection_model, "phong"));
             "model"
         }
         5 => {
@@ -456,7 +456,7 @@ fn the_component_of_a_type_has_the_parameters_of_its_part() {
     assert_eq!(torus.get("tube_radius"), Some(&Value::Number(0.2)));
     // And in the other direction.
     let registry = lab.0.resource::<Registry>().clone();
-    let edit = Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.1)));
+    let edit = Edit::parameter(Part::Object(0), "tube_radius", Value::Number(0.1));
     lab.document().edit(edit, Selection::Room, &registry).expect("legal");
     lab.settle();
     assert_eq!(lab.get::<Torus>(object).tube_radius, 0.1);
@@ -482,7 +482,7 @@ fn components_that_a_part_needs_come_back() {
     assert_eq!(lab.get::<Transform>(object).translation, Vec3::ONE);
     let said = lab.said();
     let expected =
-        "A change of the components of objects[0] was refused: it needs the component `Transform`.";
+        "A change to the components of objects[0] was refused: it needs the component `Transform`.";
     assert_eq!(said, [expected]);
     lab.0.entity_mut(object).remove::<(Visibility, Surface)>();
     lab.settle();
@@ -523,7 +523,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
     let said = lab.said();
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(
-        said[0].starts_with("A change of a component was refused: objects[0].position is [400, 1, 1], but"),
+        said[0].starts_with("A change to a component was refused: objects[0].position is [400, 1, 1], but"),
         "{said:?}"
     );
     // Another error in the same part is another message.
@@ -533,7 +533,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
     assert_eq!(
         said,
         [
-            "A change of the components of objects[0] was refused: its scale is (1, 3, 1), but an object has one size: the scale must be \
+            "A change to the components of objects[0] was refused: its scale is (1, 3, 1), but an object has one size: the scale must be \
           the same in x, y and z."
         ]
     );
@@ -574,13 +574,13 @@ fn what_cannot_become_a_part_is_said_with_the_reason() {
     lab.frame();
     let said = lab.said();
     let expected = [
-        "is not added to the scene: its position is [0, 0, 0], but",
-        "The entity “both” is not added to the scene: it has `Sphere` and `Cube`, but must have one object type.",
-        "The entity “bare” is not added to the scene: it needs the component of one object type, such as `Sphere`.",
-        "The entity “lamp” is not added to the scene: it is a light and an object, but must be one of them.",
-        "The entity “dark” is not added to the scene: it needs the component of one light type, such as `Point`.",
-        "The entity “eye” is not added to the scene: a scene has one observer.",
-        "The entity “x” is not added to the scene: its cone_angle is 0, but",
+        "was not added to the scene: its position is [0, 0, 0], but",
+        "The entity “both” was not added to the scene: it has `Sphere` and `Cube`, but must have one object type.",
+        "The entity “bare” was not added to the scene: it needs the component of one object type, such as `Sphere`.",
+        "The entity “lamp” was not added to the scene: it is both a light and an object, but must be only one of them.",
+        "The entity “dark” was not added to the scene: it needs the component of one light type, such as `Point`.",
+        "The entity “eye” was not added to the scene: a scene has only one observer.",
+        "The entity “x” was not added to the scene: its cone_angle is 0, but",
     ];
     for (expected, entity) in expected.iter().zip(spawned) {
         assert!(said.iter().any(|text| text.contains(expected)), "{expected}: {said:?}");
@@ -661,12 +661,12 @@ fn what_is_animated_is_shown_and_not_stored() {
         assert_eq!(look.shape.0.get("tube_radius"), Some(&Value::Number(0.1)));
     }
     // An edit writes only its changes, and leaves the rest to the animation.
-    let edit = Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.6)));
+    let edit = Edit::material(Part::Object(0), "k_d", Value::Number(0.6));
     lab.document().edit(edit, Selection::Room, &registry).expect("legal");
     lab.frame();
     assert_eq!(lab.get::<Surface>(object).material.0.get("k_d"), Some(&Value::Number(0.6)));
     assert_eq!(lab.get::<Transform>(object).translation.x, 52.0);
-    let edit = Edit::Object(0, ObjectField::Position(Vec3::splat(2.0)));
+    let edit = Edit::set(Part::Object(0), Object::position, Vec3::splat(2.0));
     lab.document().edit(edit, Selection::Room, &registry).expect("legal");
     lab.frame();
     assert_eq!(lab.get::<Transform>(object).translation, Vec3::splat(2.0));
@@ -708,9 +708,9 @@ fn a_change_of_layout_or_of_another_view_changes_not_what_view_a_shows() {
     let variants = vec![Variant::default()];
     let comparison = Comparison { layout: Layout::Wipe, ..Comparison::default() };
     assert!(!changes(Edit::Views { variants, comparison, step: "Add a view" }));
-    assert!(!changes(Edit::Comparison(Comparison { split: 0.3, ..comparison })));
-    assert!(!changes(Edit::Variant(0, VariantField::Exposure(Some(1.0)))));
+    assert!(!changes(Edit::from(Comparison { split: 0.3, ..comparison })));
+    assert!(!changes(Edit::set(Part::Variant(0), Variant::exposure, 1.0)));
     // The wrong twin: view A changes.
-    assert!(changes(Edit::Display(Display { exposure: 1.0, ..Display::default() })));
-    assert!(!changes(Edit::Comparison(Comparison { split: 0.6, ..comparison })));
+    assert!(changes(Edit::from(Display { exposure: 1.0, ..Display::default() })));
+    assert!(!changes(Edit::from(Comparison { split: 0.6, ..comparison })));
 }

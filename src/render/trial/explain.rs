@@ -32,7 +32,7 @@ pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> B
         return locate(composed, Some((line, 1)), message);
     }
     let used = lines().find_map(|(i, line)| Some((i + 1, line.find(&format!("{name}::"))? + 1)));
-    locate(composed, used, format!("`{name}` is used, but no `#import` brings it"))
+    locate(composed, used, format!("`{name}` is used, but no `#import` provides it"))
 }
 
 /// The composer's error, in terms of the author's file.
@@ -152,19 +152,18 @@ pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, u
     let message = complaint.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
     let binding = number("binding: ").map(|n| {
         let message = format!(
-            "@binding({n}) is not there: the renderer provides 0, the parameters, and 1, the lights ({message})"
+            "@binding({n}) does not exist: the renderer provides 0, the parameters, and 1, the lights ({message})"
         );
         (line_of(&format!("@binding({n})")), message)
     });
     let location = || {
         let n = number("ocation[").or_else(|| number("@location("))?;
-        let message =
-            format!("@location({n}) is not the same in the vertex and the fragment stage ({message})");
+        let message = format!("@location({n}) differs between the vertex and the fragment stage ({message})");
         Some((line_of(&format!("@location({n})")), message))
     };
     let entry = || {
         let name = complaint.split("entry point '").nth(1)?.split('\'').next()?;
-        let message = format!("the function `{name}` with @{name} is missing: the renderer begins there");
+        let message = format!("the function `{name}` with @{name} is missing: it is the entry point");
         Some((line_of(&format!("@{name}")), message))
     };
     let wrapper = || {
@@ -177,7 +176,7 @@ pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, u
     binding
         .or_else(location)
         .or_else(entry)
-        .unwrap_or_else(|| (wrapper(), format!("the graphics driver refuses it: {message}")))
+        .unwrap_or_else(|| (wrapper(), format!("the graphics driver rejects it: {message}")))
 }
 
 /// The problem of a text on which the composer itself fails.
@@ -185,10 +184,6 @@ pub(super) fn without_place(composed: &Composed) -> Box<ShaderProblem> {
     // Plain parsing may find the cause.
     match check::validate(composed) {
         Err(problem) if problem.file != WRAPPER.path => problem,
-        _ => locate(
-            composed,
-            None,
-            "the shader cannot be put together; the last change is the cause".to_owned(),
-        ),
+        _ => locate(composed, None, "the shader cannot be composed; the last change is the cause".to_owned()),
     }
 }

@@ -136,7 +136,7 @@ impl TrialProcess {
             while let Some((key, request)) = worker.next() {
                 let (verdict, lasting) = match worker.verdict(&request) {
                     Ok(verdict) => (verdict, true),
-                    Err(why) => (untried(&request, &format!("({why}); save it again to repeat that")), false),
+                    Err(why) => (untried(&request, &format!("({why}); save it again to retry")), false),
                 };
                 let mut state = worker.shared.lock();
                 state.current = None;
@@ -253,7 +253,7 @@ impl Worker {
                 Fate::TooSlow => {
                     let limit = self.budget.time.as_secs_f32();
                     let message = format!(
-                        "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop of very many rounds?"
+                        "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop with very many iterations?"
                     );
                     return Ok(refused(request, message));
                 }
@@ -299,7 +299,7 @@ impl Worker {
 }
 
 fn untried(request: &Request, why: &str) -> Verdict {
-    refused(request, format!("this could not be tried in another process {why}"))
+    refused(request, format!("this could not be tested in another process {why}"))
 }
 
 fn refused(request: &Request, message: String) -> Verdict {

@@ -1,20 +1,21 @@
-//! Every constraint of a scene, once: for the reader, the window and the writer.
+//! Every constraint of a scene, once: for the reader, the writer and each edit.
 //!
-//! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end a sentence: "k_d
-//! is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`] applies them all to a whole scene;
-//! [`light`], [`object`] and others to one part of it.
+//! A [rule](Rule) is a clause that can end a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and
+//! 1**". That of a value by itself follows from its [declaration](super::Field::check). [`scene`] applies all rules to a
+//! whole scene; [`Parts`] and [`change`] to one part and what it can meet.
 
-use std::{collections::HashMap, fmt};
+use std::{collections::HashMap, fmt, mem};
 
 use glam::Vec3;
 
 use super::{
-    MAX_DIMENSION, Observer, Scene, SceneSize, Variant,
+    Light, MAX_DIMENSION, Object, Observer, Part, Scene, SceneSize, Variant,
     error::{Path, Problem},
+    field::Kind,
+    part::{Fields, Structure},
     variant::LETTERS,
 };
 use crate::{
-    light::LightEntry,
     parameter::Value,
     registry::Registry,
     text::{listed, quoted, with_article},
@@ -22,15 +23,6 @@ use crate::{
 
 mod rule;
 pub use rule::*;
-
-/// A vector as written in scene files.
-struct Written(Vec3);
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "[{}, {}, {}]", self.0.x, self.0.y, self.0.z)
-    }
-}
 
 /// All problems of a scene, in order; empty if it is valid.
 #[must_use]
@@ -40,39 +32,21 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
         _ => format!("a list of {n} {what}"),
     };
     let (lights, objects) = (scene.lights.len(), scene.objects.len());
-    found(scene, registry, |check| {
-        check.dimensions();
-        check.models();
-        check.rule(light_count(lights), || (Path::root().key("lights"), count(lights, "lights")));
-        (0..lights).for_each(|i| check.light(i));
-        check.observer();
-        check.rule(object_count(objects), || (Path::root().key("objects"), count(objects, "objects")));
-        (0..objects).for_each(|i| check.object(i));
-        check.display();
-        check.variants();
-    })
+    let mut check = Check::of(scene, registry);
+    check.fields(&scene.scene_size, Part::Size);
+    check.fields(scene, Part::Scene);
+    check.rule(light_count(lights), || (Path::root().key("lights"), count(lights, "lights")));
+    scene.lights.iter().enumerate().for_each(|(i, light)| check.light(i, light));
+    check.fields(&scene.observer, Part::Observer);
+    check.rule(object_count(objects), || (Path::root().key("objects"), count(objects, "objects")));
+    scene.objects.iter().enumerate().for_each(|(i, object)| check.object(i, object));
+    check.fields(&scene.display, Part::Display);
+    check.variants();
+    check.problems
 }
 
-/// All problems of one light, including conflicts with other parts; empty if the light does not exist.
-#[must_use]
-pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
-    Parts::of(scene, registry).light(index)
-}
-
-/// All problems of one object, including conflicts with other parts; empty if the object does not exist.
-#[must_use]
-pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
-    Parts::of(scene, registry).object(index)
-}
-
-/// All problems of the observer, including conflicts with other parts.
-#[must_use]
-pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    Parts::of(scene, registry).observer()
-}
-
-/// Checks one part after another, as [`light`], [`object`] and [`observer`] do, without going through all
-/// lights each time.
+/// Checks one part after another, without going through all lights each time. Each part's check reports its conflicts
+/// with others; those of a missing part are none.
 pub struct Parts<'a>(Check<'a>);
 
 impl<'a> Parts<'a> {
@@ -82,72 +56,74 @@ impl<'a> Parts<'a> {
         Self(Check::of(scene, registry))
     }
 
-    /// All problems of one light.
-    pub fn light(&mut self, index: usize) -> Vec<Problem> {
+    /// All problems of a part. Those of the scene itself are about its models, which also judge the materials of objects;
+    /// those of the room include parts outside it; those of a variant are those of all variants and of the comparison.
+    pub fn problems(&mut self, part: Part) -> Vec<Problem> {
         let check = &mut self.0;
-        check.light(index);
-        if let Some(p) = check.scene.lights.get(index).and_then(|light| light.position) {
-            check.meets(p, object_there(check.scene, p), "a light", "an object", || light_path(index));
+        let (scene, lights, objects) = (check.scene, check.lights, check.objects);
+        match part {
+            Part::Light(i) => lights.get(i).into_iter().for_each(|light| check.light_alone(i, light)),
+            Part::Object(i) => objects.get(i).into_iter().for_each(|object| check.object(i, object)),
+            Part::Observer => {
+                let p = scene.observer.position;
+                check.fields(&scene.observer, part);
+                check.meets(part, p, check.light_there(p));
+                check.meets(part, p, check.object_there(p));
+            }
+            Part::Size => {
+                check.fields(&scene.scene_size, part);
+                places(lights, objects, scene).for_each(|(part, p)| check.within(part, p));
+            }
+            Part::Scene => check.fields(scene, part),
+            Part::Display => check.fields(&scene.display, part),
+            Part::Variant(_) | Part::Comparison => check.variants(),
         }
-        std::mem::take(&mut check.problems)
-    }
-
-    /// All problems of one object.
-    pub fn object(&mut self, index: usize) -> Vec<Problem> {
-        self.0.object(index);
-        std::mem::take(&mut self.0.problems)
-    }
-
-    /// All problems of the observer.
-    pub fn observer(&mut self) -> Vec<Problem> {
-        let check = &mut self.0;
-        let p = check.scene.observer.position;
-        check.observer();
-        check.meets(p, check.light_there(p), "the observer", "a light", observer_path);
-        check.meets(p, object_there(check.scene, p), "the observer", "an object", observer_path);
-        std::mem::take(&mut check.problems)
+        mem::take(&mut check.problems)
     }
 }
 
-/// All problems of the room, including parts outside it.
+/// A light, an object, or everything but the lists of them, as it would be.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// A light, with its index.
+    Light(usize, Light),
+    /// An object, with its index.
+    Object(usize, Object),
+    /// A scene whose own lights and objects do not count.
+    Rest(Box<Scene>),
+}
+
+/// The problems of a part after a change. Of views only those that are new: a model that changed on disk must not prevent
+/// edits of others. Costs what changes, and what it can meet.
 #[must_use]
-pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| {
-        check.dimensions();
-        for (i, p) in scene.lights.iter().enumerate().filter_map(|(i, light)| Some((i, light.position?))) {
-            check.within(p, || light_path(i));
+pub fn change(scene: &Scene, part: Part, change: &Change, registry: &Registry) -> Vec<Problem> {
+    let mut after = Parts::of(scene, registry);
+    let mut problems = match change {
+        Change::Light(i, light) => {
+            after.0.light_alone(*i, light);
+            after.0.problems
         }
-        check.within(scene.observer.position, observer_path);
-        for (i, object) in scene.objects.iter().enumerate() {
-            check.within(object.position, || object_path(i));
+        Change::Object(i, object) => {
+            after.0.object(*i, object);
+            after.0.problems
         }
-    })
-}
-
-/// All problems of the reflection model and the shading model of a scene. The scene's reflection model also
-/// judges the materials of objects without an override: see [`object`].
-#[must_use]
-pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| check.models())
-}
-
-/// All problems of the variants and the comparison.
-#[must_use]
-pub fn variants(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| check.variants())
-}
-
-/// All problems of the display.
-#[must_use]
-pub fn display(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| check.display())
+        Change::Rest(rest) => {
+            (after.0.scene, after.0.room) = (rest, plausible(rest.scene_size));
+            after.problems(part)
+        }
+    };
+    if matches!(part, Part::Variant(_) | Part::Comparison) && !problems.is_empty() {
+        let before = Parts::of(scene, registry).problems(part);
+        problems.retain(|problem| !before.contains(problem));
+    }
+    problems
 }
 
 /// The room for checking positions: an invalid extent counts as the largest legal one, so that one error is not
 /// repeated for everything in the room.
 pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     for extent in [&mut room.height, &mut room.width, &mut room.depth] {
-        if dimension("", *extent).is_err() {
+        if SceneSize::width.check_number(*extent).is_err() {
             *extent = MAX_DIMENSION;
         }
     }
@@ -168,49 +144,65 @@ pub fn same_place(a: Vec3, b: Vec3) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// The first object at a position, for messages.
-fn object_there(scene: &Scene, p: Vec3) -> Option<String> {
-    scene.objects.iter().position(|o| same_place(o.position, p)).map(|i| format!("objects[{i}]"))
+/// The positions of all parts that have one.
+pub(super) fn places<'a>(
+    lights: &'a [Light],
+    objects: &'a [Object],
+    rest: &Scene,
+) -> impl Iterator<Item = (Part, Vec3)> + 'a {
+    let lights = lights.iter().enumerate().filter_map(|(i, l)| Some((Part::Light(i), l.position?)));
+    let objects = objects.iter().enumerate().map(|(i, o)| (Part::Object(i), o.position));
+    lights.chain(objects).chain([(Part::Observer, rest.observer.position)])
 }
 
-fn light_path(index: usize) -> Path {
-    Path::root().key("lights").index(index)
+/// The part that a part would meet at a position, if they exclude each other.
+#[must_use]
+pub fn met(scene: &Scene, part: Part, p: Vec3) -> Option<Part> {
+    let differs = |other: &Part| mem::discriminant(other) != mem::discriminant(&part);
+    places(&scene.lights, &scene.objects, scene)
+        .find_map(|(other, at)| (differs(&other) && same_place(at, p)).then_some(other))
 }
 
-fn object_path(index: usize) -> Path {
-    Path::root().key("objects").index(index)
-}
-
-fn observer_path() -> Path {
-    Path::root().key("observer")
+/// A kind of part in messages.
+fn what(part: Part) -> &'static str {
+    match part {
+        Part::Light(_) => Light::WHAT,
+        Part::Object(_) => Object::WHAT,
+        _ => Observer::WHAT,
+    }
 }
 
 /// The problems found so far, and the data for checking the parts of a scene.
 struct Check<'a> {
+    /// Everything but lights and objects.
     scene: &'a Scene,
+    lights: &'a [Light],
+    objects: &'a [Object],
     registry: &'a Registry,
     room: SceneSize,
     /// The first light at each position: with many objects, lookups replace pairwise comparison.
-    lights: HashMap<[u32; 3], usize>,
+    light_at: HashMap<[u32; 3], usize>,
     problems: Vec<Problem>,
-}
-
-/// The problems found by these checks.
-fn found(scene: &Scene, registry: &Registry, checks: impl FnOnce(&mut Check)) -> Vec<Problem> {
-    let mut check = Check::of(scene, registry);
-    checks(&mut check);
-    check.problems
 }
 
 impl<'a> Check<'a> {
     fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
-        let mut lights = HashMap::new();
+        let mut light_at = HashMap::new();
         for (i, light) in scene.lights.iter().enumerate() {
             if let Some(key) = light.position.and_then(place) {
-                lights.entry(key).or_insert(i);
+                light_at.entry(key).or_insert(i);
             }
         }
-        Self { scene, registry, room: plausible(scene.scene_size), lights, problems: Vec::new() }
+        let Scene { lights, objects, scene_size, .. } = scene;
+        Self {
+            scene,
+            lights,
+            objects,
+            registry,
+            room: plausible(*scene_size),
+            light_at,
+            problems: Vec::new(),
+        }
     }
 }
 
@@ -228,113 +220,108 @@ impl Check<'_> {
         self.problems.push(Problem::about(path, predicate));
     }
 
+    /// Checks each field of a part by itself, and that its position is in the room.
+    fn fields(&mut self, fields: &dyn Fields, part: Part) {
+        let registry = self.registry;
+        fields.each(&mut |field, held, _| match (field.kind, held.value()) {
+            (Kind::Position, Some(Value::Triple(p))) => self.within(part, p.into()),
+            (_, Some(value)) => {
+                self.rule(field.check(&value, registry), || (part.path().key(field.key), written(&value)));
+            }
+            _ => {}
+        });
+    }
+
     /// Checks that a position is in the room.
-    fn within(&mut self, p: Vec3, path: impl Fn() -> Path) {
-        self.rule(position(self.room, p), || (path().key("position"), Written(p)));
+    fn within(&mut self, part: Part, p: Vec3) {
+        self.rule(position(self.room, p), || (part.path().key("position"), written(&p.into())));
     }
 
     /// Checks that a part is not at the position of another that excludes it.
-    fn meets(&mut self, p: Vec3, there: Option<String>, one: &str, other: &str, path: impl Fn() -> Path) {
+    fn meets(&mut self, part: Part, p: Vec3, there: Option<Part>) {
         if let Some(there) = there {
-            let rule = format!("{there} is there; {one} must not be where {other} is");
-            self.problems.push(Problem::value(path().key("position"), Written(p), rule));
+            let other =
+                if there == Part::Observer { Observer::WHAT.to_owned() } else { there.path().to_string() };
+            let rule = format!("{other} is there; {} must not be where {} is", what(part), what(there));
+            self.problems.push(Problem::value(part.path().key("position"), written(&p.into()), rule));
         }
     }
 
-    /// The first light at a position, for messages.
-    fn light_there(&self, p: Vec3) -> Option<String> {
-        self.lights.get(&place(p)?).map(|i| format!("lights[{i}]"))
+    /// The first light at a position.
+    fn light_there(&self, p: Vec3) -> Option<Part> {
+        self.light_at.get(&place(p)?).copied().map(Part::Light)
     }
 
-    /// The observer, if at this position, for messages.
-    fn observer_there(&self, p: Vec3) -> Option<String> {
-        same_place(p, self.scene.observer.position).then(|| "the observer".to_owned())
+    /// The first object at a position.
+    fn object_there(&self, p: Vec3) -> Option<Part> {
+        self.objects.iter().position(|o| same_place(o.position, p)).map(Part::Object)
     }
 
-    fn dimensions(&mut self) {
-        let SceneSize { height, width, depth } = self.scene.scene_size;
-        for (axis, metres) in [("height", height), ("width", width), ("depth", depth)] {
-            self.rule(dimension(axis, metres), || (Path::root().key("scene_size").key(axis), metres));
-        }
+    /// The observer, if at this position.
+    fn observer_there(&self, p: Vec3) -> Option<Part> {
+        same_place(p, self.scene.observer.position).then_some(Part::Observer)
     }
 
-    fn models(&mut self) {
-        let Scene { reflection_model: reflection, shading_model: shading, .. } = self.scene;
-        let at = |key: &'static str, id: &str| (Path::root().key(key), quoted(id));
-        self.rule(reflection_model(self.registry, reflection), || at("reflection_model", reflection));
-        self.rule(shading_model(self.registry, shading), || at("shading_model", shading));
-    }
-
-    fn light(&mut self, index: usize) {
-        let Some(light) = self.scene.lights.get(index) else { return };
-        let path = |key: &'static str| light_path(index).key(key);
-        self.rule(light_type(self.registry, &light.light_type), || (path("type"), quoted(&light.light_type)));
-        let entry = self.registry.light(&light.light_type);
-        if let Some(LightEntry { declaration, .. }) = entry {
-            let fields = [
-                ("position", light.position.is_some(), declaration.has_position),
-                ("direction", light.direction.is_some(), declaration.has_direction),
-            ];
-            for (key, is, should) in fields {
+    fn light(&mut self, index: usize, light: &Light) {
+        let part = Part::Light(index);
+        let path = |key: &'static str| part.path().key(key);
+        let id = &light.light_type;
+        let entry = self.registry.light(id);
+        if let Some(entry) = entry {
+            let d = entry.declaration;
+            for (key, is, should) in [
+                ("position", light.position.is_some(), d.has_position),
+                ("direction", light.direction.is_some(), d.has_direction),
+                (
+                    "luminous_flux",
+                    light.luminous_flux.is_some(),
+                    light.luminous_flux.is_some() && entry.has_flux(),
+                ),
+            ] {
                 if is != should {
-                    self.about(path(key), presence(declaration.id, key, should));
+                    self.about(path(key), presence(id, key, should));
                 }
             }
         }
-        if let Some(p) = light.position {
-            self.within(p, || light_path(index));
-        }
-        if let Some(d) = light.direction {
-            self.rule(direction(d), || (path("direction"), Written(d)));
-        }
-        self.rule(intensity(light.intensity), || (path("intensity"), light.intensity));
-        if let Some(flux) = light.luminous_flux {
-            if entry.is_none_or(LightEntry::has_flux) {
-                self.rule(luminous_flux(flux), || (path("luminous_flux"), flux));
-            } else {
-                self.about(path("luminous_flux"), presence(&light.light_type, "luminous_flux", false));
-            }
-        }
-        if let Some(kelvin) = light.colour_temperature {
-            self.rule(colour_temperature(kelvin), || (path("colour_temperature"), kelvin));
+        if light.luminous_flux.is_some() && entry.is_some_and(|entry| !entry.has_flux()) {
+            self.fields(&Light { luminous_flux: None, ..light.clone() }, part);
+        } else {
+            self.fields(light, part);
         }
         for (name, value) in &light.parameters.0 {
-            let path = || light_path(index).key(name.clone());
+            let path = || part.path().key(name.clone());
             match entry.map(|e| e.parameter(name)) {
-                Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
-                Some(None) => self.about(path(), presence(&light.light_type, name, false)),
+                Some(Some(declared)) => self.rule(declared.check(value), || (path(), written(value))),
+                Some(None) => self.about(path(), presence(id, name, false)),
                 // The type is unknown, which is already reported.
                 None => {}
             }
         }
         if let Some(p) = light.position {
-            self.meets(p, self.observer_there(p), "a light", "the observer", || light_path(index));
+            self.meets(part, p, self.observer_there(p));
         }
     }
 
-    fn observer(&mut self) {
-        let Observer { position, direction: d, field_of_view: degrees } = self.scene.observer;
-        self.within(position, observer_path);
-        self.rule(direction(d), || (observer_path().key("direction"), Written(d)));
-        self.rule(field_of_view(degrees), || (observer_path().key("field_of_view"), degrees));
+    /// Checks a light, and that no object is where it is.
+    fn light_alone(&mut self, index: usize, light: &Light) {
+        self.light(index, light);
+        if let Some(p) = light.position {
+            self.meets(Part::Light(index), p, self.object_there(p));
+        }
     }
 
-    fn object(&mut self, index: usize) {
-        let Some(object) = self.scene.objects.get(index) else { return };
-        let path = |key: &'static str| object_path(index).key(key);
+    fn object(&mut self, index: usize, object: &Object) {
+        let part = Part::Object(index);
         let registry = self.registry;
-        self.rule(object_type(registry, &object.object_type), || (path("type"), quoted(&object.object_type)));
-        self.within(object.position, || object_path(index));
-        self.rule(size(object.size), || (path("size"), object.size));
-        self.rule(rotation(object.rotation), || (path("rotation"), Written(object.rotation)));
-        if let (Some(shape), Some(count)) = (registry.shape(&object.object_type), object.tessellation) {
-            self.rule(tessellation(shape, count), || (path("tessellation"), count));
-        }
+        self.fields(object, part);
         if let Some(shape) = registry.shape(&object.object_type) {
+            if let Some(count) = object.tessellation {
+                self.rule(tessellation(shape, count), || (part.path().key("tessellation"), count));
+            }
             for (name, value) in &object.shape.0 {
-                let path = || object_path(index).key(name.clone());
+                let path = || part.path().key(name.clone());
                 match shape.parameter(name) {
-                    Some(declared) => self.rule(parameter(declared, value), || (path(), written(value))),
+                    Some(declared) => self.rule(declared.check(value), || (path(), written(value))),
                     None => {
                         let what = with_article(&object.object_type);
                         self.about(path(), format!("is given, but {what} has no {name}"));
@@ -342,99 +329,70 @@ impl Check<'_> {
                 }
             }
         }
-        if let Some(id) = &object.reflection_model {
-            self.rule(reflection_model(registry, id), || (path("reflection_model"), quoted(id)));
-        }
-        if let Some(id) = &object.shading_model {
-            self.rule(shading_model(registry, id), || (path("shading_model"), quoted(id)));
-        }
+        let models = [self.scene.model_of(object), self.scene.shading_model_of(object)];
         for (name, value) in &object.material.0 {
-            self.rule(material_parameter(registry, self.scene, object, name, value), || {
-                (path("material").key(name.clone()), written(value))
+            self.rule(material_parameter(registry, models, name, value), || {
+                (part.path().key("material").key(name.clone()), written(value))
             });
         }
         let p = object.position;
-        match self.light_there(p) {
-            Some(light) => self.meets(p, Some(light), "an object", "a light", || object_path(index)),
-            None => {
-                let observer = self.observer_there(p);
-                self.meets(p, observer, "an object", "the observer", || object_path(index));
-            }
-        }
+        self.meets(part, p, self.light_there(p).or_else(|| self.observer_there(p)));
     }
 
-    fn display(&mut self) {
-        let ev = self.scene.display.exposure;
-        self.rule(exposure(ev), || (Path::root().key("display").key("exposure"), ev));
-    }
-}
-
-impl Check<'_> {
     fn variants(&mut self) {
-        let (scene, registry) = (self.scene, self.registry);
+        let scene = self.scene;
         let all = &scene.variants;
         let list = || (Path::root().key("variants"), format!("a list of {} variants", all.len()));
         self.rule(variant_count(all.len()), list);
         for (i, variant) in all.iter().enumerate() {
-            let path = |key: &'static str| Path::root().key("variants").index(i).key(key);
+            let part = Part::Variant(i);
             if let Some(name) = &variant.name {
                 let twin = all[..i].iter().position(|other| other.name.as_ref() == Some(name));
                 if let Some(twin) = twin {
                     let rule =
                         format!("variants[{twin}] has this name already; variants need different names");
-                    self.problems.push(Problem::value(path("name"), quoted(name), rule));
+                    self.problems.push(Problem::value(part.path().key("name"), quoted(name), rule));
                 }
             }
-            if let Some(base) = &variant.based_on
-                && let Err(rule) = basis(scene, variant, base)
-            {
-                self.problems.push(Problem::value(path("based_on"), quoted(base), rule));
+            if let Some(base) = &variant.based_on {
+                self.rule(basis(scene, variant, base), || (part.path().key("based_on"), quoted(base)));
             }
-            if let Some(id) = &variant.reflection_model {
-                self.rule(reflection_model(registry, id), || (path("reflection_model"), quoted(id)));
-            }
-            if let Some(id) = &variant.shading_model {
-                self.rule(shading_model(registry, id), || (path("shading_model"), quoted(id)));
-            }
-            if let Some(ev) = variant.exposure {
-                self.rule(exposure(ev), || (path("exposure"), ev));
-            }
-            if let Some(count) = variant.tessellation {
-                self.rule(any_tessellation(count), || (path("tessellation"), count));
-            }
+            self.fields(variant, part);
             if !variant.material.0.is_empty() {
-                self.variant_material(i, &path);
+                self.variant_material(i);
             }
         }
         let comparison = &scene.comparison;
-        let path = |key: &'static str| Path::root().key("comparison").key(key);
-        self.rule(split(comparison.split), || (path("split"), comparison.split));
-        if let Some(factor) = comparison.amplification {
-            self.rule(amplification(factor), || (path("amplification"), factor));
-        }
+        self.fields(comparison, Part::Comparison);
         if comparison.with > all.len().max(1) {
             let letter = LETTERS.get(comparison.with).copied().unwrap_or("?");
             let rule = match all.len() {
                 0 => "the scene has no variants".to_owned(),
                 n => format!("the last view of the scene is {}", LETTERS[n]),
             };
-            self.problems.push(Problem::value(path("with"), quoted(letter), rule));
+            let path = Part::Comparison.path().key("with");
+            self.problems.push(Problem::value(path, quoted(letter), rule));
         }
     }
 
-    /// Checks the parameters of a variant, each against the objects of the scene as they are in the variant.
-    fn variant_material(&mut self, index: usize, path: &dyn Fn(&'static str) -> Path) {
+    /// Checks the parameters of a variant, each with the models that objects have in it.
+    fn variant_material(&mut self, index: usize) {
         let (scene, registry) = (self.scene, self.registry);
-        let Some((seen, _)) = scene.seen(index + 1, registry) else { return };
-        for (name, value) in &scene.variants[index].material.0 {
-            let broken = seen
-                .objects
-                .iter()
-                .find_map(|object| material_parameter(registry, &seen, object, name, value).err());
-            if let Some(rule) = broken {
-                let path = path("material").key(name.clone());
-                self.problems.push(Problem::value(path, written(value), rule));
+        let Some(variant) = scene.overrides(index + 1) else { return };
+        let mut models: Vec<[&str; 2]> = Vec::new();
+        for object in self.objects {
+            let model = variant.reflection_model.as_deref().unwrap_or_else(|| scene.model_of(object));
+            let shading = variant.shading_model.as_deref().unwrap_or_else(|| scene.shading_model_of(object));
+            if !models.contains(&[model, shading]) {
+                models.push([model, shading]);
             }
+        }
+        for (name, value) in &scene.variants[index].material.0 {
+            let rule =
+                models.iter().try_for_each(|models| material_parameter(registry, *models, name, value));
+            self.rule(rule, || {
+                (Part::Variant(index).path().key("material").key(name.clone()), written(value))
+            });
         }
     }
 }
@@ -492,7 +450,6 @@ fn written(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Light, Object};
 
     fn messages(s: &Scene) -> Vec<String> {
         scene(s, &Registry::builtin()).iter().map(ToString::to_string).collect()
@@ -566,12 +523,13 @@ mod tests {
         s.observer.field_of_view = 0.0;
         s.display.exposure = 99.0;
         let whole = scene(&s, &registry);
-        let mut parts = [room(&s, &registry), models(&s, &registry)].concat();
+        let mut check = Parts::of(&s, &registry);
+        let mut parts = [check.problems(Part::Size), check.problems(Part::Scene)].concat();
         parts.retain(|p| whole.contains(p) && p.path.segments().len() == 2);
-        parts.extend((0..s.lights.len()).flat_map(|i| light(&s, i, &registry)));
-        parts.extend(observer(&s, &registry));
-        parts.extend((0..s.objects.len()).flat_map(|i| object(&s, i, &registry)));
-        parts.extend(display(&s, &registry));
+        parts.extend((0..s.lights.len()).flat_map(|i| check.problems(Part::Light(i))));
+        parts.extend(check.problems(Part::Observer));
+        parts.extend((0..s.objects.len()).flat_map(|i| check.problems(Part::Object(i))));
+        parts.extend(check.problems(Part::Display));
         // Each part's check reports a conflict of two parts; the check of the whole scene reports it once.
         let both: Vec<_> = parts.iter().filter(|p| !whole.contains(p)).map(ToString::to_string).collect();
         assert_eq!(
@@ -583,18 +541,22 @@ mod tests {
         );
         parts.retain(|p| whole.contains(p));
         assert_eq!(parts, whole);
-        assert_eq!(light(&s, 9, &registry), []);
-        assert_eq!(object(&s, 9, &registry), []);
+        assert_eq!(check.problems(Part::Light(9)), []);
+        assert_eq!(check.problems(Part::Object(9)), []);
     }
 
     #[test]
     fn a_room_is_too_small_for_what_stands_outside_it() {
+        let room = |s: &Scene| -> Vec<_> {
+            let registry = Registry::builtin();
+            Parts::of(s, &registry).problems(Part::Size).iter().map(|p| p.path.to_string()).collect()
+        };
         let mut s = Scene::default();
         s.scene_size.depth = 9.25;
-        let found: Vec<_> = room(&s, &Registry::builtin()).iter().map(|p| p.path.to_string()).collect();
+        let found = room(&s);
         assert_eq!(found, ["observer.position"]);
         s.scene_size.depth = 101.0;
-        let found: Vec<_> = room(&s, &Registry::builtin()).iter().map(|p| p.path.to_string()).collect();
+        let found = room(&s);
         assert_eq!(found, ["scene_size.depth"]);
     }
 

@@ -1,4 +1,4 @@
-//! The rules for single fields. Each is a clause: "the diffuse coefficient must be between 0.5 and 1".
+//! The rules that need more than the [declaration](crate::scene::Field) of a field. Each is a clause: "the diffuse coefficient must be between 0.5 and 1".
 
 use glam::Vec3;
 
@@ -6,34 +6,12 @@ use crate::files::Shown as _;
 use crate::{
     custom,
     light::MAX_LIGHTS,
-    optics::{
-        TermSelection,
-        colour::Encoding,
-        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
-        tone::ToneMapping,
-    },
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{
-        MAX_DIMENSION, MAX_OBJECTS, Object, Scene, SceneSize,
-        comparison::{AMPLIFICATIONS, Channel, Compared, Edge, Layout, Sign},
-        limits,
-        variant::{LETTERS, MAX_VARIANTS},
-    },
+    scene::{MAX_OBJECTS, Object, Scene, SceneSize, limits, variant::MAX_VARIANTS},
     shape::ShapeEntry,
-    text::{self, detailed, did_you_mean},
+    text::{detailed, did_you_mean},
 };
-
-/// The narrowest legal field of view, degrees.
-pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
-/// The widest legal field of view, degrees.
-pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
-/// The largest legal exposure, EV; the smallest is its negative.
-pub const MAX_EXPOSURE: f32 = 16.0;
-
-/// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
-/// derivatives overflow on GPUs, and the two renderers could not agree on a picture.
-pub const MAX_SIZE: f32 = 1e9;
 
 /// `Ok`, or the rule that is broken.
 pub type Rule = Result<(), String>;
@@ -41,13 +19,6 @@ pub type Rule = Result<(), String>;
 /// `Ok` if the rule is kept.
 fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
     if kept { Ok(()) } else { Err(rule()) }
-}
-
-/// One extent of the room, in metres; `axis` is `height`, `width` or `depth`.
-pub fn dimension(axis: &str, metres: f32) -> Rule {
-    must(limits::dimension().allows(metres.into()), || {
-        format!("the {axis} of the room must be greater than 0 and at most {MAX_DIMENSION} m")
-    })
 }
 
 /// A position of a light, an object or the observer.
@@ -69,56 +40,6 @@ pub fn direction(direction: Vec3) -> Rule {
     })
 }
 
-/// The intensity of a light.
-pub fn intensity(value: f32) -> Rule {
-    brightness("an intensity", value)
-}
-
-/// The luminous flux of a light, in lumen.
-pub fn luminous_flux(value: f32) -> Rule {
-    brightness("a luminous flux", value)
-}
-
-fn brightness(what: &str, value: f32) -> Rule {
-    must(limits::brightness().allows(value.into()), || {
-        if value == f32::INFINITY {
-            format!("{what} must be at most 3.4e38")
-        } else {
-            format!("{what} must be at least 0")
-        }
-    })
-}
-
-/// The colour temperature of a light, in kelvin.
-pub fn colour_temperature(kelvin: f32) -> Rule {
-    must(limits::colour_temperature().allows(kelvin.into()), || {
-        format!("a colour temperature must be between {MIN_TEMPERATURE} and {MAX_TEMPERATURE} K")
-    })
-}
-
-/// The vertical field of view of the observer, in degrees.
-pub fn field_of_view(degrees: f32) -> Rule {
-    must(limits::field_of_view().allows(degrees.into()), || {
-        format!("the field of view must be between {MIN_FIELD_OF_VIEW} and {MAX_FIELD_OF_VIEW} degrees")
-    })
-}
-
-/// The largest extent of an object, in metres.
-pub fn size(metres: f32) -> Rule {
-    must(limits::any_size().allows(metres.into()), || {
-        if metres > MAX_SIZE {
-            format!("a size must be at most {MAX_SIZE:e} m")
-        } else {
-            "a size must be greater than 0".to_owned()
-        }
-    })
-}
-
-/// Euler angles in degrees.
-pub fn rotation(degrees: Vec3) -> Rule {
-    must(degrees.is_finite(), || "a rotation must be three finite numbers of degrees".to_owned())
-}
-
 /// The tessellation of an object of a type.
 pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
     must(limits::tessellation(shape.declaration).allows(count.into()), || tessellation_rule(shape))
@@ -135,30 +56,12 @@ pub(crate) fn tessellation_rule(shape: &ShapeEntry) -> String {
     )
 }
 
-/// The exposure of the display, in EV.
-pub fn exposure(ev: f32) -> Rule {
-    must(limits::exposure().allows(ev.into()), || {
-        format!("the exposure must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE} EV")
-    })
-}
-
-/// The value of a declared parameter of a model, a light or an object type.
-pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
-    parameter.check(value)
-}
-
-/// A parameter in the material of an object: the ranges that its reflection model and its shading model declare apply,
-/// and if neither does, the range of some other that declares it.
-pub fn material_parameter(
-    registry: &Registry,
-    scene: &Scene,
-    object: &Object,
-    name: &str,
-    value: &Value,
-) -> Rule {
-    match Declared::of(registry, scene, object, name).refusing(value) {
+/// A parameter in a material: the ranges that the reflection model and the shading model declare apply, and if neither
+/// does, the range of some other that declares it.
+pub fn material_parameter(registry: &Registry, models: [&str; 2], name: &str, value: &Value) -> Rule {
+    match Declared::of_models(registry, models, name).refusing(value) {
         Ok(()) => Ok(()),
-        Err(Some(declared)) => parameter(declared, value),
+        Err(Some(declared)) => declared.check(value),
         Err(None) => Err(unknown_material_parameter(registry, name)),
     }
 }
@@ -177,8 +80,14 @@ impl Declared {
     /// The declarations of a name for an object of a scene.
     #[must_use]
     pub fn of(registry: &Registry, scene: &Scene, object: &Object, name: &str) -> Self {
-        let model = registry.model(scene.model_of(object)).and_then(|m| m.parameter(name));
-        let shading = registry.shading_model(scene.shading_model_of(object)).and_then(|s| s.parameter(name));
+        Self::of_models(registry, [scene.model_of(object), scene.shading_model_of(object)], name)
+    }
+
+    /// The declarations of a name for objects with this reflection model and this shading model.
+    #[must_use]
+    pub fn of_models(registry: &Registry, [model, shading]: [&str; 2], name: &str) -> Self {
+        let model = registry.model(model).and_then(|m| m.parameter(name));
+        let shading = registry.shading_model(shading).and_then(|s| s.parameter(name));
         let own: Vec<_> = model.into_iter().chain(shading).collect();
         if !own.is_empty() {
             return Self::Own(own);
@@ -238,16 +147,15 @@ fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
     format!("no model has a parameter of that name{}", did_you_mean(name, known))
 }
 
-/// The id of a reflection model.
-pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
-    let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
-    one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
+/// The rule that an unknown reflection model breaks: the file of a custom model may have an error, or be missing.
+pub(in crate::scene) fn missing_model(registry: &Registry, id: &str, rule: String) -> String {
+    match registry.broken_model(id) {
         Some(why) => format!("the file of that custom model has an error: {why}"),
         None => match custom_model_missing(registry, id) {
             Some(detail) => detailed(&rule, &detail),
             None => rule,
         },
-    })
+    }
 }
 
 /// Details about an id without a model in the folder of custom models: its file may be missing, or not be a
@@ -258,92 +166,11 @@ fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
     let file_shown = file.shown();
     Some(if file.is_file() {
         format!(
-            "{file_shown} is no model: it neither begins with a comment /* lcm … */ nor defines fn response"
+            "{file_shown} is not a model: it neither begins with a comment /* lcm … */ nor defines fn response"
         )
     } else {
         format!("the folder of custom models has no {file_shown}")
     })
-}
-
-/// The id of a shading model.
-pub fn shading_model(registry: &Registry, id: &str) -> Rule {
-    let known = registry.shading_models().iter().map(|m| (m.declaration.id, m.declaration.name));
-    one_of("the shading model", id, known)
-}
-
-/// The id of a light type.
-pub fn light_type(registry: &Registry, id: &str) -> Rule {
-    one_of("the light type", id, registry.lights().iter().map(|l| (l.declaration.id, l.declaration.name)))
-}
-
-/// The id of an object type.
-pub fn object_type(registry: &Registry, id: &str) -> Rule {
-    one_of("the object type", id, registry.shapes().iter().map(|s| (s.declaration.id, s.declaration.name)))
-}
-
-/// The id of a tone mapping.
-pub fn tone_mapping(id: &str) -> Rule {
-    one_of("the tone mapping", id, ToneMapping::ALL.into_iter().map(|t| (t.id(), t.name())))
-}
-
-/// The id of an encoding.
-pub fn encoding(id: &str) -> Rule {
-    one_of("the encoding", id, Encoding::ALL.into_iter().map(|e| (e.id(), e.id())))
-}
-
-/// The id of a selection of terms.
-pub fn terms(id: &str) -> Rule {
-    one_of("the terms", id, TermSelection::ALL.into_iter().map(|t| (t.id(), t.id())))
-}
-
-/// The id of a layout.
-pub fn layout(id: &str) -> Rule {
-    one_of("the layout", id, Layout::ALL.iter().map(|c| (c.id(), c.name())))
-}
-
-/// The id of the direction of a wipe's edge.
-pub fn edge(id: &str) -> Rule {
-    one_of("the edge of a wipe", id, Edge::ALL.iter().map(|c| (c.id(), c.name())))
-}
-
-/// The id of the sign of differences.
-pub fn sign(id: &str) -> Rule {
-    one_of("the sign of a difference", id, Sign::ALL.iter().map(|c| (c.id(), c.name())))
-}
-
-/// The id of the channel of differences.
-pub fn channel(id: &str) -> Rule {
-    one_of("the channel of a difference", id, Channel::ALL.iter().map(|c| (c.id(), c.name())))
-}
-
-/// The id of the kind of values that are compared.
-pub fn compared(id: &str) -> Rule {
-    one_of("the values of a difference", id, Compared::ALL.iter().map(|c| (c.id(), c.name())))
-}
-
-/// The letter of a view other than A.
-pub fn view_letter(letter: &str) -> Rule {
-    one_of("the other view", letter, LETTERS[1..].iter().map(|l| (*l, *l)))
-}
-
-/// The position of the edge of a wipe.
-pub fn split(place: f32) -> Rule {
-    must((0.0..=1.0).contains(&place), || "the place of the edge must be between 0 and 1".to_owned())
-}
-
-/// The amplification of a difference.
-pub fn amplification(factor: f32) -> Rule {
-    must(AMPLIFICATIONS.contains(&factor), || {
-        format!("the amplification must be between {} and {}", AMPLIFICATIONS.start(), AMPLIFICATIONS.end())
-    })
-}
-
-/// The rule for the tessellation of a variant.
-pub const ANY_TESSELLATION: &str = "the tessellation of a variant must be a whole number of at least 1";
-
-/// The tessellation of a variant, which each object follows as far as its type allows.
-pub fn any_tessellation(count: u32) -> Rule {
-    must(count > 0, || ANY_TESSELLATION.to_owned())
 }
 
 /// The number of variants of a scene.
@@ -362,15 +189,6 @@ pub fn light_count(count: usize) -> Rule {
 pub fn object_count(count: usize) -> Rule {
     must((1..=MAX_OBJECTS).contains(&count), || {
         format!("a scene must have between 1 and {MAX_OBJECTS} objects")
-    })
-}
-
-/// One of several ids: the rule lists them and names the nearest.
-fn one_of<'a>(what: &str, id: &str, known: impl Iterator<Item = (&'a str, &'a str)> + Clone) -> Rule {
-    must(known.clone().any(|(k, _)| k == id), || {
-        let names = known.clone().map(|(k, name)| (name, k));
-        let candidates = known.clone().map(|(k, _)| (k, k)).chain(names);
-        text::one_of(what, known.clone().map(|(k, _)| k)) + &did_you_mean(id, candidates)
     })
 }
 

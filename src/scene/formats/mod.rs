@@ -147,7 +147,7 @@ impl SceneFormats for Registry {
         let (name, extensions) = (format.name(), format.extensions());
         let refused = |problem| Err(FormatError { name, problem });
         if name.trim().is_empty() {
-            return refused("it needs a name for people".to_owned());
+            return refused("it needs a display name".to_owned());
         }
         if extensions.is_empty() {
             return refused("it needs an extension, such as \"csv\"".to_owned());
@@ -165,7 +165,7 @@ impl SceneFormats for Registry {
         }
         for other in all(self) {
             if other.name() == name {
-                return refused("there is a format of that name already".to_owned());
+                return refused("a format of that name already exists".to_owned());
             }
             if let Some(extension) = extensions.iter().find(|e| other.extensions().contains(e)) {
                 return refused(format!(

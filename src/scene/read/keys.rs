@@ -1,49 +1,18 @@
-//! The keys of scene files.
+//! The keys of scene files, and other words for them.
 
-pub(in crate::scene) use crate::registry::{LIGHT_KEYS, OBJECT_KEYS};
-use crate::{parameter::Parameter, registry::Registry};
+use crate::{
+    parameter::Parameter,
+    registry::Registry,
+    scene::{Light, Object, Scene, part::Structure},
+};
 
-/// The keys of a scene, in the order of messages.
-pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
-    "scene_size",
-    "reflection_model",
-    "shading_model",
-    "lights",
-    "observer",
-    "objects",
-    "display",
-    "variants",
-    "comparison",
-    "name",
-    "description",
-    "$schema",
-];
-/// The keys of `scene_size`.
-pub(in crate::scene) const SIZE_KEYS: &[&str] = &["height", "width", "depth"];
-/// Alternative keys of a light; if neither is given, the default of the first applies.
-pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
-    [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
-/// The keys of `observer`.
-pub(in crate::scene) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_view"];
-/// The keys of `display`.
-pub(in crate::scene) const DISPLAY_KEYS: &[&str] = &["tone_mapping", "exposure", "encoding"];
-
-/// The keys of a variant.
-pub(in crate::scene) const VARIANT_KEYS: &[&str] = &[
-    "name",
-    "based_on",
-    "reflection_model",
-    "shading_model",
-    "material",
-    "terms",
-    "tone_mapping",
-    "exposure",
-    "encoding",
-    "tessellation",
-];
-/// The keys of `comparison`.
-pub(in crate::scene) const COMPARISON_KEYS: &[&str] =
-    &["layout", "with", "split", "edge", "sign", "channel", "values", "amplification"];
+/// The keys of a scene, in the order of messages: words come last.
+pub(in crate::scene) fn scene_keys() -> Vec<&'static str> {
+    let mut keys = Scene::keys();
+    keys.rotate_left(2);
+    keys.push("$schema");
+    keys
+}
 
 /// Other words for keys, used only for suggestions: the names in other programs.
 pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
@@ -88,20 +57,33 @@ pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
-    with(LIGHT_KEYS, registry.lights().iter().flat_map(|l| l.parameters))
+    with(Light::keys(), registry.lights().iter().flat_map(|l| l.parameters))
 }
 
 /// The keys of all object types.
 pub(super) fn object_keys(registry: &Registry) -> Vec<&'static str> {
-    with(OBJECT_KEYS, registry.shapes().iter().flat_map(|s| s.parameters))
+    with(Object::keys(), registry.shapes().iter().flat_map(|s| s.parameters))
 }
 
-fn with(common: &[&'static str], declared: impl Iterator<Item = &'static Parameter>) -> Vec<&'static str> {
-    let mut keys = common.to_vec();
+fn with(
+    mut keys: Vec<&'static str>,
+    declared: impl Iterator<Item = &'static Parameter>,
+) -> Vec<&'static str> {
     for p in declared {
         if !keys.contains(&p.name) {
             keys.push(p.name);
         }
     }
     keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{LIGHT_KEYS, OBJECT_KEYS};
+
+    #[test]
+    fn the_registry_knows_which_names_parameters_cannot_have() {
+        assert_eq!((Light::keys(), Object::keys()), (LIGHT_KEYS.to_vec(), OBJECT_KEYS.to_vec()));
+    }
 }

@@ -11,9 +11,6 @@ use crate::{
     text::json::{Ast, Cursor, Fields, Reader as _},
 };
 
-/// The rule for every colour.
-pub(super) const COLOUR_RULE: &str = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
-
 impl Reader<'_> {
     /// A declared parameter, if the value has its type. Its range is checked later.
     pub(super) fn parameter(&mut self, value: Cursor, parameter: &'static Parameter) -> Option<Value> {
@@ -61,51 +58,6 @@ impl Reader<'_> {
         Vec::new()
     }
 
-    pub(super) fn text_field(&mut self, fields: &Fields, key: &str, rule: &str) -> Option<String> {
-        self.string(fields.get(key)?, rule).map(str::to_owned)
-    }
-
-    pub(super) fn choice(
-        &mut self,
-        fields: &Fields,
-        key: &str,
-        check: fn(&str) -> check::Rule,
-    ) -> Option<String> {
-        let value = fields.get(key)?;
-        let id = self.string(value, &rule_of(check("")))?;
-        check(id).map_err(|rule| self.wrong(value, &rule)).ok()?;
-        Some(id.to_owned())
-    }
-
-    /// The id of a model or a type, known or not.
-    pub(super) fn id(&mut self, value: Cursor, what: &str) -> Option<String> {
-        if value.text().is_none() {
-            self.wrong(value, &self.id_rule(what));
-        }
-        value.text().map(str::to_owned)
-    }
-
-    /// The rule for an id, for values that are not text.
-    pub(super) fn id_rule(&self, what: &str) -> String {
-        rule_of(match what {
-            "reflection_model" => check::reflection_model(self.registry, ""),
-            "shading_model" => check::shading_model(self.registry, ""),
-            "light type" => check::light_type(self.registry, ""),
-            _ => check::object_type(self.registry, ""),
-        })
-    }
-
-    /// A number, if given; its rule is checked later.
-    pub(super) fn number_field(
-        &mut self,
-        fields: &Fields,
-        key: &str,
-        check: fn(f32) -> check::Rule,
-    ) -> Option<f32> {
-        let value = fields.get(key)?;
-        value.number().or_else(|| self.number(value, &rule_of(check(f32::NAN))))
-    }
-
     /// A number in 32 bits; a number that is too large becomes infinite, so that its rule rejects it.
     pub(super) fn number(&mut self, value: Cursor, rule: &str) -> Option<f32> {
         let number = value.number();
@@ -139,8 +91,7 @@ impl Reader<'_> {
     }
 
     /// Three numbers; NaN if they could not be read.
-    pub(super) fn vector(&mut self, value: Cursor, what: &str) -> Vec3 {
-        let rule = || format!("{what} must be three numbers: [x, y, z]");
+    pub(super) fn vector(&mut self, value: Cursor, rule: impl Fn() -> String) -> Vec3 {
         let Some(list) = value.list().filter(|list| list.len() == 3) else {
             self.wrong(value, &rule());
             return Vec3::NAN;
@@ -200,11 +151,6 @@ impl Reader<'_> {
         let [r, g, b] = colour;
         Some([r?, g?, b?])
     }
-}
-
-/// The rule broken in a check.
-pub(super) fn rule_of(rule: check::Rule) -> String {
-    rule.err().unwrap_or_default()
 }
 
 /// The message that a value of another type is needed.

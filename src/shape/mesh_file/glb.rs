@@ -30,11 +30,11 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
     match (word(4), word(8)) {
         (Some(2), Some(length)) if (20..=bytes.len()).contains(&(length as usize)) => {}
         (Some(2) | None, _) => return Err("the file ends before the glTF does".to_owned()),
-        (Some(version), _) => return Err(format!("it is glTF of version {version}; version 2 is read")),
+        (Some(version), _) => return Err(format!("it is glTF of version {version}; only version 2 is read")),
     }
-    let wrong = |e: gltf::Error| format!("it is no valid glTF: {}", mistake(&e));
+    let wrong = |e: gltf::Error| format!("it is not valid glTF: {}", mistake(&e));
     let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(wrong)?;
-    let json = json::read(json.into_owned()).map_err(|what| format!("it is no valid glTF: {what}"))?;
+    let json = json::read(json.into_owned()).map_err(|what| format!("it is not valid glTF: {what}"))?;
     // The library's validation trusts these.
     for (i, mesh) in json.meshes.iter().enumerate() {
         let mut attributes = mesh.primitives.iter().flat_map(|p| p.attributes.values());
@@ -62,14 +62,14 @@ fn mistake(error: &gltf::Error) -> String {
             let path = shortened(path.as_str());
             match mistake {
                 Mistake::Missing => format!("{path} is missing"),
-                Mistake::IndexOutOfBounds => format!("{path} is the index of something that is not there"),
-                Mistake::Invalid => format!("{path} has a value that it must not have"),
+                Mistake::IndexOutOfBounds => format!("{path} is an index out of range"),
+                Mistake::Invalid => format!("{path} has an invalid value"),
                 Mistake::Oversize => format!("{path} is too large"),
-                Mistake::Unsupported => format!("{path} names an extension that is not read"),
+                Mistake::Unsupported => format!("{path} names an extension that is not supported"),
             }
         }
         gltf::Error::Deserialize(error) => {
-            format!("its JSON has a mistake in line {}, column {}", error.line(), error.column())
+            format!("its JSON has an error in line {}, column {}", error.line(), error.column())
         }
         gltf::Error::Binary(binary::Error::Length { .. } | binary::Error::ChunkLength { .. }) => {
             "one of its chunks is longer than the file".to_owned()
@@ -81,13 +81,13 @@ fn mistake(error: &gltf::Error) -> String {
 /// The meshes of the scene with their transformations: those of the nodes below its roots.
 fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, Mat4)>, String> {
     let scene = document.default_scene().or_else(|| document.scenes().next());
-    let Some(scene) = scene else { return Err("it shows no scene".to_owned()) };
+    let Some(scene) = scene else { return Err("it has no scene".to_owned()) };
     let mut seen = vec![false; document.nodes().len()];
     let mut next: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
     let mut meshes = Vec::new();
     while let Some((node, above)) = next.pop() {
         if std::mem::replace(&mut seen[node.index()], true) {
-            return Err(format!("nodes[{}] is below more than one node, or below itself", node.index()));
+            return Err(format!("nodes[{}] has more than one parent, or is its own ancestor", node.index()));
         }
         let place = above * Mat4::from_cols_array_2d(&node.transform().matrix());
         next.extend(node.children().map(|child| (child, place)));
@@ -161,7 +161,7 @@ fn floats<const N: usize>(
     blob: &[u8],
 ) -> Result<Vec<[f32; N]>, String> {
     if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, dimensions) {
-        return Err(format!("{what} must be vectors of {N} numbers of 32 bits"));
+        return Err(format!("{what} must be vectors of {N} 32-bit floats"));
     }
     let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
     let vector = |item: &[u8]| std::array::from_fn(|i| number(&item[4 * i..]));
@@ -174,7 +174,7 @@ fn indices(accessor: &Accessor, blob: &[u8]) -> Result<Vec<u32>, String> {
         (DataType::U8, Dimensions::Scalar) => |b| u32::from(b[0]),
         (DataType::U16, Dimensions::Scalar) => |b| u32::from(u16::from_le_bytes([b[0], b[1]])),
         (DataType::U32, Dimensions::Scalar) => |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        _ => return Err(format!("{what} must be whole numbers of 8, 16 or 32 bits, 0 or more")),
+        _ => return Err(format!("{what} must be unsigned integers of 8, 16 or 32 bits")),
     };
     Ok(items(accessor, accessor.data_type().size(), what, blob)?.map(index).collect())
 }
@@ -188,10 +188,10 @@ fn items<'a>(
     blob: &'a [u8],
 ) -> Result<impl Iterator<Item = &'a [u8]> + use<'a>, String> {
     let Some(view) = accessor.view().filter(|_| accessor.sparse().is_none()) else {
-        return Err(format!("{what} is sparse, which is not read"));
+        return Err(format!("{what} is sparse, which is not supported"));
     };
     if !matches!(view.buffer().source(), Source::Bin) {
-        return Err(format!("{what} is in another file, which is not read: it must be part of this one"));
+        return Err(format!("{what} is in another file, but must be part of this one"));
     }
     let count = accessor.count();
     if count > 3 * MAX_VERTICES {
@@ -203,7 +203,7 @@ fn items<'a>(
         let end = count.checked_sub(1).map_or(Some(0), |last| stride.checked_mul(last)?.checked_add(size))?;
         view.get(accessor.offset()..accessor.offset().checked_add(end)?)
     };
-    let bytes = all().ok_or_else(|| format!("{what} goes on beyond the end of its data"))?;
+    let bytes = all().ok_or_else(|| format!("{what} extends beyond the end of its data"))?;
     Ok((0..count).map(move |i| &bytes[i * stride..][..size]))
 }
 
@@ -338,20 +338,20 @@ mod tests {
                 "meshes[0]: an index is 3, but there are 3 positions",
                 (|json| json["accessors"][0]["count"] = json!(3)) as fn(&mut Value),
             ),
-            ("meshes[0]: POSITION goes on beyond the end", |json| {
+            ("meshes[0]: POSITION extends beyond the end", |json| {
                 json["accessors"][0]["count"] = json!(4000)
             }),
-            ("meshes[0]: POSITION goes on beyond", |json| {
+            ("meshes[0]: POSITION extends beyond", |json| {
                 json["accessors"][0]["byteOffset"] = json!(u64::MAX / 2)
             }),
-            ("meshes[0]: POSITION goes on beyond", |json| {
+            ("meshes[0]: POSITION extends beyond", |json| {
                 json["bufferViews"][0]["byteOffset"] = json!(u64::MAX)
             }),
             ("meshes[0]: POSITION has 1000000000000000000 items", |json| {
                 json["accessors"][0]["count"] = json!(1_000_000_000_000_000_000_u64);
             }),
-            ("meshes[0]: NORMAL goes on beyond", |json| json["accessors"][1]["byteOffset"] = json!(92)),
-            ("meshes[0]: the list of indices must be whole", |json| {
+            ("meshes[0]: NORMAL extends beyond", |json| json["accessors"][1]["byteOffset"] = json!(92)),
+            ("meshes[0]: the list of indices must be unsigned", |json| {
                 json["accessors"][2]["componentType"] = json!(5126)
             }),
             ("meshes[0]: POSITION must be vectors of 3", |json| json["accessors"][0]["type"] = json!("VEC2")),
@@ -365,22 +365,22 @@ mod tests {
             ("meshes[0]: POSITION is in another file", |json| {
                 json["buffers"][0]["uri"] = json!("../secret.bin")
             }),
-            ("nodes[0] is below more than one node, or below itself", |json| {
+            ("nodes[0] has more than one parent, or is its own ancestor", |json| {
                 json["nodes"][1]["children"] = json!([0])
             }),
             ("meshes[0]: there is no accessor 7; there are 3, counted from 0", |json| {
                 json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(7);
             }),
-            ("it shows no scene", |json| {
+            ("it has no scene", |json| {
                 json.as_object_mut().expect("an object").retain(|key, _| !key.starts_with("scene"));
             }),
-            ("it is no valid glTF: nodes[1].mesh is the index of something that is not there", |json| {
+            ("it is not valid glTF: nodes[1].mesh is an index out of range", |json| {
                 json["nodes"][1]["mesh"] = json!(7)
             }),
-            ("it is no valid glTF: string \"none\" in the place of a list (line 1, column ", |json| {
+            ("it is not valid glTF: string \"none\" instead of a list (line 1, column ", |json| {
                 json["nodes"] = json!("none")
             }),
-            ("it is no valid glTF: ", |json| {
+            ("it is not valid glTF: ", |json| {
                 json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
                 json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
             }),
@@ -392,7 +392,7 @@ mod tests {
         let whole = file(&json, &data);
         let mut old = whole.clone();
         old[4] = 1;
-        assert_eq!(numbers(&old), Err("it is glTF of version 1; version 2 is read".to_owned()));
+        assert_eq!(numbers(&old), Err("it is glTF of version 1; only version 2 is read".to_owned()));
         for length in 4..whole.len() {
             let said = numbers(&whole[..length]).expect_err("cut off");
             assert_eq!(said, "the file ends before the glTF does", "{length}");

@@ -49,7 +49,7 @@ fn in_words(error: &Error) -> String {
                 "sequence" => "a list",
                 other => other,
             };
-            format!("{} in the place of {}", shortened(found), kind(expected))
+            format!("{} instead of {}", shortened(found), kind(expected))
         }
         None => shortened(what),
     };
@@ -105,14 +105,11 @@ mod tests {
     fn mistakes_are_told_in_words() {
         let said = |text: &str| read(text.as_bytes().to_vec()).map(drop).expect_err(text);
         for (text, expected) in [
-            ("{\"asset\": 7}", "integer `7` in the place of an object (line 1, column "),
-            ("{\"nodes\": {}}", "an object in the place of a list (line 1, column "),
-            (
-                "{\"nodes\": [{\"mesh\": \"one\"}]}",
-                "string \"one\" in the place of a whole number, 0 or more",
-            ),
-            ("{\"scene\": -1}", "integer `-1` in the place of a whole number, 0 or more"),
-            ("{\"nodes\": [{\"scale\": [\"x\"]}]}", "string \"x\" in the place of a number"),
+            ("{\"asset\": 7}", "integer `7` instead of an object (line 1, column "),
+            ("{\"nodes\": {}}", "an object instead of a list (line 1, column "),
+            ("{\"nodes\": [{\"mesh\": \"one\"}]}", "string \"one\" instead of a whole number, 0 or more"),
+            ("{\"scene\": -1}", "integer `-1` instead of a whole number, 0 or more"),
+            ("{\"nodes\": [{\"scale\": [\"x\"]}]}", "string \"x\" instead of a number"),
             ("{}", "missing field `asset` (line 1, column "),
             ("{", "EOF while parsing an object (line 1, column "),
         ] {

@@ -36,11 +36,11 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     } else if bytes.starts_with(ply::BEGIN) {
         ply::read(bytes, &mut builder)?;
     } else if bytes.trim_ascii_start().starts_with(b"{") {
-        return Err(whole("it may be a glTF file of text; those must be binary (.glb)".to_owned()));
+        return Err(whole("it may be a text glTF file; only binary ones (.glb) are read".to_owned()));
     } else {
         obj::read(bytes, &mut builder)?;
         if builder.is_empty() {
-            let message = "it begins neither as glTF binary nor as PLY, and has no polygons (f) as OBJ";
+            let message = "it does not begin like binary glTF or PLY, and has no OBJ polygons (f)";
             return Err(whole(message.to_owned()));
         }
     }
@@ -146,12 +146,12 @@ mod tests {
     #[test]
     fn formats_are_told_apart_by_their_content() {
         let said = |bytes: &[u8]| read(bytes).expect_err("no model").message;
-        assert!(said(b"").contains("begins neither as glTF binary nor as PLY"));
-        assert!(said(b"a letter\nto nobody").contains("has no polygons (f) as OBJ"));
-        assert!(said(b" {\"asset\":{}}").contains("must be binary (.glb)"));
+        assert!(said(b"").contains("does not begin like binary glTF or PLY"));
+        assert!(said(b"a letter\nto nobody").contains("has no OBJ polygons (f)"));
+        assert!(said(b" {\"asset\":{}}").contains("only binary ones (.glb) are read"));
         assert!(said(b"glTF").contains("ends before"));
-        assert!(said(b"ply\nformat").contains("no valid PLY file"));
-        assert!(said(&[0xff; 100]).contains("begins neither"));
+        assert!(said(b"ply\nformat").contains("not a valid PLY file"));
+        assert!(said(&[0xff; 100]).contains("does not begin like"));
         let square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
         assert!(read(square.as_bytes()).is_ok());
     }

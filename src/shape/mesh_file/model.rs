@@ -80,7 +80,9 @@ impl Builder {
         }
         if let Some(corner) = corners.iter().find(|c| !c.position.is_finite()) {
             let [x, y, z] = corner.position.to_array();
-            return Err(format!("a corner of polygon {nth} is at ({x}, {y}, {z}), which is nowhere"));
+            return Err(format!(
+                "a corner of polygon {nth} is at ({x}, {y}, {z}), but positions must be finite"
+            ));
         }
         let begin = self.corners.len();
         for corner in corners {
@@ -105,7 +107,7 @@ impl Builder {
             n => self.drawn += n - 2,
         }
         if self.drawn > MAX_POLYGONS {
-            return Err(format!("it has more than the {MAX_POLYGONS} polygons that fit"));
+            return Err(format!("it has more than {MAX_POLYGONS} polygons, the most allowed"));
         }
         self.polygons.push(Read { end: self.corners.len(), brushed: texture_direction(corners) });
         Ok(())
@@ -332,14 +334,17 @@ mod tests {
         let said = |points: &[[f32; 3]]| add(&mut Builder::default(), points).expect_err("refused");
         for nowhere in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let said = said(&[[0.0; 3], [1.0; 3], [nowhere, 0.0, 0.0]]);
-            assert!(said.starts_with("a corner of polygon 1 is at (") && said.ends_with("nowhere"), "{said}");
+            assert!(
+                said.starts_with("a corner of polygon 1 is at (") && said.ends_with("must be finite"),
+                "{said}"
+            );
         }
         assert_eq!(said(&[[0.0; 3]; 129]), "polygon 1 has 129 corners; at most 128 are read");
         let mut many = Builder { drawn: MAX_POLYGONS - 2, ..Builder::default() };
         add(&mut many, &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]).expect("one");
         let five = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [1.0, 3.0, 0.0], [0.0, 2.0, 0.0]];
         let full = add(&mut many, &five).expect_err("three triangles");
-        assert_eq!(full, "it has more than the 500000 polygons that fit");
+        assert_eq!(full, "it has more than 500000 polygons, the most allowed");
     }
 
     /// Two triangles that meet at a right angle, with normals of each at both ends of the edge.

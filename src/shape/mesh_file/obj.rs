@@ -56,7 +56,7 @@ fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Opt
 /// Appends to a list of a file, which is limited to [`MAX_VERTICES`].
 fn push<T>(list: &mut Vec<T>, item: T, what: &str) -> Result<(), Cow<'static, str>> {
     if list.len() == MAX_VERTICES {
-        return Err(format!("the file has more than {MAX_VERTICES} {what}, the most read").into());
+        return Err(format!("the file has more than {MAX_VERTICES} {what}, the most allowed").into());
     }
     list.push(item);
     Ok(())
@@ -114,7 +114,7 @@ impl Lists {
                 for word in words {
                     if self.named.len() == MOST_NAMED {
                         return Err(format!(
-                            "the faces (f) have more than {MOST_NAMED} corners, the most read"
+                            "the faces (f) have more than {MOST_NAMED} corners, the most allowed"
                         )
                         .into());
                     }
@@ -184,7 +184,7 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
     ][kind];
     let have = match count {
         0 => format!("the file has no {all}"),
-        1 => format!("there is 1 of the {all}"),
+        1 => format!("there is only 1 of the {all}"),
         n => format!("there are {n} {all}"),
     };
     format!(
@@ -315,11 +315,14 @@ mod tests {
             ("v 0 0 0\nf 1/1/1/1 1 1\n", "2: a face (f) must name its corners"),
             (
                 "v 0 0 0\nf 1 2 3\n",
-                "2: this face (f) names the vertex 2, but there is 1 of the vertices (v); they",
+                "2: this face (f) names the vertex 2, but there is only 1 of the vertices (v); they",
             ),
-            ("v 0 0 0\nf -1 -2 -3\n", "2: this face (f) names the vertex -2, but there is 1"),
-            ("v 0 0 0\nf 0 0 0\n", "2: this face (f) names the vertex 0, but there is 1"),
-            ("v 0 0 0\nvn 0 0 1\nf 1//9 1//1 1//1\n", "3: this face (f) names the normal 9, but there is 1"),
+            ("v 0 0 0\nf -1 -2 -3\n", "2: this face (f) names the vertex -2, but there is only 1"),
+            ("v 0 0 0\nf 0 0 0\n", "2: this face (f) names the vertex 0, but there is only 1"),
+            (
+                "v 0 0 0\nvn 0 0 1\nf 1//9 1//1 1//1\n",
+                "3: this face (f) names the normal 9, but there is only 1",
+            ),
             ("v 0 0 0\nvt 0 0\nf 1/9 1/1 1/1\n", "3: this face (f) names the texture coordinate 9, but"),
             (
                 "v 0 0 0\n\nf 1/1 1/1 1/1\n",
@@ -338,7 +341,7 @@ mod tests {
             ("v 0 0 0\nf /1 1 1\n", "2: a face (f) must name its corners"),
             (
                 "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-                "4: a corner of polygon 1 is at (NaN, 0, 0), which is nowhere",
+                "4: a corner of polygon 1 is at (NaN, 0, 0), but positions must be finite",
             ),
             ("v 1e99 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "4: a corner of polygon 1 is at (inf, 0, 0)"),
             ("usemtl\n", "1: a material (usemtl) must have a name"),

@@ -131,7 +131,7 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
         let corners: Option<Vec<_>> = face.iter().flatten().map(corner).collect();
         let corners = corners.filter(|_| face.is_some()).ok_or_else(|| {
             let count = vertices.len();
-            whole(format!("face {i} has a corner that is none of the {count} vertices, counted from 0"))
+            whole(format!("face {i} has a corner that is not one of the {count} vertices, counted from 0"))
         })?;
         to.polygon(&corners).map_err(whole)?;
     }
@@ -160,11 +160,11 @@ fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
     /// The beginnings of the library's messages, which are all that identifies the kind of an error, and
     /// ours.
     const KINDS: &[(&str, &str)] = &[
-        ("No format line", "its header has no line format"),
-        ("Invalid version", "its header names no version behind the format, such as 1.0"),
+        ("No format line", "its header has no format line"),
+        ("Invalid version", "its header has no version after the format, such as 1.0"),
         ("Expected magic number", "its first line must be ply alone"),
-        ("Unexpected 'ply'", "its header has the line ply twice"),
-        ("Found contradicting format", "its header has two lines format that differ"),
+        ("Unexpected 'ply'", "its header has two ply lines"),
+        ("Found contradicting format", "its header has two different format lines"),
         ("Property", "its header has a property before the first element"),
     ];
     let said = error.to_string();
@@ -172,15 +172,15 @@ fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
     let line = error.line().and_then(|line| bytes.split(|byte| *byte == b'\n').nth(line.checked_sub(1)?));
     let what = match KINDS.iter().find(|(theirs, _)| said.starts_with(*theirs)) {
         Some((_, ours)) => *ours,
-        None if error.kind() == ErrorKind::UnexpectedEof => "the file ends before the line end_header",
+        None if error.kind() == ErrorKind::UnexpectedEof => "the file ends before the end_header line",
         None if error.line().is_none() => "its header is not text",
         None => match line.unwrap_or_default().split(u8::is_ascii_whitespace).next() {
-            Some(b"element") => "behind element must come a name and a whole number, 0 or more",
+            Some(b"element") => "element must be followed by a name and a whole number, 0 or more",
             Some(b"property") => {
-                "behind property must come a type and a name, such as float x or list uchar int vertex_indices"
+                "property must be followed by a type and a name, such as float x or list uchar int vertex_indices"
             }
             Some(b"format") => {
-                "behind format must come ascii, binary_little_endian or binary_big_endian, and 1.0"
+                "format must be followed by ascii, binary_little_endian or binary_big_endian, and 1.0"
             }
             _ => {
                 "a line of its header must begin with format, comment, obj_info, element, property or \
@@ -198,12 +198,12 @@ fn in_element(error: &ParseError, element: &ElementDef, is_text: bool, bytes: &[
         ErrorKind::UnexpectedEof => {
             format!("the file ends before all {} of the element {name}", element.count)
         }
-        _ if is_text && error.line().is_none() => "it is not text, as its header says".to_owned(),
+        _ if is_text && error.line().is_none() => "it is not text, although its header says so".to_owned(),
         _ if is_text => format!(
             "this line must have a number for each property of the element {name}, and the length of each list \
              before it"
         ),
-        _ => format!("the element {name} is not as its header says"),
+        _ => format!("the element {name} does not match the header"),
     };
     no_valid(error, is_text, &what, bytes)
 }
@@ -219,7 +219,7 @@ fn no_valid(error: &ParseError, is_text: bool, what: &str, bytes: &[u8]) -> File
     };
     FileProblem {
         line: line.filter(|line| is_text && *line > 0),
-        message: format!("it is no valid PLY file: {what}"),
+        message: format!("it is not a valid PLY file: {what}"),
     }
 }
 
@@ -297,28 +297,28 @@ mod tests {
     #[test]
     fn mistakes_are_told_with_their_lines() {
         for (from, to, expected) in [
-            ("format ascii 1.0\n", "", "0: it is no valid PLY file: its header has no line format"),
+            ("format ascii 1.0\n", "", "0: it is not a valid PLY file: its header has no format line"),
             (
                 "element vertex 4",
                 "element vertex four",
-                "4: it is no valid PLY file: behind element must come a name",
+                "4: it is not a valid PLY file: element must be followed by a name",
             ),
             (
                 "element vertex 4",
                 "element vertex -1",
-                "4: it is no valid PLY file: behind element must come a name",
+                "4: it is not a valid PLY file: element must be followed by a name",
             ),
             (
                 "property double y",
                 "property y",
-                "6: it is no valid PLY file: behind property must come a type",
+                "6: it is not a valid PLY file: property must be followed by a type",
             ),
             (
                 "comment a square",
                 "remark a square",
-                "3: it is no valid PLY file: a line of its header must begin",
+                "3: it is not a valid PLY file: a line of its header must begin",
             ),
-            ("end_header\n", "", "11: it is no valid PLY file: a line of its header must begin"),
+            ("end_header\n", "", "11: it is not a valid PLY file: a line of its header must begin"),
             ("element vertex 4", "element point 4", "0: its header has no element vertex"),
             (
                 "property float z\n",
@@ -340,23 +340,27 @@ mod tests {
             (
                 "element face 1",
                 "element face 2",
-                "17: it is no valid PLY file: the file ends before all 2 of the element face",
+                "17: it is not a valid PLY file: the file ends before all 2 of the element face",
             ),
             (
                 "2 1 0 7",
                 "2 one 0 7",
-                "14: it is no valid PLY file: this line must have a number for each property",
+                "14: it is not a valid PLY file: this line must have a number for each property",
             ),
-            ("2 1 0 7", "2 1", "14: it is no valid PLY file: "),
-            ("4 0 1 2 3", "4 0 1 2", "16: it is no valid PLY file: "),
+            ("2 1 0 7", "2 1", "14: it is not a valid PLY file: "),
+            ("4 0 1 2 3", "4 0 1 2", "16: it is not a valid PLY file: "),
             (
                 "4 0 1 2 3",
                 "4 0 1 2 4",
-                "0: face 0 has a corner that is none of the 4 vertices, counted from 0",
+                "0: face 0 has a corner that is not one of the 4 vertices, counted from 0",
             ),
-            ("4 0 1 2 3", "4 0 1 2 -1", "0: face 0 has a corner that is none of the 4 vertices"),
+            ("4 0 1 2 3", "4 0 1 2 -1", "0: face 0 has a corner that is not one of the 4 vertices"),
             ("4 0 1 2 3", "2 0 1", "it has no polygons with an area"),
-            ("2 0 0 7", "1e99 0 0 7", "0: a corner of polygon 1 is at (inf, 0, 0), which is nowhere"),
+            (
+                "2 0 0 7",
+                "1e99 0 0 7",
+                "0: a corner of polygon 1 is at (inf, 0, 0), but positions must be finite",
+            ),
         ] {
             assert!(SQUARE.contains(from), "{from}");
             let said = numbers(SQUARE.replacen(from, to, 1).as_bytes()).expect_err(to);
@@ -365,7 +369,7 @@ mod tests {
         }
         assert!(numbers(b"ply").is_err());
         let said = numbers(b"ply\n\xff\xfe").expect_err("no text");
-        assert_eq!(said, "2: it is no valid PLY file: its header is not text");
+        assert_eq!(said, "2: it is not a valid PLY file: its header is not text");
     }
 
     #[test]

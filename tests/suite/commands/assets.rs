@@ -88,11 +88,11 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     for (name, expected) in [
         (
             "Über",
-            "NAME is \"Über\", but a name must begin with a letter, and have letters a–z, digits and spaces alone, at most 40; ueber would do",
+            "NAME is \"Über\", but a name must begin with a letter and have only letters a–z, digits and spaces, at most 40; for example ueber",
         ),
         (
             "3colours",
-            "a name must begin with a letter, and have letters a–z, digits and spaces alone, at most 40; colours would do",
+            "a name must begin with a letter and have only letters a–z, digits and spaces, at most 40; for example colours",
         ),
         ("phong", "is the id of a built-in model"),
     ] {

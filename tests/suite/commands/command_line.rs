@@ -47,7 +47,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
         (&["render", "-o", "x.jpg"], "only PNG files can be written; did you mean x.png?"),
-        (&["render", "-", "-"], "- can be given once"),
+        (&["render", "-", "-"], "- can be given only once"),
         (&["render", "--exposure", "x"], "it must be a number of EV, e.g. -1.5"),
         (&["plot", "phong", "--theta-i", "x"], "it must be a number of degrees, e.g. 22.5"),
         (&["plot", "phong", "--phi-i", "1,5"], "it must be a number of degrees, e.g. 22.5"),

@@ -344,7 +344,7 @@ fn a_link_to_nothing_says_so() {
     let at = folder.path();
     symlink("nowhere/x.png", at.join("link.png")).expect("linked");
     let ran = run(&mut lcm(at, ["check", "link.png"]));
-    refused(&ran, 1, "link.png: file not found; it is a link to nowhere/x.png, which is not there\n");
+    refused(&ran, 1, "link.png: file not found; it is a link to nowhere/x.png, which does not exist\n");
 }
 
 #[test]
@@ -381,7 +381,7 @@ fn pictures_go_to_devices_and_pipes() {
     assert!(bounded("reading", move || reader.join().expect("no panic")).starts_with(PNG));
     assert_eq!(files::kind(&at.join("pipe.png")).expect("there"), Kind::Pipe);
     // And without a reader.
-    refused(&run(&mut render(at, &["-o", "pipe.png"])), 4, "nobody reads from it");
+    refused(&run(&mut render(at, &["-o", "pipe.png"])), 4, "no process reads from it");
     // The content of the file on standard output is kept, and the open file is written to.
     let script = "echo before > all; \"$LCM\" render --size 32x32 --renderer cpu -o /dev/stdout >> all; echo after >> all";
     assert_eq!(run(&mut shell(at, script)).status, Some(0));

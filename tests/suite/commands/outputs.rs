@@ -109,7 +109,7 @@ fn of_four_exports_to_one_new_place_one_wins_and_the_others_say_so() {
         for run in ended.iter().filter(|run| run.status != Some(0)) {
             assert_eq!(run.status, Some(4), "{form}: {}", run.err);
             let late = run.err.contains(&format!("{place} exists; it was not overwritten"));
-            let lost = run.err.contains(&format!("somebody else wrote {place} while this export was made"));
+            let lost = run.err.contains(&format!("another program wrote {place} during this export"));
             assert!(late || lost, "{form}: {}", run.err);
         }
         assert_eq!(names(folder.path()), [place, "s.json"], "{form}");

@@ -125,7 +125,7 @@ fn mistakes_are_explained() {
             &["phong:k_d=0.2"],
             "phong:k_d=0.2: k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1",
         ),
-        (&["phong:alpha"], "phong:alpha: after a colon must stand NAME=VALUE, e.g. phong:alpha=20"),
+        (&["phong:alpha"], "phong:alpha: a colon must be followed by NAME=VALUE, e.g. phong:alpha=20"),
         (&["phong", "--set", "rouhgness=1"], "--set rouhgness=1: phong has no parameter rouhgness"),
         (
             &["phong", "--kind", "fresnel"],
@@ -152,7 +152,7 @@ fn mistakes_are_explained() {
         ),
         (
             &["--data", "krylon_blue", "--kind", "slice"],
-            "--kind slice: Krylon blue was measured at single directions only: there is no image slice of it",
+            "--kind slice: Krylon blue was measured only at single directions, so it has no image slice",
         ),
         (&["phong:alpha=20:alpha=30"], "phong:alpha=20:alpha=30: alpha is given twice"),
         (&["phong:base_color=1,2,3:base_colour=4,5,6"], "base_colour is given twice"),

@@ -81,7 +81,7 @@ fn converged(scene: &Scene, samples: u32, noise: Option<f32>) -> (reference::Pic
 fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
     let folder = folder();
     let whole = "it must be a whole number from 1 to 1048576, e.g. 1000";
-    let percent = "it must be a number of per cent from 0.01 to 100, e.g. 1 or 0.5%";
+    let percent = "it must be a percentage from 0.01 to 100, e.g. 1 or 0.5%";
     for (option, value, rule) in [
         ("--light-samples", "0", whole),
         ("--light-samples", "-1", whole),
@@ -114,7 +114,7 @@ fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
         ),
         (
             &["--channel", "normals", "--noise", "1"],
-            "--noise cannot be used with --channel normals, which shows no light of lamps; channels that do are luminance, \
+            "--noise cannot be used with --channel normals, which does not depend on light samples; channels that do are luminance, \
              clipped, not_a_number and one_light",
         ),
         (

@@ -8,14 +8,14 @@ use bevy::{
 };
 use bevy_egui::egui::{Key, Modifiers};
 use lights_camera_models::{
-    document::{Edit, VariantField},
+    document::Edit,
     matching::{self, Match, Request, What, match_view},
     panel::state::{Action, CompareCommand, Effect, LabEffect, MatchCommand, Matching, Session, Severity},
     parameter::{Value, Values},
     progress::Progress,
     registry::Registry,
     scene::{
-        Scene, Variant,
+        Part, Scene, Variant,
         load::{self, Defaults},
     },
     window::LabPlugins,
@@ -125,7 +125,7 @@ fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
         lights_camera_models::scene::save::to_json(&alone, None, &Registry::builtin())
     })
     .expect("writable");
-    let alone = "alone.json: the scene has no variants, so there is no view to be matched to view A";
+    let alone = "alone.json: the scene has no variants, so there is no view to match to view A";
     refused(&lcm_in(at, &["match", "alone.json"], b""), 1, alone);
     let view = "a.json: --view: there is no view \"D\"; it must be A or B (half)";
     refused(&lcm_in(at, &["match", "a.json", "--view", "D"], b""), 1, view);
@@ -156,7 +156,7 @@ fn compared() -> Bench {
 pub fn ask(bench: &mut Bench, model: &str) {
     let layout = lights_camera_models::scene::comparison::Layout::SideBySide;
     bench.apply(Action::Compare(CompareCommand::Layout(layout)));
-    bench.apply(Action::Edit(Edit::Model(model.to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model.to_owned())));
     bench.apply(Action::Match(MatchCommand::Ask(1)));
 }
 
@@ -279,7 +279,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     // A scene that changes meanwhile is a different one.
     app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(start(What::Picture)));
     app.update();
-    let edit = Edit::Variant(0, VariantField::Exposure(Some(1.0)));
+    let edit = Edit::set(Part::Variant(0), Variant::exposure, 1.0);
     app.world_mut().resource_mut::<Session>().apply(Action::Edit(edit), &registry);
     let (severity, text) = matched(&mut app, Vec::new());
     assert_eq!(severity, Severity::Warning);
@@ -292,8 +292,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     // Views that cannot be matched are reported.
     let unknown = Effect::Match { view: 2, what: What::Lobe, parameters: vec!["alpha"] };
     let said = matched(&mut app, vec![unknown]);
-    let expected =
-        "View C was not matched: there is no view C to be matched; the scene has 2 views: A and B.";
+    let expected = "View C was not matched: there is no view C to match; the scene has 2 views: A and B.";
     assert_eq!(said, (Severity::Error, expected.to_owned()));
 }
 

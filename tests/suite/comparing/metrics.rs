@@ -592,7 +592,7 @@ fn limits_set_the_exit_status() {
     for limit in ["covered.rmse=1", "light_rmse=1"] {
         let (status, said) = compare(&["--fail-above", limit]);
         assert_eq!(status, Some(1));
-        assert!(said.contains(" is unknown: "), "{said}");
+        assert!(said.contains(" cannot be determined: "), "{said}");
     }
     let scenes = ["compare", "all.json", "--size", "96x54", "--fail-above", "covered.flip=0.00001"];
     let covered = run(folder.path(), &scenes);
@@ -608,20 +608,16 @@ fn the_command_says_what_is_wrong() {
     fs::write(folder.path().join("full.json"), full_scene().to_string()).expect("written");
     for (arguments, status, expected) in [
         (&["compare"][..], 2, "required"),
-        (&["compare", "-", "-"], 2, "- can be given once"),
+        (&["compare", "-", "-"], 2, "- can be given only once"),
         (&["compare", "grey.png"], 2, "grey.png is a picture; name another file to compare it with"),
-        (
-            &["compare", "plain.json"],
-            1,
-            "plain.json has no variants to be compared with; add one to it, or name",
-        ),
+        (&["compare", "plain.json"], 1, "plain.json has no variants to compare with; add one, or name"),
         (
             &["compare", "all.json", "--with", "Pong"],
             1,
             "all.json: there is no view \"Pong\"; it must be A, B (Phong), C or D (dark); did you mean \"Phong\"?",
         ),
-        (&["compare", "all.json", "--with", "A"], 2, "it must not be A"),
-        (&["compare", "all.json", "plain.json", "--with", "B"], 2, "by view A of each; omit --with"),
+        (&["compare", "all.json", "--with", "A"], 2, "--with must be a view other than A"),
+        (&["compare", "all.json", "plain.json", "--with", "B"], 2, "view A of each is compared; omit --with"),
         (&["compare", "nothing.json", "broken.json"], 1, "nothing.json: file not found"),
         (&["compare", "nothing.json", "broken.json"], 1, "broken.json:1:2: not JSON"),
         (&["compare", "many.json"], 1, "at most 3 variants"),
@@ -644,7 +640,7 @@ fn the_command_says_what_is_wrong() {
         (
             &["compare", "plain.json", "grey.png", "--values", "light"],
             1,
-            "grey.png: the light of a picture is not known; --values codes compares what it displays",
+            "grey.png: the linear light of a picture file is unknown; --values codes compares the display codes",
         ),
         (&["compare", "all.json", "--layout", "sideways"], 2, "the layout must be"),
         (&["compare", "all.json", "--layout", "diference"], 2, "did you mean \"difference\"?"),
@@ -664,7 +660,7 @@ fn the_command_says_what_is_wrong() {
         (
             &["compare", "all.json", "--size", "3x3", "-o", "x.png"],
             2,
-            "have no room for the views side by side",
+            "are too few for the views side by side",
         ),
         (&["compare", "all.json", "-o", "x.jpg"], 2, "only PNG files can be written; did you mean x.png?"),
         (&["compare", "all.json", "-o", "folder"], 2, "-o folder: name a PNG file"),
@@ -673,7 +669,7 @@ fn the_command_says_what_is_wrong() {
         (
             &["render", "plain.json", "--layout", "wipe"],
             1,
-            "plain.json: there are no variants for --layout wipe",
+            "plain.json: the scene has no variants for --layout wipe",
         ),
         (
             &["render", "all.json", "--view", "E"],
@@ -686,7 +682,7 @@ fn the_command_says_what_is_wrong() {
         (
             &["render", "all.json", "--size", "3x3", "--layout", "side_by_side"],
             2,
-            "has no room for the views",
+            "is too small for the views",
         ),
     ] {
         let run = lcm_in(folder.path(), arguments, b"");
@@ -701,8 +697,8 @@ fn the_command_says_what_is_wrong() {
     let mut changed = bytes.clone();
     changed[pixels + 4 + length] ^= 1;
     for (bytes, expected) in [
-        (&bytes[..pixels + 4 + length / 2], "it ends too early; copy it once more from where it came"),
-        (&changed, "a checksum is wrong, so some of its bytes were changed; copy it once more"),
+        (&bytes[..pixels + 4 + length / 2], "it ends too early; copy it again from its source"),
+        (&changed, "a checksum is wrong, so some of its bytes were changed; copy it again"),
     ] {
         fs::write(folder.path().join("half.png"), bytes).expect("written");
         let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
@@ -743,18 +739,18 @@ fn the_damage_of_a_picture_is_told_in_plain_words() {
         (flipped(12, 0x20), "its first part is not a header"),
         // The method of compression, before any checksum.
         (flipped(pixels + 4, 0x0f), "its compressed data cannot be read"),
-        (made(b"IDAT", header(8, 0), &[255, 0]), "its pixels are filtered in a way that PNG does not know"),
+        (made(b"IDAT", header(8, 0), &[255, 0]), "its pixels have a filter that PNG does not define"),
         (made(b"IDAT", header(8, 0), &[0]), "it has fewer pixels than its header says"),
         (made(b"IDAT", header(8, 3), &[0, 0]), "it has no palette for its colours"),
         (made(b"IDAT", header(7, 0), &[0, 0]), "its header is wrong"),
         (made(b"tEXt", header(8, 0), &[0, 0]), "it has no pixels"),
         // A chunk that readers must know.
-        (made(b"XDAT", header(8, 0), &[0, 0]), "one of its parts is not as it must be in PNG"),
+        (made(b"XDAT", header(8, 0), &[0, 0]), "one of its parts is not valid"),
     ] {
         fs::write(folder.path().join("half.png"), bytes).expect("written");
         let half = run(folder.path(), &["compare", "grey.png", "half.png"]);
         let expected =
-            format!("half.png: the picture is damaged: {expected}; copy it once more from where it came\n");
+            format!("half.png: the picture is damaged: {expected}; copy it again from its source\n");
         assert_eq!((half.status, half.err), (Some(1), expected));
     }
     // Whatever is flipped, the decoder's own messages do not reach people.

@@ -7,13 +7,13 @@ use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
     compare::{Pair, Shown, fitting_amplification},
-    document::{Edit, VariantField},
+    document::Edit,
     optics::TermSelection,
     panel::marks::Lens,
     panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
     parameter::{Value, Values},
     scene::{
-        Comparison, Scene, Variant,
+        Comparison, Part, Scene, Variant,
         comparison::{Compared, Layout},
     },
 };
@@ -221,15 +221,15 @@ fn a_view_gets_a_name_and_one_that_others_are_based_on_keeps_it() {
     bench.key(Key::Enter, Modifiers::NONE);
     bench.settle();
     assert_eq!(bench.session.variant().and_then(|v| v.name.as_deref()), Some("sharp"));
-    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("soft".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::name, "soft")));
     let mut scene = (*bench.session.document).clone();
     scene.variants.push(Variant { based_on: Some("soft".to_owned()), ..Variant::default() });
     let mut bench = Bench::new(Session::new(scene));
-    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("hard".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::name, "hard")));
     assert_eq!(bench.session.document.variants[1].based_on.as_deref(), Some("hard"));
-    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name(String::new()))));
+    bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::name, String::new())));
     assert_eq!(bench.session.document.variants[0].name.as_deref(), Some("hard"));
-    assert!(bench.says("based on this one by its name"));
+    assert!(bench.says("based on this one by name"));
 }
 
 /// A scene with three variants, of which the last is based on the first.
@@ -270,9 +270,9 @@ fn views_are_swapped_and_the_others_stay_as_they_are() {
     bench.apply(Action::Undo);
     assert_eq!((0..4).map(|view| seen(&bench, view)).collect::<Vec<_>>(), before);
     // Terms are not part of the scene that would become view A.
-    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Specular)))));
+    bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::terms, TermSelection::Specular)));
     bench.apply(Action::Compare(CompareCommand::Swap(1)));
-    assert!(bench.says("terms of its own"));
+    assert!(bench.says("its own choice of terms"));
     assert_eq!(seen(&bench, 0), before[0]);
 }
 
@@ -375,8 +375,8 @@ fn each_view_has_its_badges_in_every_layout() {
         let mut bench = bench();
         bench.apply(Action::Compare(CompareCommand::Add));
         bench.apply(Action::Compare(CompareCommand::Layout(layout)));
-        let terms = VariantField::Terms(Some(TermSelection::Diffuse));
-        bench.apply(Action::Edit(Edit::Variant(0, terms)));
+        let terms = Edit::set(Part::Variant(0), Variant::terms, TermSelection::Diffuse);
+        bench.apply(Action::Edit(terms));
         bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
         bench.settle();
         let is_sign = |s: &&crate::window::panels::Seen| s.label.contains(" · Clipped: ");
@@ -399,7 +399,7 @@ fn each_view_has_its_badges_in_every_layout() {
     // A click on another view's badge applies to that view.
     let mut bench = bench();
     bench.apply(Action::Compare(CompareCommand::Add));
-    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Diffuse)))));
+    bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::terms, TermSelection::Diffuse)));
     bench.apply(Action::Compare(CompareCommand::Activate(0)));
     bench.settle();
     click(&mut bench, "B · Only the diffuse term");
@@ -410,7 +410,7 @@ fn each_view_has_its_badges_in_every_layout() {
 fn a_view_differs_only_in_what_differs_now() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
-    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
     bench.apply(Action::Expose(1.0));
     bench.settle();
     let texts = |bench: &mut Bench| -> Vec<_> {
@@ -418,7 +418,7 @@ fn a_view_differs_only_in_what_differs_now() {
     };
     assert!(!texts(&mut bench).contains(&"also set in B, to what A has now".to_owned()));
     bench.apply(Action::Compare(CompareCommand::Activate(0)));
-    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
     bench.apply(Action::Compare(CompareCommand::Activate(1)));
     bench.settle();
     let said = texts(&mut bench);

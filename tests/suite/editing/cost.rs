@@ -9,7 +9,7 @@ use bevy::{
 use glam::Vec3;
 use lights_camera_models::{
     custom,
-    document::{Document, Edit, ObjectField, Selection},
+    document::{Document, Edit, Selection},
     panel::{follow::follow_registry, state::Session},
     parameter::Value,
     registry::Registry,
@@ -22,7 +22,7 @@ use lights_camera_models::{
         tables::ParameterTables,
         view::View,
     },
-    scene::{Object, Scene},
+    scene::{Object, Part, Scene},
 };
 
 const OBJECTS: usize = 2_000;
@@ -112,14 +112,28 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
         document.replace("Change by a system", Selection::Room, shown, &registry);
         let costs = cost(&mut renderer, |world| show(world, &document));
         assert_eq!(costs[1], (0, 0));
-        for (field, uploads) in [
-            (ObjectField::Material("base_colour", Value::Colour([200, 2, views as u8])), true),
-            (ObjectField::Position(Vec3::new(0.5, 0.5, 1.0 + views as f32)), false),
-            (ObjectField::Size(0.25 * views as f32), false),
+        for (edit, uploads) in [
+            (
+                Edit::material(
+                    Part::Object(OBJECTS / 2),
+                    "base_colour",
+                    Value::Colour([200, 2, views as u8]),
+                ),
+                true,
+            ),
+            (
+                Edit::set(
+                    Part::Object(OBJECTS / 2),
+                    Object::position,
+                    Vec3::new(0.5, 0.5, 1.0 + views as f32),
+                ),
+                false,
+            ),
+            (Edit::set(Part::Object(OBJECTS / 2), Object::size, 0.25 * views as f32), false),
         ] {
-            let what = format!("{field:?}");
+            let what = format!("{edit:?}");
             document.end_gesture();
-            document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
+            document.edit(edit, Selection::Room, &registry).expect("legal");
             let costs = cost(&mut renderer, |world| show(world, &document));
             one(&what, uploads, costs);
         }
@@ -229,7 +243,7 @@ fn names_of_thousands_are_found_without_counting_each_anew() {
     };
     assert!((1..=3 * OBJECTS as u64).contains(&visits(&document)));
     // Moving one changes no number.
-    let field = ObjectField::Position(Vec3::new(0.5, 0.5, 1.0));
-    document.edit(Edit::Object(3, field), Selection::Room, &registry).expect("legal");
+    let edit = Edit::set(Part::Object(3), Object::position, Vec3::new(0.5, 0.5, 1.0));
+    document.edit(edit, Selection::Room, &registry).expect("legal");
     assert_eq!(visits(&document), (OBJECTS + document.lights.len()) as u64);
 }

@@ -5,49 +5,51 @@ use std::path::PathBuf;
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, vec2};
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
+    document::{Document, Edit, Extent, Selection},
     panel::state::{Action, Session},
     parameter::{ParameterKind, Value},
     registry::Registry,
-    scene::{Display, Object, Observer, Scene, SceneSize, check},
+    scene::{Display, Light, Object, Observer, Part, Scene, SceneSize, check},
 };
 
 use crate::window::panels::Bench;
 
 /// Actions that change the scene, at least one of each kind.
 fn changes() -> Vec<Action> {
-    let light = |field| Action::Edit(Edit::Light(0, field));
-    let object = |field| Action::Edit(Edit::Object(0, field));
     vec![
-        Action::Edit(Edit::SceneName("Room".to_owned())),
-        Action::Edit(Edit::SceneDescription("Nothing much".to_owned())),
-        Action::Edit(Edit::SceneSize(SceneSize { width: 12.0, height: 11.0, depth: 10.0 })),
-        Action::Edit(Edit::Display(Display { exposure: 1.5, ..Display::default() })),
-        Action::Edit(Edit::Model("phong".to_owned())),
-        Action::Edit(Edit::ShadingModel("flat".to_owned())),
-        Action::Edit(Edit::Observer(Observer { position: Vec3::new(1.0, 2.0, 9.0), ..Observer::default() })),
-        light(LightField::Name("lamp".to_owned())),
-        light(LightField::Enabled(false)),
-        light(LightField::Type("spot".to_owned())),
-        light(LightField::Position(Vec3::new(2.0, 3.0, 4.0))),
-        light(LightField::Direction(Vec3::new(0.0, -1.0, 0.5))),
-        light(LightField::Colour([200, 100, 50])),
-        light(LightField::ColourTemperature(3000.0)),
-        light(LightField::LuminousFlux(900.0)),
-        light(LightField::Intensity(70.0)),
-        light(LightField::Parameter("cone_angle", Value::Number(20.0))),
-        object(ObjectField::Name("ball".to_owned())),
-        object(ObjectField::Visible(false)),
-        object(ObjectField::Type("torus".to_owned())),
-        object(ObjectField::Shape("tube_radius", Value::Number(0.1))),
-        object(ObjectField::Position(Vec3::new(4.0, 4.0, 4.0))),
-        object(ObjectField::Size(1.25)),
-        object(ObjectField::Rotation(Vec3::new(10.0, 20.0, 30.0))),
-        object(ObjectField::Tessellation(Some(48))),
-        object(ObjectField::Model(Some("ward".to_owned()))),
-        object(ObjectField::ShadingModel(Some("gouraud".to_owned()))),
-        object(ObjectField::Material("alpha", Value::Integer(17))),
-        object(ObjectField::Preset(vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.625))])),
+        Action::Edit(Edit::set(Part::Scene, Scene::name, "Room")),
+        Action::Edit(Edit::set(Part::Scene, Scene::description, "Nothing much")),
+        Action::Edit(Edit::from(SceneSize { width: 12.0, height: 11.0, depth: 10.0 })),
+        Action::Edit(Edit::from(Display { exposure: 1.5, ..Display::default() })),
+        Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")),
+        Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")),
+        Action::Edit(Edit::from(Observer { position: Vec3::new(1.0, 2.0, 9.0), ..Observer::default() })),
+        Action::Edit(Edit::set(Part::Light(0), Light::name, "lamp")),
+        Action::Edit(Edit::set(Part::Light(0), Light::enabled, false)),
+        Action::Edit(Edit::set(Part::Light(0), Light::light_type, "spot")),
+        Action::Edit(Edit::set(Part::Light(0), Light::position, Vec3::new(2.0, 3.0, 4.0))),
+        Action::Edit(Edit::set(Part::Light(0), Light::direction, Vec3::new(0.0, -1.0, 0.5))),
+        Action::Edit(Edit::set(Part::Light(0), Light::colour, [200, 100, 50])),
+        Action::Edit(Edit::set(Part::Light(0), Light::colour_temperature, 3000.0)),
+        Action::Edit(Edit::set(Part::Light(0), Light::luminous_flux, 900.0)),
+        Action::Edit(Edit::set(Part::Light(0), Light::intensity, 70.0)),
+        Action::Edit(Edit::parameter(Part::Light(0), "cone_angle", Value::Number(20.0))),
+        Action::Edit(Edit::set(Part::Object(0), Object::name, "ball")),
+        Action::Edit(Edit::set(Part::Object(0), Object::visible, false)),
+        Action::Edit(Edit::set(Part::Object(0), Object::object_type, "torus")),
+        Action::Edit(Edit::parameter(Part::Object(0), "tube_radius", Value::Number(0.1))),
+        Action::Edit(Edit::set(Part::Object(0), Object::position, Vec3::new(4.0, 4.0, 4.0))),
+        Action::Edit(Edit::set(Part::Object(0), Object::size, 1.25)),
+        Action::Edit(Edit::set(Part::Object(0), Object::rotation, Vec3::new(10.0, 20.0, 30.0))),
+        Action::Edit(Edit::set(Part::Object(0), Object::tessellation, 48)),
+        Action::Edit(Edit::set(Part::Object(0), Object::reflection_model, "ward")),
+        Action::Edit(Edit::set(Part::Object(0), Object::shading_model, "gouraud")),
+        Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(17))),
+        Action::Edit(Edit::materials(
+            Part::Object(0),
+            vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.625))],
+            "Measured material",
+        )),
         Action::AddLight("directional".to_owned()),
         Action::AddObject("cube".to_owned()),
         Action::Duplicate(Selection::Object(0)),
@@ -114,7 +116,7 @@ fn what_was_selected_comes_back() {
     let mut session = Session::default();
     session.apply(Action::AddObject("cube".to_owned()), &registry);
     session.apply(Action::Select(Selection::Light(0)), &registry);
-    session.apply(Action::Edit(Edit::Light(0, LightField::Intensity(5.0))), &registry);
+    session.apply(Action::Edit(Edit::set(Part::Light(0), Light::intensity, 5.0)), &registry);
     session.apply(Action::Select(Selection::Room), &registry);
     session.apply(Action::Undo, &registry);
     assert_eq!(session.selection, Selection::Light(0));
@@ -165,7 +167,7 @@ fn a_gesture_is_one_step_and_one_that_leads_nowhere_is_none() {
     let registry = Registry::builtin();
     let mut session = Session::default();
     let size = |session: &mut Session, v: f32| {
-        session.apply(Action::Edit(Edit::Object(0, ObjectField::Size(v))), &registry)
+        session.apply(Action::Edit(Edit::set(Part::Object(0), Object::size, v)), &registry)
     };
     for i in 1..10 {
         size(&mut session, 2.0 - 0.1 * i as f32);
@@ -381,7 +383,9 @@ fn undoing_leads_back_to_what_was_saved() {
     let registry = Registry::builtin();
     let mut document = Document::new(Scene::default());
     let size = |document: &mut Document, v| {
-        document.edit(Edit::Object(0, ObjectField::Size(v)), Selection::Room, &registry).expect("legal");
+        document
+            .edit(Edit::set(Part::Object(0), Object::size, v), Selection::Room, &registry)
+            .expect("legal");
     };
     size(&mut document, 3.0);
     document.mark_saved(&registry);
@@ -426,10 +430,10 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
     let middle = (0.5 * default.scene_size.corner()).with_y(8.0);
     let objects = vec![Object { position: middle, ..Object::default() }, Object::default()];
     let mut document = Document::new(Scene { objects, ..default });
-    let edit = |document: &mut Document, field| {
+    let edit = |document: &mut Document, edit: Edit| {
         document.end_gesture();
         let before = document.scene().clone();
-        document.edit(Edit::Light(0, field), Selection::Room, &registry).expect("legal");
+        document.edit(edit, Selection::Room, &registry).expect("legal");
         assert_eq!(check::scene(document, &registry), []);
         let after = document.scene().clone();
         document.undo().expect("a step");
@@ -444,19 +448,22 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
                 if document.lights[0].light_type == entry.declaration.id {
                     continue;
                 }
-                edit(&mut document, LightField::Type(entry.declaration.id.to_owned()));
+                edit(
+                    &mut document,
+                    Edit::set(Part::Light(0), Light::light_type, entry.declaration.id.to_owned()),
+                );
                 for p in entry.parameters {
                     if let ParameterKind::Number { min, .. } = p.kind {
                         // Another value than the previous type may have left.
                         let known = document.lights[0].parameters.number(p);
                         let value = if known == min + 0.5 { min + 0.25 } else { min + 0.5 };
-                        edit(&mut document, LightField::Parameter(p.name, Value::Number(value)));
+                        edit(&mut document, Edit::parameter(Part::Light(0), p.name, Value::Number(value)));
                     }
                 }
                 if entry.declaration.has_direction {
                     turns += 1.0;
                     let direction = Vec3::new(1.0, -2.0, turns);
-                    edit(&mut document, LightField::Direction(direction));
+                    edit(&mut document, Edit::set(Part::Light(0), Light::direction, direction));
                 }
             }
         }
@@ -474,10 +481,10 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
     // The others keep their names, and an unknown type is refused.
     document.insert_light(1, document.lights[0].clone(), "Add", Selection::Room, &registry);
     let name = document.name_of(Selection::Light(1), &registry);
-    edit(&mut document, LightField::Type("point".to_owned()));
+    edit(&mut document, Edit::set(Part::Light(0), Light::light_type, "point"));
     assert_eq!(document.name_of(Selection::Light(1), &registry), name);
     let before = document.scene().clone();
-    let unknown = Edit::Light(0, LightField::Type("laser".to_owned()));
+    let unknown = Edit::set(Part::Light(0), Light::light_type, "laser");
     assert!(document.edit(unknown, Selection::Room, &registry).is_err());
     assert!(*document == before);
 }
@@ -497,24 +504,26 @@ fn the_words_of_the_default_scene_go_once_they_are_untrue() {
         }
         session
     };
-    let object = |field| Action::Edit(Edit::Object(0, field));
     // It still matches its name.
     let moved = after(vec![
-        object(ObjectField::Size(3.0)),
-        Action::Edit(Edit::ShadingModel("phong".to_owned())),
-        Action::Edit(Edit::Display(Display { exposure: 1.0, ..Display::default() })),
+        Action::Edit(Edit::set(Part::Object(0), Object::size, 3.0)),
+        Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "phong")),
+        Action::Edit(Edit::from(Display { exposure: 1.0, ..Display::default() })),
     ]);
     assert_eq!(words(&moved), both);
     // It is no longer matte.
-    let shiny = after(vec![Action::Edit(Edit::Model("blinn_phong".to_owned()))]);
+    let shiny = after(vec![Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong"))]);
     assert_eq!(words(&shiny), (both.0.clone(), None));
-    assert_eq!(words(&after(vec![Action::Edit(Edit::Light(0, LightField::Colour([9, 9, 9])))])).1, None);
+    assert_eq!(
+        words(&after(vec![Action::Edit(Edit::set(Part::Light(0), Light::colour, [9, 9, 9]))])).1,
+        None
+    );
     // Nor does it have one light and one sphere.
     for actions in [
         vec![Action::AddObject("torus".to_owned())],
         vec![Action::AddLight("spot".to_owned())],
         vec![Action::Duplicate(Selection::Object(0))],
-        vec![object(ObjectField::Type("teapot".to_owned()))],
+        vec![Action::Edit(Edit::set(Part::Object(0), Object::object_type, "teapot"))],
     ] {
         let mut session = after(actions.clone());
         assert_eq!(words(&session), (None, None), "{actions:?}");

@@ -10,7 +10,7 @@ use std::{
 
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Edit, Extent, LightField, ObjectField, PartId, Selection},
+    document::{Edit, Extent, PartId, Selection},
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         effects,
@@ -20,7 +20,7 @@ use lights_camera_models::{
     recovery::{About, Keeper, Settled, Store},
     registry::Registry,
     scene::{
-        Display, Observer, Scene, SceneSize, check,
+        Display, Light, Object, Observer, Part, Scene, SceneSize, check,
         load::{self, Defaults},
         save,
     },
@@ -157,54 +157,64 @@ impl Desk {
         model.parameters.iter().filter_map(|p| Some((p.name, values.0.get(p.name)?.clone()))).collect()
     }
 
-    fn light_field(&mut self, i: usize) -> LightField {
+    fn light_edit(&mut self, i: usize) -> Edit {
         match self.below(10) {
-            0 => LightField::Name(self.name()),
-            1 => LightField::Enabled(self.below(2) == 0),
-            2 => LightField::Type(self.light_type()),
-            3 => LightField::Position(self.place()),
-            4 => LightField::Direction(self.place() - 5.0),
-            5 => LightField::Colour(self.colour()),
-            6 => LightField::ColourTemperature(self.number(500.0, 30_000.0)),
-            7 => LightField::Intensity(self.number(-1.0, 200.0)),
-            8 => LightField::LuminousFlux(self.number(-1.0, 2000.0)),
+            0 => Edit::set(Part::Light(i), Light::name, self.name()),
+            1 => Edit::set(Part::Light(i), Light::enabled, self.below(2) == 0),
+            2 => Edit::set(Part::Light(i), Light::light_type, self.light_type()),
+            3 => Edit::set(Part::Light(i), Light::position, self.place()),
+            4 => Edit::set(Part::Light(i), Light::direction, self.place() - 5.0),
+            5 => Edit::set(Part::Light(i), Light::colour, self.colour()),
+            6 => Edit::set(Part::Light(i), Light::colour_temperature, self.number(500.0, 30_000.0)),
+            7 => Edit::set(Part::Light(i), Light::intensity, self.number(-1.0, 200.0)),
+            8 => Edit::set(Part::Light(i), Light::luminous_flux, self.number(-1.0, 2000.0)),
             _ => {
                 let entry =
                     self.session.document.lights.get(i).and_then(|l| self.registry.light(&l.light_type));
                 let parameters = entry.map_or(&[][..], |entry| entry.parameters);
                 match parameters.len() {
-                    0 => LightField::Parameter("none", Value::Number(1.0)),
+                    0 => Edit::parameter(Part::Light(i), "none", Value::Number(1.0)),
                     n => {
                         let id = parameters[self.random.below(n)].name;
-                        LightField::Parameter(id, Value::Number(self.number(-10.0, 100.0)))
+                        Edit::parameter(Part::Light(i), id, Value::Number(self.number(-10.0, 100.0)))
                     }
                 }
             }
         }
     }
 
-    fn object_field(&mut self) -> ObjectField {
+    fn object_edit(&mut self, i: usize) -> Edit {
         match self.below(12) {
-            0 => ObjectField::Name(self.name()),
-            1 => ObjectField::Visible(self.below(2) == 0),
-            2 => ObjectField::Type(self.shape()),
-            3 => ObjectField::Position(self.place()),
-            4 => ObjectField::Size(self.number(-0.2, 3.0)),
-            5 => ObjectField::Rotation(self.place() * 40.0),
-            6 => ObjectField::Tessellation([None, Some(0), Some(12), Some(33)][self.below(4)]),
-            7 => ObjectField::Model((self.below(3) > 0).then(|| self.model())),
-            8 => ObjectField::ShadingModel((self.below(3) > 0).then(|| self.shading())),
+            0 => Edit::set(Part::Object(i), Object::name, self.name()),
+            1 => Edit::set(Part::Object(i), Object::visible, self.below(2) == 0),
+            2 => Edit::set(Part::Object(i), Object::object_type, self.shape()),
+            3 => Edit::set(Part::Object(i), Object::position, self.place()),
+            4 => Edit::set(Part::Object(i), Object::size, self.number(-0.2, 3.0)),
+            5 => Edit::set(Part::Object(i), Object::rotation, self.place() * 40.0),
+            6 => Edit::put(
+                Part::Object(i),
+                Object::tessellation,
+                [None, Some(0), Some(12), Some(33)][self.below(4)],
+            ),
+            7 => Edit::put(
+                Part::Object(i),
+                Object::reflection_model,
+                (self.below(3) > 0).then(|| self.model()),
+            ),
+            8 => {
+                Edit::put(Part::Object(i), Object::shading_model, (self.below(3) > 0).then(|| self.shading()))
+            }
             9 => match self.parameters().pop() {
-                Some((id, value)) => ObjectField::Material(id, value),
-                None => ObjectField::Material("none", Value::Number(0.0)),
+                Some((id, value)) => Edit::material(Part::Object(i), id, value),
+                None => Edit::material(Part::Object(i), "none", Value::Number(0.0)),
             },
-            10 => ObjectField::Preset(self.parameters()),
+            10 => Edit::materials(Part::Object(i), self.parameters(), "Measured material"),
             // Of this type or of another.
             _ => {
                 let shapes = self.registry.shapes().iter();
                 let parameters: Vec<_> = shapes.flat_map(|s| s.parameters).map(|p| p.name).collect();
                 let id = parameters[self.below(parameters.len())];
-                ObjectField::Shape(id, Value::Number(self.number(-0.5, 3.5)))
+                Edit::parameter(Part::Object(i), id, Value::Number(self.number(-0.5, 3.5)))
             }
         }
     }
@@ -228,33 +238,36 @@ impl Desk {
 
     fn edit(&mut self) -> Edit {
         match self.below(24) {
-            0 => Edit::SceneName(self.name()),
-            1 => Edit::SceneDescription(self.name()),
-            2 => Edit::SceneSize(SceneSize {
+            0 => Edit::set(Part::Scene, Scene::name, self.name()),
+            1 => Edit::set(Part::Scene, Scene::description, self.name()),
+            2 => Edit::from(SceneSize {
                 width: self.number(8.0, 20.0),
                 height: self.number(8.0, 20.0),
                 depth: self.number(8.0, 120.0),
             }),
-            3 => Edit::Display(Display {
+            3 => Edit::from(Display {
                 exposure: self.number(-4.0, 4.0),
                 tone_mapping: [ToneMapping::AgX, ToneMapping::Aces, ToneMapping::default()][self.below(3)],
                 encoding: [Encoding::Off, Encoding::default()][self.below(2)],
             }),
-            4 => Edit::Model(if self.below(5) == 0 { "nobody's".to_owned() } else { self.model() }),
-            5 => Edit::ShadingModel(self.shading()),
-            6 => Edit::Observer(Observer {
-                position: self.place(),
-                direction: self.place() - 5.0,
+            4 => Edit::set(
+                Part::Scene,
+                Scene::reflection_model,
+                if self.below(5) == 0 { "nobody's".to_owned() } else { self.model() },
+            ),
+            5 => Edit::set(Part::Scene, Scene::shading_model, self.shading()),
+            6 => Edit::from(Observer {
                 field_of_view: self.number(-5.0, 190.0),
+                ..Observer::at(self.place(), self.place() - 5.0)
             }),
             7..15 => {
                 // A nonexistent one too.
                 let i = self.light() + usize::from(self.below(20) == 0);
-                Edit::Light(i, self.light_field(i))
+                self.light_edit(i)
             }
             _ => {
                 let i = self.object() + usize::from(self.below(20) == 0);
-                Edit::Object(i, self.object_field())
+                self.object_edit(i)
             }
         }
     }

@@ -11,7 +11,7 @@ use bevy_egui::egui::{
 };
 use lights_camera_models::{
     curves::Kind,
-    document::{Edit, LightField, Selection},
+    document::{Edit, Selection},
     optics::colour::Encoding,
     panel::{
         explain::explained,
@@ -20,7 +20,7 @@ use lights_camera_models::{
     },
     parameter::Values,
     registry::Registry,
-    scene::Scene,
+    scene::{Light, Part, Scene},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -432,7 +432,7 @@ fn the_symbols_of_a_light_are_its_own() {
 #[test]
 fn the_knobs_of_a_spotlight_light_in_its_equation() {
     let mut bench = explaining("lambert");
-    bench.apply(Action::Edit(Edit::Light(0, LightField::Type("spot".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::light_type, "spot")));
     bench.apply(Action::Select(Selection::Light(0)));
     let panel = inspector(&bench);
     // θ_c is the angle of the cone, θ that of the ray, p the point.

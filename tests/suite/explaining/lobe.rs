@@ -6,7 +6,7 @@ use bevy_egui::egui::{Key, Modifiers, Shape, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     curves::{Channel, lobe::value},
-    document::{Edit, ObjectField},
+    document::Edit,
     explain::Spot,
     optics::TermSelection,
     panel::{
@@ -15,7 +15,7 @@ use lights_camera_models::{
     },
     parameter::Value,
     registry::Registry,
-    scene::{Light, Object, Scene},
+    scene::{Light, Object, Part, Scene},
 };
 
 use crate::window::panels::Bench;
@@ -106,7 +106,7 @@ fn it_is_calculated_when_something_changed_and_only_then() {
     assert_eq!(lobe_calculations(&bench.ctx), first, "nothing of the lobe changed");
 
     let before = lobes(&bench);
-    let alpha = Edit::Object(0, ObjectField::Material("alpha", Value::Integer(300)));
+    let alpha = Edit::material(Part::Object(0), "alpha", Value::Integer(300));
     bench.apply(Action::Edit(alpha));
     bench.wait_for_lobes();
     assert_eq!(lobe_calculations(&bench.ctx), first + 1, "a knob turned");
@@ -125,7 +125,7 @@ fn it_is_calculated_when_something_changed_and_only_then() {
 
     let count = lobe_calculations(&bench.ctx);
     choose(&mut bench, LobeScale::Off, false);
-    let alpha = Edit::Object(0, ObjectField::Material("alpha", Value::Integer(40)));
+    let alpha = Edit::material(Part::Object(0), "alpha", Value::Integer(40));
     bench.apply(Action::Edit(alpha));
     bench.settle();
     assert_eq!((lobe_calculations(&bench.ctx), triangles(&mut bench)), (count, 0), "it is off");
@@ -148,7 +148,7 @@ fn it_hides_nothing_until_it_is_asked_for() {
 #[test]
 fn its_scale_stays_while_a_pixel_is_pinned() {
     let paint = |bench: &mut Bench, code: u8| {
-        let colour = Edit::Object(0, ObjectField::Material("base_colour", Value::Colour([code; 3])));
+        let colour = Edit::material(Part::Object(0), "base_colour", Value::Colour([code; 3]));
         bench.apply(Action::Edit(colour));
         bench.wait_for_lobes();
     };
@@ -172,7 +172,7 @@ fn its_scale_stays_while_a_pixel_is_pinned() {
     let mut phong = bench(scene("blinn_phong", "phong"));
     let tall = ends(&mut phong);
     assert!(tall.parse::<f32>().expect("a number") > 0.4, "{tall}");
-    phong.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    phong.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")));
     phong.wait_for_lobes();
     assert_eq!(ends(&mut phong), tall);
     phong.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at: [0.01, 0.01] }))));
@@ -275,7 +275,7 @@ fn of_several_views_each_has_that_of_a_pinned_point() {
     let mut bench = bench(scene("lambert", "phong"));
     let alone = triangles(&mut bench);
     bench.apply(Action::Compare(CompareCommand::Add));
-    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(1)))));
     bench.wait_for_lobes();
     let both = triangles(&mut bench);

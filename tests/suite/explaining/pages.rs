@@ -199,7 +199,7 @@ fn what_is_no_pixel_of_the_picture_or_no_page_is_refused() {
     for form in ["bevy", "glsl", "mitsuba", "executable"] {
         let said = run(&["--as", form, "--explain", "640,360"]);
         assert!(
-            said.contains(&format!("{form} explains no pixel, only html does; omit --explain")),
+            said.contains(&format!("{form} does not explain pixels, only html does; omit --explain")),
             "{said}"
         );
     }

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     explain::{Explanation, Seen, Sight},
     panel::{
         explain::{Explained, explained, lobes_shown, lobes_shown_in},
@@ -13,7 +13,7 @@ use lights_camera_models::{
         },
     },
     registry::Registry,
-    scene::{Object, Scene, rotation::rotation},
+    scene::{Light, Object, Part, Scene, rotation::rotation},
 };
 
 use crate::window::panels::Bench;
@@ -73,8 +73,8 @@ fn home(bench: &mut Bench) {
     bench.settle();
 }
 
-fn edit(bench: &mut Bench, field: ObjectField) {
-    bench.apply(Action::Edit(Edit::Object(0, field)));
+fn edit(bench: &mut Bench, edit: Edit) {
+    bench.apply(Action::Edit(edit));
     bench.settle();
 }
 
@@ -111,7 +111,7 @@ fn it_stays_on_its_object_while_the_camera_turns_around_it() {
                 observer: bench
                     .session
                     .facts
-                    .observer(45.0)
+                    .observer(bench.session.document.observer)
                     .fitting(shown(&bench).size, bench.session.document.view_angle()),
                 ..(*bench.session.document).clone()
             },
@@ -135,11 +135,11 @@ fn it_stays_on_its_object_while_the_camera_turns_around_it() {
 fn it_follows_its_object_and_survives_its_changes() {
     let mut bench = bench(scene("phong", "phong"));
     let (before, place) = (point(&bench), seen(&bench).position);
-    edit(&mut bench, ObjectField::Position(Vec3::new(5.7, 4.8, 5.2)));
+    edit(&mut bench, Edit::set(Part::Object(0), Object::position, Vec3::new(5.7, 4.8, 5.2)));
     assert!(point(&bench).distance(before) < MILLIMETRE);
     assert!((seen(&bench).position - place).distance(Vec3::new(0.7, -0.2, 0.2)) < MILLIMETRE);
-    edit(&mut bench, ObjectField::Rotation(Vec3::new(20.0, -30.0, 10.0)));
-    edit(&mut bench, ObjectField::Size(1.4));
+    edit(&mut bench, Edit::set(Part::Object(0), Object::rotation, Vec3::new(20.0, -30.0, 10.0)));
+    edit(&mut bench, Edit::set(Part::Object(0), Object::size, 1.4));
     assert!(point(&bench).distance(before) < MILLIMETRE);
     bench.apply(Action::Undo);
     bench.apply(Action::Undo);
@@ -148,9 +148,9 @@ fn it_follows_its_object_and_survives_its_changes() {
     assert!(seen(&bench).position.distance(place) < MILLIMETRE && now(&bench).sight.is_none());
     orbit(&mut bench, Vec3::X, -20.0);
     for (field, off) in [
-        (ObjectField::Tessellation(Some(8)), 0.1),
-        (ObjectField::Tessellation(Some(90)), 0.05),
-        (ObjectField::Type("cube".to_owned()), 0.5),
+        (Edit::set(Part::Object(0), Object::tessellation, 8), 0.1),
+        (Edit::set(Part::Object(0), Object::tessellation, 90), 0.05),
+        (Edit::set(Part::Object(0), Object::object_type, "cube"), 0.5),
     ] {
         edit(&mut bench, field.clone());
         assert!(point(&bench).distance(before) < off, "{field:?}: {}", point(&bench));
@@ -162,7 +162,7 @@ fn it_follows_its_object_and_survives_its_changes() {
         assert!(point(&bench).distance(before) < MILLIMETRE, "{field:?} undone");
     }
     for shading in ["flat", "gouraud"] {
-        bench.apply(Action::Edit(Edit::ShadingModel(shading.to_owned())));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, shading.to_owned())));
         bench.settle();
         assert!(point(&bench).distance(before) < MILLIMETRE && seen(&bench).shading.id == shading);
     }
@@ -283,7 +283,7 @@ fn the_same_pixel_pinned_anew_is_another_point() {
 fn both_views_show_the_vectors_and_the_lobe_of_the_same_point() {
     let mut bench = bench(scene("lambert", "phong"));
     bench.apply(Action::Compare(CompareCommand::Add));
-    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
     lobe(&mut bench);
     for degrees in [0.0, 25.0] {
         orbit(&mut bench, Vec3::Y, degrees);
@@ -335,7 +335,7 @@ fn a_command_looks_at_it_from_the_side() {
     assert!(way.dot(spot.normal).abs() < 1e-4 && way.dot(l).abs() < 1e-4, "N and L are seen face on");
     // Light along the normal: the plane of N and V.
     let light = seen.position + 3.0 * spot.normal;
-    bench.apply(Action::Edit(Edit::Light(0, lights_camera_models::document::LightField::Position(light))));
+    bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::position, light)));
     orbit(&mut bench, Vec3::Y, 20.0);
     bench.key(Key::H, Modifiers::SHIFT);
     let (_, way) = steer(&mut bench).expect("a movement of the camera");
@@ -410,7 +410,7 @@ fn pictures_of_a_pinned_point() -> Result<(), Box<dyn std::error::Error>> {
         let mut bench = bench(scene("blinn_phong", "phong"));
         if views > 1 {
             bench.apply(Action::Compare(CompareCommand::Add));
-            bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+            bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")));
         }
         lobe(&mut bench);
         orbit(&mut bench, Vec3::Y, turn);

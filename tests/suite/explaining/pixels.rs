@@ -568,6 +568,6 @@ fn the_hemisphere_above_a_point_is_a_picture() {
     let bytes = fs::read(folder.path().join("above.png")).expect("written");
     assert!(bytes.starts_with(b"\x89PNG"));
     let run = lcm_in(folder.path(), &["explain", "--at", "0,0", "--hemisphere", "none.png"], b"");
-    assert!(run.status == Some(2) && run.err.contains("choose one on an object"), "{}", run.err);
+    assert!(run.status == Some(2) && run.err.contains("choose a pixel on an object"), "{}", run.err);
     assert!(!folder.path().join("none.png").exists());
 }

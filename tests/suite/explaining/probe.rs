@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
-    document::{Edit, ObjectField},
+    document::Edit,
     explain::{Explanation, Place},
     optics::{Frame, TermSelection, Terms},
     panel::{
@@ -16,7 +16,7 @@ use lights_camera_models::{
     reference::{self, Settings},
     reflection::{Declaration, ReflectionModel},
     registry::{Register, Registry},
-    scene::{Light, Observer, Scene, comparison::Layout, examples::EXAMPLES},
+    scene::{Light, Observer, Part, Scene, comparison::Layout, examples::EXAMPLES},
     shader::Source,
     testing::random,
 };
@@ -92,9 +92,8 @@ fn picture(bench: &Bench, size: [u32; 2]) -> Vec<u8> {
     let mut seen = (*bench.session.document).clone();
     let fov = seen.view_angle().vertical(size[0] as f32 / size[1] as f32);
     seen.observer = Observer {
-        position: bench.session.facts.eye,
-        direction: bench.session.facts.camera * Vec3::NEG_Z,
         field_of_view: fov.to_degrees(),
+        ..Observer::at(bench.session.facts.eye, bench.session.facts.camera * Vec3::NEG_Z)
     };
     let settings = Settings { width: size[0], height: size[1], samples: 1, terms: TermSelection::All };
     reference::render_rgb8(&seen, &bench.registry, &settings)
@@ -292,7 +291,7 @@ fn nothing_is_calculated_while_closed_or_unchanged() {
         let at = middle(&bench) + vec2(k as f32, 0.0);
         point(&mut bench, at);
     }
-    bench.apply(Action::Edit(Edit::ShadingModel("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "phong")));
     assert_eq!((calculations(&bench.ctx), explained(&bench.ctx).is_none()), (0, true));
 
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
@@ -302,7 +301,7 @@ fn nothing_is_calculated_while_closed_or_unchanged() {
     bench.settle();
     assert_eq!(calculations(&bench.ctx), before, "nothing changed");
     let light = shown(&bench).steps.light;
-    let colour = Edit::Object(0, ObjectField::Material("base_colour", Value::Colour([20, 90, 200])));
+    let colour = Edit::material(Part::Object(0), "base_colour", Value::Colour([20, 90, 200]));
     bench.apply(Action::Edit(colour));
     assert_eq!(calculations(&bench.ctx), before + 1);
     assert_ne!(shown(&bench).steps.light, light);
@@ -324,7 +323,7 @@ fn nothing_is_calculated_while_closed_or_unchanged() {
 fn of_several_views_the_one_under_the_pointer_is_explained() {
     let mut bench = bench(scene("lambert", "phong"));
     bench.apply(Action::Compare(CompareCommand::Add));
-    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
     bench.settle();
     assert_eq!(bench.session.document.comparison.layout, Layout::SideBySide);
     let cells = bench.area.cells.clone();

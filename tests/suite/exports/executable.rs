@@ -153,7 +153,7 @@ fn what_a_scene_needs_travels_along() {
     // Later changes to them are reported with a remedy.
     let inside = shelf.empty.path().join("data/inside");
     let folder = inside.join(&names(&inside)[0]);
-    let remedy = format!("delete the folder {}, and it is unpacked anew", folder.display());
+    let remedy = format!("delete the folder {} to have it unpacked again", folder.display());
     let lamp = folder.join("files/0/mine.ies");
     for (damage, expected) in
         [(Some("IESNA"), "mine.ies"), (None, "has no files/0/mine.ies, which this program unpacked")]
@@ -173,7 +173,7 @@ fn what_a_scene_needs_travels_along() {
     assert_eq!(output.status.code(), Some(4));
     let message = said(&output);
     assert!(message.contains("could not be unpacked to /proc/none/inside"), "{message}");
-    assert!(message.contains("LCM_DATA_DIR names another folder"), "{message}");
+    assert!(message.contains("set LCM_DATA_DIR to use another folder"), "{message}");
 }
 
 #[test]

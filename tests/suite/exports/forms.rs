@@ -91,7 +91,7 @@ fn wrong_usage_is_reported() {
     refused(
         &export(folder.path(), &["--as", "mitsuba", "--object", "0"]),
         2,
-        "mitsuba holds all objects; omit --object",
+        "mitsuba always contains all objects; omit --object",
     );
     refused(&export(folder.path(), &["room.json", "--as", "mitsuba"]), 1, "room.json");
     refused(&lcm_in(folder.path(), &["exprt"], b""), 2, "did you mean lcm export?");
@@ -112,7 +112,11 @@ fn an_export_replaces_nothing_unasked_and_then_all_of_it() {
     );
     assert!(place.join("mine.txt").exists());
     let again = [&mitsuba[..], &["--overwrite"]].concat();
-    refused(&export(folder.path(), &again), 4, "out has mine.txt, which is of no export of this form");
+    refused(
+        &export(folder.path(), &again),
+        4,
+        "out has mine.txt, which is not part of an export of this form",
+    );
     assert!(place.join("mine.txt").exists());
     fs::remove_file(place.join("mine.txt")).expect("there");
     fs::write(place.join("scene.xml"), "changed").expect("written");
@@ -131,7 +135,7 @@ fn an_export_replaces_nothing_unasked_and_then_all_of_it() {
     fs::create_dir(&home).expect("made");
     fs::write(home.join("thesis.tex"), "years").expect("written");
     let run = export(folder.path(), &["--as", "mitsuba", "-o", "home", "--overwrite"]);
-    refused(&run, 4, "home has no scene.xml, so it is no export of this form; it was not overwritten");
+    refused(&run, 4, "home has no scene.xml, so it is not an export of this form; it was not overwritten");
 
     fs::write(folder.path().join("file"), "mine").expect("written");
     let program = ["--as", "executable", "-o", "file"];
@@ -170,9 +174,7 @@ fn the_folder_of_the_terminal_is_not_replaced() {
             // Without the flag, a folder with contents is kept anyway.
             let expected = match (place, more) {
                 ("..", []) => ".. exists; it was not overwritten".to_owned(),
-                _ => format!(
-                    "{place} is the folder in which this program runs, or around it; name a new folder in it"
-                ),
+                _ => format!("{place} is the current folder, or contains it; name a new folder"),
             };
             assert_eq!(run.status, Some(4), "{}", run.err);
             assert!(run.err.contains(&expected), "{}", run.err);
@@ -329,7 +331,7 @@ fn no_form_loses_light_with_extent() {
         let both = made(form("mitsuba").expect("listed"), &scene);
         assert_eq!(both.is_err(), id == "environment");
         if let Err(error) = both {
-            let expected = "lights[1]: Mitsuba has room for one light from all around, and lights[0] (\"Key\") is the first";
+            let expected = "lights[1]: Mitsuba allows only one light from all around, and lights[0] (\"Key\") is one already";
             assert!(error.to_string().contains(expected), "{error}");
             check_wording(&error.to_string());
         }
@@ -445,8 +447,9 @@ fn nothing_of_somebody_else_is_replaced_even_when_asked() {
         fs::write(at("project").join(stranger), "mine").expect("writable");
         let refused = run("bevy", "project");
         assert_eq!(refused.status, Some(4), "{stranger}");
-        let said =
-            format!("project has {stranger}, which is of no export of this form; it was not overwritten");
+        let said = format!(
+            "project has {stranger}, which is not part of an export of this form; it was not overwritten"
+        );
         assert!(refused.err.contains(&said), "{}", refused.err);
         fs::remove_file(at("project").join(stranger)).expect("it is still there");
     }
@@ -456,7 +459,11 @@ fn nothing_of_somebody_else_is_replaced_even_when_asked() {
     fs::write(at("thesis.tex"), "\\documentclass{book}").expect("writable");
     let refused = run("html", "thesis.tex");
     assert_eq!(refused.status, Some(4));
-    assert!(refused.err.contains("thesis.tex is a file of another kind than the export"), "{}", refused.err);
+    assert!(
+        refused.err.contains("thesis.tex is a file of a different kind from the export"),
+        "{}",
+        refused.err
+    );
     assert_eq!(fs::read_to_string(at("thesis.tex")).expect("there"), "\\documentclass{book}");
     assert_eq!((run("html", "page.html").status, run("html", "page.html").status), (Some(0), Some(0)));
 }
@@ -525,7 +532,7 @@ fn a_name_that_is_too_long_is_refused_for_its_length() {
     let folder = tempfile::tempdir().expect("a folder");
     let name = format!("{}.html", "n".repeat(251));
     let run = export(folder.path(), &["--as", "html", "-o", &name]);
-    refused(&run, 4, "its name has 256 bytes, and 255 is the limit");
+    refused(&run, 4, "its name has 256 bytes, but at most 255 are allowed");
     assert!(!run.err.contains("mesh"), "{}", run.err);
     let run = export(folder.path(), &["--as", "html", "-o", &name[1..]]);
     assert_eq!(run.status, Some(0), "{}", run.err);

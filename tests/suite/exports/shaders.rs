@@ -135,8 +135,8 @@ fn what_shaders_cannot_hold_is_refused_and_leaves_nothing() {
     assert_eq!(refused.status, Some(1));
     assert_eq!(
         refused.err.trim_end(),
-        "scene.json: cannot be exported as glsl: display.tone_mapping: agx is a table of colours, and shaders that stand \
-         alone hold formulas; these can be exported: none, reinhard, reinhard_luminance, aces and khronos_pbr_neutral"
+        "scene.json: cannot be exported as glsl: display.tone_mapping: agx is a table of colours, but a \
+         stand-alone shader has only formulas; these can be exported: none, reinhard, reinhard_luminance, aces and khronos_pbr_neutral"
     );
     let unknown = run(&["--as", "glsl", "--object", "bal"]);
     assert_eq!(unknown.status, Some(1));

@@ -51,9 +51,8 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
             ..Light::default()
         }],
         observer: Observer {
-            position: Vec3::new(5.0, 5.2, 8.8),
-            direction: Vec3::new(0.02, -0.05, -1.0),
             field_of_view: 40.0,
+            ..Observer::at(Vec3::new(5.0, 5.2, 8.8), Vec3::new(0.02, -0.05, -1.0))
         },
         objects: vec![Object {
             object_type: shape.to_owned(),

@@ -650,5 +650,5 @@ fn a_check_tells_of_models_that_no_renderer_runs_or_the_gpu_alone() {
     let begin =
         "packed.json: objects[0] has the reflection model packed, which the CPU renderer cannot run (it ";
     assert!(checked.err.starts_with(begin) && checked.err.lines().count() == 1, "{}", checked.err);
-    assert!(checked.err.contains("only the GPU draws it"), "{}", checked.err);
+    assert!(checked.err.contains("only the GPU renderer draws it"), "{}", checked.err);
 }

@@ -458,7 +458,7 @@ fn what_is_put_around_hostile_text_is_read() {
         let said = (reader.read)(text.as_bytes());
         let expected = match reader.name {
             // Without its answers; the reader reached them.
-            "question" => "a question has two answers at least",
+            "question" => "a question needs at least two answers",
             _ => "",
         };
         match said {

@@ -102,7 +102,7 @@ fn a_lesson_reads_no_file_outside_its_folder() {
             for path in [folder.clone(), folder.join("lesson.md")] {
                 let run = lcm(&["lesson", "check", &path.display().to_string()], "");
                 assert_eq!(run.status, Some(1), "{name}: {}", run.out);
-                assert!(run.err.contains("leads out of the folder of the lesson"), "{name}: {}", run.err);
+                assert!(run.err.contains("is outside the folder of the lesson"), "{name}: {}", run.err);
                 assert!(!run.err.contains("hunter"), "{name}: {}", run.err);
             }
         }

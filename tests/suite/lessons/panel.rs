@@ -7,7 +7,7 @@ use bevy_egui::egui::{self, Event, Key, Modifiers, PointerButton, Rect, Shape, a
 use lights_camera_models::{
     channel::DebugChannel,
     curves::Kind,
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     lesson::{Task, shipped::LESSONS},
     optics::TermSelection,
     panel::{
@@ -21,7 +21,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::Registry,
     scene::{
-        Scene,
+        Part, Scene,
         load::{self, Defaults},
         save::{self, Expected},
     },
@@ -165,8 +165,8 @@ fn done(bench: &Bench) -> BTreeSet<usize> {
 }
 
 fn edit_alpha(bench: &mut Bench, alpha: i64) {
-    let field = ObjectField::Material("alpha", Value::Integer(alpha));
-    apply(bench, Action::Edit(Edit::Object(0, field)));
+    let edit = Edit::material(Part::Object(0), "alpha", Value::Integer(alpha));
+    apply(bench, Action::Edit(edit));
 }
 
 /// A window with unsaved work, and with settings of the view.
@@ -174,8 +174,8 @@ fn busy() -> Session {
     let registry = Registry::builtin();
     let mut session = Session::new(Scene { name: Some("Mine".to_owned()), ..Scene::default() });
     for action in [
-        Action::Edit(Edit::Model("phong".to_owned())),
-        Action::Edit(Edit::ShadingModel("flat".to_owned())),
+        Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")),
+        Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")),
         Action::Undo,
         Action::Select(Selection::Light(0)),
         Action::View(ViewChange::Terms(TermSelection::Diffuse)),
@@ -219,7 +219,7 @@ fn the_own_document_comes_back_with_all_that_belongs_to_it() {
     }
     go(&mut bench, LessonCommand::Next);
     for action in [
-        Action::Edit(Edit::Model("lambert".to_owned())),
+        Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")),
         Action::AddObject("cube".to_owned()),
         Action::View(ViewChange::Terms(TermSelection::Specular)),
         Action::Plot(PlotCommand::Light(3.0)),
@@ -341,7 +341,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     session.path = Some(own.clone());
     let mut bench = desk.bench(session);
     bench.session.lesson.as_ref().expect("a lesson");
-    apply(&mut bench, Action::Edit(Edit::Model("phong".to_owned())));
+    apply(&mut bench, Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
     assert_eq!(bench.session.apply(Action::Save, &registry), [Effect::PickSave]);
     let copy = desk.folder.path().join("copy.json");
     apply_with(&mut bench, Action::SaveAs(copy.clone()), &mut files);
@@ -354,7 +354,11 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     apply_with(&mut bench, Action::SaveAs(typed), &mut files);
     assert_eq!(bench.session.questions.open, Some(Question::ReplaceScene { path: copy.clone() }));
     assert!(bench.says("Replace it with a copy of this scene?"));
-    apply_with(&mut bench, Action::Edit(Edit::Model("lambert".to_owned())), &mut files);
+    apply_with(
+        &mut bench,
+        Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")),
+        &mut files,
+    );
     apply_with(&mut bench, Action::Answer(Answer::Overwrite), &mut files);
     assert_eq!(
         load::file(&copy, &registry, Defaults::Refuse).expect("legal").scene.reflection_model,
@@ -362,7 +366,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     );
     // Back in the document, saving needs no question.
     go(&mut bench, LessonCommand::Leave);
-    apply(&mut bench, Action::Edit(Edit::ShadingModel("phong".to_owned())));
+    apply(&mut bench, Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "phong")));
     apply_with(&mut bench, Action::Save, &mut files);
     assert!(bench.session.questions.open.is_none() && !bench.session.is_dirty());
     assert_eq!(load::file(&own, &registry, Defaults::Refuse).expect("legal").scene.shading_model, "phong");
@@ -396,7 +400,7 @@ fn previous_and_again_begin_a_step_as_it_began() {
     let desk = Desk::new();
     let mut bench = desk.bench(Session::default());
     // The learner's changes are kept.
-    apply(&mut bench, Action::Edit(Edit::SceneDescription("changed".to_owned())));
+    apply(&mut bench, Action::Edit(Edit::set(Part::Scene, Scene::description, "changed")));
     go(&mut bench, LessonCommand::Next);
     let description = |bench: &Bench| bench.session.document.description.clone();
     assert_eq!((step(&bench), description(&bench).as_deref()), (1, Some("changed")));

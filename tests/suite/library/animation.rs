@@ -182,7 +182,7 @@ fn what_goes_makes_room_for_what_comes() {
     // Later.
     let spot = spawn(&mut renderer, Vec3::new(7.0, 8.0, 6.0));
     let why = step(&mut renderer);
-    assert!(matches!(&why[..], [one] if one.contains("is not added to the scene")), "{why:?}");
+    assert!(matches!(&why[..], [one] if one.contains("was not added to the scene")), "{why:?}");
     assert_eq!(step(&mut renderer), [""; 0], "it is said once");
     let gone = light(&mut renderer, 7);
     renderer.app().world_mut().despawn(gone);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     light::{self, Incident, LightRecord, LightType},
     optics::{
         Frame, TermSelection, Terms,
@@ -18,7 +18,7 @@ use lights_camera_models::{
     registry::{Register, Registry},
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
-        Light, Scene, check,
+        Light, Part, Scene, check,
         formats::{Csv, SceneFormat as _, Target},
         load::{self, Defaults},
         save, schema,
@@ -539,7 +539,7 @@ fn parameters_of_every_kind_have_knobs() {
     assert!(pitch.disabled, "the top is flat");
     bench.hover(pitch.rect.center());
     assert!(bench.says("Not used with Flat: only Roof has p"));
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Shape("top", Value::Choice("roof".into())))));
+    bench.apply(Action::Edit(Edit::parameter(Part::Object(0), "top", Value::Choice("roof".into()))));
     assert!(!bench.field("pitch").disabled);
     bench.type_into("pitch", "0.75");
     assert_eq!(shape(&bench).0.get("pitch"), Some(&Value::Number(0.75)));
@@ -635,11 +635,11 @@ fn parameters_of_a_shading_model_stand_in_materials_and_have_knobs() {
     bench.type_into("strength", "0.25");
     let strength = |b: &Bench| b.session.document.objects[0].material.0.get("strength").cloned();
     assert_eq!(strength(&bench), Some(Value::Number(0.25)));
-    let refused = Edit::Object(0, ObjectField::Material("strength", Value::Number(3.0)));
+    let refused = Edit::material(Part::Object(0), "strength", Value::Number(3.0));
     bench.apply(Action::Edit(refused));
     assert_eq!(strength(&bench), Some(Value::Number(0.25)));
     assert!(!bench.field("strength").disabled);
-    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
     assert!(bench.field("strength").disabled);
     assert_eq!(strength(&bench), Some(Value::Number(0.25)));
 }
@@ -669,12 +669,12 @@ fn both_models_of_an_object_limit_a_parameter_that_they_share() {
     scene.objects[0].material.set("bands", Value::Integer(12));
     let mut bench = Bench::with_registry(Session::new(scene), registry);
     let bands = |b: &Bench| b.session.document.objects[0].material.0["bands"].clone();
-    bench.apply(Action::Edit(Edit::ShadingModel("few".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "few")));
     assert_eq!(bands(&bench), Value::Integer(6), "the most that both allow");
-    assert!(bench.session.messages.iter().any(|m| m.text.contains("bands is 6 at")));
+    assert!(bench.session.messages.iter().any(|m| m.text.contains("bands is now 6 for")));
     for (value, expected) in [(1, 6), (9, 6), (4, 4)] {
-        let edit = ObjectField::Material("bands", Value::Integer(value));
-        bench.apply(Action::Edit(Edit::Object(0, edit)));
+        let edit = Edit::material(Part::Object(0), "bands", Value::Integer(value));
+        bench.apply(Action::Edit(edit));
         assert_eq!(bands(&bench), Value::Integer(expected), "{value}");
     }
     bench.apply(Action::Undo);

@@ -12,6 +12,7 @@ use lights_camera_models::{
     },
     parameters,
     registry::{Register as _, Registry},
+    scene::{Part, Scene},
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
 };
 
@@ -53,7 +54,7 @@ impl Panel for Guest {
         ui.label(format!("{} of {}: pressed {pressed} times", self.id, context.document().objects.len()));
         ui.label(format!("{} was shown {}", self.id, if self.shown > 1 { "before" } else { "never" }));
         if ui.button("Everything").clicked() {
-            context.edit(Edit::SceneName("Changed by a guest".to_owned()));
+            context.edit(Edit::set(Part::Scene, Scene::name, "Changed by a guest"));
             context.act(Action::Select(Selection::Room));
             context.say("said by a guest");
             context.queue(|world| world.get_resource_or_init::<Pressed>().0 += 1);
@@ -331,7 +332,7 @@ fn a_panel_that_panics_is_named_and_the_window_goes_on() {
     bench.panels.add(Fragile);
     bench.settle();
     assert!(bench.says("Whole"));
-    bench.apply(Action::Edit(Edit::SceneName("Break".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::name, "Break")));
     bench.settle();
     let lights = bench.session.document.lights.len();
     let why = format!("{lights} lights are too many");
@@ -339,13 +340,11 @@ fn a_panel_that_panics_is_named_and_the_window_goes_on() {
     assert_eq!(said.len(), 1, "once");
     assert_eq!(
         said[0].text,
-        format!(
-            "The panel “Fragile” (fragile) stopped, since it panicked: {why}. The window goes on without it."
-        )
+        format!("The panel “Fragile” (fragile) crashed: {why}. The window continues without it.")
     );
     assert!(bench.says(&format!("This panel stopped: {why}")) && !bench.says("Whole"));
     assert!(bench.says("sound row 0"), "the others are there");
-    bench.apply(Action::Edit(Edit::SceneName("Mended".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::name, "Mended")));
     bench.click("Show it again");
     bench.settle();
     assert!(bench.says("Whole"));

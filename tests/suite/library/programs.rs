@@ -15,6 +15,7 @@ use lights_camera_models::{
     },
     recovery::Store,
     registry::{Register as _, Registry},
+    scene::{Part, Scene},
 };
 
 use crate::{
@@ -32,7 +33,7 @@ const LAST: u32 = 40;
 fn breaking(mut frame: Local<u32>, mut session: ResMut<Session>, registry: Res<Registry>) {
     *frame += 1;
     if *frame == 5 {
-        session.apply(Action::Edit(Edit::SceneName("Unsaved".to_owned())), &registry);
+        session.apply(Action::Edit(Edit::set(Part::Scene, Scene::name, "Unsaved")), &registry);
     }
     // So that there is another frame.
     session.set_changed();

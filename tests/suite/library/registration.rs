@@ -217,25 +217,25 @@ fn what_is_right_is_registered() {
 #[test]
 fn ids_and_names_are_identifiers_and_there_once() {
     model!(BadId, MODEL.id("Bad Id!"), {});
-    model_refused::<BadId>(&["the id must be lower-case letters", "bad_id would do"]);
+    model_refused::<BadId>(&["the id must be lower-case letters", "for example bad_id"]);
     model!(Reserved, MODEL.id("struct"), {});
     model_refused::<Reserved>(&["the id is a reserved word in WGSL or JSON; choose another"]);
     model!(Null, MODEL.id("null"), {});
     model_refused::<Null>(&["the id is a reserved word"]);
     model!(Second, MODEL.id("lambert"), {});
     model_refused::<Second>(&[
-        "another reflection model has that id already; choose another, or call replace_reflection_model",
+        "that id is already used by another reflection model; choose another id, or call replace_reflection_model",
     ]);
     model!(Nameless, reflection::Declaration::new("paper", " ", PAPER), {});
     model_refused::<Nameless>(&["the name is empty"]);
     light!(Hyphen, light::Declaration::new("my-lamp", "My lamp", LAMP.wgsl));
-    light_refused::<Hyphen>(&["my_lamp would do"]);
+    light_refused::<Hyphen>(&["for example my_lamp"]);
     light!(Point, light::Declaration::new("point", "Point", LAMP.wgsl));
-    light_refused::<Point>(&["another light type has that id already"]);
+    light_refused::<Point>(&["that id is already used by another light type"]);
     shape!(Cube, shape::Declaration::new("cube", "Cube"), |_, _| {});
-    shape_refused::<Cube>(&["another object type has that id already"]);
+    shape_refused::<Cube>(&["that id is already used by another object type"]);
     model!(SamePath, MODEL.wgsl(Source::new("loop.wgsl", PAPER.text)), {});
-    model_refused::<SamePath>(&["the path of its shader is \"loop.wgsl\", which is that of another text"]);
+    model_refused::<SamePath>(&["the path of its shader is \"loop.wgsl\", which is that of another shader"]);
     model!(Elsewhere, MODEL.wgsl(Source::new("../paper.wgsl", PAPER.text)), {});
     model_refused::<Elsewhere>(&["must be a path below the folder of shaders"]);
 }
@@ -255,13 +255,13 @@ fn parameters_have_names_ranges_and_defaults_that_work() {
     model!(NoChoice, MODEL, { sort: choice = Parameter::choice("sort", &[], 0) });
     model_refused::<NoChoice>(&["it has no choices"]);
     model!(TwiceChoice, MODEL, { sort: choice = Parameter::choice("sort", &[("a", "A"), ("a", "B")], 0) });
-    model_refused::<TwiceChoice>(&["the choice \"a\" is empty or there twice"]);
+    model_refused::<TwiceChoice>(&["the choice \"a\" is empty or given twice"]);
     model!(Truth, MODEL, { sort: choice = Parameter::choice("sort", &[("a", "A"), ("true", "B")], 0) });
     model_refused::<Truth>(&["the choice \"true\" is a value of flags"]);
     model!(Twice, MODEL, { a: number = Parameter::number("w", 0.0..=1.0, 0.5), b: number = Parameter::number("w", 0.0..=1.0, 0.5) });
     model_refused::<Twice>(&["parameter `w`: is declared twice"]);
     model!(Named, MODEL, { bands: number = Parameter::number("bandCount", 0.0..=1.0, 0.5) });
-    model_refused::<Named>(&["parameter `bandCount`: the name must be lower-case", "band_count would do"]);
+    model_refused::<Named>(&["parameter `bandCount`: the name must be lower-case", "for example band_count"]);
     model!(Keyword, MODEL, { fill: number = Parameter::number("loop", 0.0..=1.0, 0.5) });
     model_refused::<Keyword>(&["parameter `loop`: the name is a reserved word"]);
     model!(KeyOfObject, MODEL, { size: number = Parameter::number("size", 0.0..=1.0, 0.5) });
@@ -296,11 +296,13 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
         mm: triple = triple("mm"), nn: triple = triple("nn"), oo: triple = triple("oo"), pp: triple = triple("pp"),
         qq: triple = triple("qq")
     });
-    light_refused::<Wide>(&["its parameters take 268 bytes, at most 256 fit"]);
+    light_refused::<Wide>(&["its parameters take 268 bytes, but at most 256 fit"]);
     light!(Coloured, LAMP.cone("zenith"), { zenith: colour = Parameter::colour("zenith", [0; 3]) });
-    light_refused::<Coloured>(&["its cone is parameter `zenith`, but must be one of its numbers"]);
+    light_refused::<Coloured>(&["its cone is parameter `zenith`, but must be a parameter of type number"]);
     light!(Coneless, LAMP.cone("cone_angle"));
-    light_refused::<Coneless>(&["its cone is parameter `cone_angle`, but must be one of its numbers"]);
+    light_refused::<Coneless>(&[
+        "its cone is parameter `cone_angle`, but must be a parameter of type number",
+    ]);
     light!(OtherCone, LAMP, { cone_angle: colour = Parameter::colour("cone_angle", [0; 3]) });
     light_refused::<OtherCone>(&[
         "parameter `cone_angle`: is a colour, but that of `spot` is a number; light types share parameters by name",
@@ -308,9 +310,9 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
     light!(Sizeless, LAMP.at_position().sizes(&[Size::Radius("zenith")]), {
         zenith: colour = Parameter::colour("zenith", [0; 3])
     });
-    light_refused::<Sizeless>(&["its size is parameter `zenith`, but must be one of its numbers"]);
+    light_refused::<Sizeless>(&["its size is parameter `zenith`, but must be a parameter of type number"]);
     light!(Rolled, LAMP.at_position().with_direction().roll("tilt"));
-    light_refused::<Rolled>(&["its roll is parameter `tilt`, but must be one of its numbers"]);
+    light_refused::<Rolled>(&["its roll is parameter `tilt`, but must be a parameter of type number"]);
     light!(Nowhere, LAMP.sizes(&[Size::Radius("dimmed")]), { dimmed: number = DIMMED_BY });
     light_refused::<Nowhere>(&["it has sizes, but no position around which they lie"]);
     light!(Undirected, LAMP.at_position().sizes(&[Size::Width("dimmed")]), { dimmed: number = DIMMED_BY });
@@ -350,7 +352,7 @@ fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
     registry.try_add_object_type::<OfShape>().expect("an object type may have files");
     shading!(OfShading, SHADING, { web: file = WEB });
     shading_refused::<OfShading>(&[
-        "parameter `web`: is a file, which light types and object types alone may have",
+        "parameter `web`: is a file, which only light types and object types may have",
     ]);
     const READING: Source = Source::new(
         "lamp.wgsl",
@@ -429,8 +431,8 @@ fn shading_models_have_a_key_of_their_own() {
     shading!(OfPhong, keyed('P'));
     shading_refused::<OfPhong>(&["its key is 'P', which is that of `phong`; choose another"]);
     shading!(OfWindow, keyed('H'));
-    let said = shading_refused::<OfWindow>(&["its key is 'H', which has another use in the window"]).what;
-    let free = said.rsplit("free are ").next().unwrap_or_default();
+    let said = shading_refused::<OfWindow>(&["its key is 'H', which the window uses already"]).what;
+    let free = said.rsplit("available are ").next().unwrap_or_default();
     assert!(free.contains('N') && !free.contains(['P', 'H', 'T', 'D']), "{said}");
 }
 
@@ -472,7 +474,7 @@ fn shade_pixel(passed: Varying) -> vec3<f32> {
     const D: Parameter = Parameter::colour("d", [0; 3]);
     const E: Parameter = Parameter::colour("e", [0; 3]);
     shading!(Many, with(STAGES), { a: colour = A, b: colour = B, c: colour = C, d: colour = D, e: colour = E, steps: number = STEPS, k_d: number = K_D });
-    shading_refused::<Many>(&["its parameters take 17 numbers, at most 16 fit; a colour takes three"]);
+    shading_refused::<Many>(&["its parameters take 17 numbers, but at most 16 fit; a colour takes three"]);
     // The other way round: a reflection model that uses the name differently.
     const STEPS_AS_COLOUR: Parameter = Parameter::colour("steps", [0; 3]);
     model!(Later, MODEL, { steps: colour = STEPS_AS_COLOUR });
@@ -489,7 +491,7 @@ fn meshes_are_checked_at_both_ends_and_the_default() {
     shape!(Large, SHAPE, |m, _| m.positions.iter_mut().for_each(|p| *p *= 40.0));
     shape_refused::<Large>(&["its largest extent is 40, but must be 1"]);
     shape!(Aside, SHAPE, |m, _| m.positions.iter_mut().for_each(|p| p.y += 1.0));
-    shape_refused::<Aside>(&["its middle is at [0, 1, 0], but must be at the origin"]);
+    shape_refused::<Aside>(&["its centre is at [0, 1, 0], but must be at the origin"]);
     shape!(Beyond, SHAPE, |m, _| m.polygons.push(Polygon::triangle(0, 1, 4)));
     shape_refused::<Beyond>(&["polygon 4 has the corner 4, but there are 4 vertices, counted from 0"]);
     shape!(Inwards, SHAPE, |m, _| m.polygons = vec![
@@ -511,7 +513,7 @@ fn meshes_are_checked_at_both_ends_and_the_default() {
 fn wgsl_is_checked_with_file_and_line() {
     model!(Lacking, MODEL.wgsl(Source::new("paper.wgsl", "fn respond() {}\n")), {});
     let error =
-        model_refused::<Lacking>(&["paper.wgsl:1:4: the function response is missing; it is fn response("]);
+        model_refused::<Lacking>(&["paper.wgsl:1:4: the function response is missing; define fn response("]);
     assert_eq!(error.shader.map(|problem| problem.file).as_deref(), Some("paper.wgsl"));
     model!(Broken, MODEL.wgsl(Source::new("paper.wgsl", concat!(
         "// mine\n",
@@ -522,7 +524,7 @@ fn wgsl_is_checked_with_file_and_line() {
     model_refused::<Broken>(&["paper.wgsl:3:", "shine"]);
     light!(OtherFunction, light::Declaration::new("lamp", "Lamp", lamp!("lump")));
     light_refused::<OtherFunction>(&[
-        "lump.wgsl:1:4: the function incident_lamp is missing; it is fn incident_lamp(light: Light, p: vec3<f32>) -> Incident",
+        "lump.wgsl:1:4: the function incident_lamp is missing; define fn incident_lamp(light: Light, p: vec3<f32>) -> Incident",
         "did you name it incident_lump?",
     ]);
     shading!(

@@ -143,7 +143,7 @@ fn mistakes_in_curves_are_told_with_what_would_be_right() {
         (one(&many.join(", ")), "curves: \"c8\": is one too many: at most 8 fit"),
         (
             one("\"coat\": { \"model\": \"microfacet\", \"alfa_x\": 0.3 }"),
-            "\"alfa_x\" is no parameter of microfacet; did you mean \"alpha_x\"?",
+            "\"alfa_x\" is not a parameter of microfacet; did you mean \"alpha_x\"?",
         ),
         (
             one("\"coat\": { \"model\": \"microfacet\", \"alpha_x\": \"base_colour\" }"),
@@ -163,7 +163,7 @@ fn mistakes_in_curves_are_told_with_what_would_be_right() {
         ),
         (
             format!("\"lobe\": \"openpbr\", {}", one("\"fuzz\": { \"model\": \"lambert\" }")),
-            "curves: \"fuzz\": is a curve of the model of \"lobe\"; it needs another name",
+            "curves: \"fuzz\": is the name of a curve of the \"lobe\" model; choose another name",
         ),
     ] {
         let problems = read("layered", &text(&declared)).expect_err(&declared);

@@ -224,7 +224,7 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
     // A file that is not a model is not one of its errors.
     let told = bench.run("evaluate huge", ANGLES);
     assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{}", told.err);
-    assert!(told.err.contains("models/huge.wgsl is no model: it neither begins with"), "{}", told.err);
+    assert!(told.err.contains("models/huge.wgsl is not a model: it neither begins with"), "{}", told.err);
     // A scene names it too.
     let told = bench.run("check -", &scene("nothing", &json!({}), None));
     assert_eq!(told.status, Some(1));
@@ -288,7 +288,7 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
     let bench = Bench::crowded();
     let listed = bench.run("models --json --verbose", "");
     assert_eq!(listed.status, Some(1), "some declarations are wrong");
-    assert!(listed.err.contains("custom models the declarations alone were read"), "{}", listed.err);
+    assert!(listed.err.contains("custom models were read; `lcm models check ID`"), "{}", listed.err);
     let all: Vec<Json> = serde_json::from_str(&listed.out).unwrap();
     let models: Vec<_> = all.iter().filter(|entry| entry["kind"] == "reflection model").collect();
     // The declaration of the broken one is valid.

@@ -85,7 +85,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         ("{ \"name\": \"a\",\n \"name\": \"b\" }", "2:2: name is given twice"),
         ("{ \"name\": 3 }", "1:18: name is 3, but it must be one line of text, of at most 60 characters"),
-        ("{ \"name\": \" \" }", "name is \" \", but a name must have letters"),
+        ("{ \"name\": \" \" }", "name is \" \", but a name must not be blank"),
         ("{ \"anisotropic\": 1 }", "anisotropic is 1, but it must be true or false"),
         ("{ \"equation\": 1 }", "equation is 1, but it must be text, or a list of parts"),
         (
@@ -95,7 +95,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"equation\": [{ \"term\": \"diffuse\" }] }", "equation[0].text is missing"),
         (
             "{ \"laws\": true }",
-            "laws is true, but it must be a list of the laws that the model keeps, of \"reciprocal\", \"energy conserving\" and \"non-negative\"",
+            "laws is true, but it must be a list of the laws that the model keeps, any of \"reciprocal\", \"energy conserving\" and \"non-negative\"",
         ),
         (
             "{ \"laws\": [\"recipocal\"] }",
@@ -118,7 +118,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (
             "{ \"lobes\": [{ \"alpha\": 1 }] }",
-            "lobes[0].shape is missing; it is \"cosine\", \"ggx\" or \"power\"",
+            "lobes[0].shape is missing; it must be \"cosine\", \"ggx\" or \"power\"",
         ),
         (
             "{ \"lobes\": [{ \"shape\": \"gx\" }] }",
@@ -138,11 +138,11 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (
             "{ \"lobes\": [{ \"shape\": \"power\", \"exponent\": -1 }] }",
-            "lobes[0].exponent is -1, but it must be a number, at least 0",
+            "lobes[0].exponent is -1, but it must be a number, 0 or more",
         ),
         (
             "{ \"parameters\": [\"alpha\", \"base_colour\"], \"lobes\": [{ \"shape\": \"power\", \"exponent\": \"base_colour\" }] }",
-            "lobes[0].exponent is \"base_colour\", but it must be a number, at least 0, or one of the parameters \"alpha\"",
+            "lobes[0].exponent is \"base_colour\", but it must be a number, 0 or more, or one of the parameters \"alpha\"",
         ),
         ("{ \"parameters\": {} }", "parameters is {}, but it must be a list"),
         (
@@ -157,18 +157,21 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "{ \"parameters\": [{ \"name\": \"Mine\" }] }",
             "parameters[0].name is \"Mine\", but it must be lower-case letters, digits and underscores",
         ),
-        ("{ \"parameters\": [{ \"name\": \"rim_color\" }] }", "but scene files spell rim_colour"),
+        (
+            "{ \"parameters\": [{ \"name\": \"rim_color\" }] }",
+            "but in scene files it must be spelt rim_colour",
+        ),
         ("{ \"parameters\": [{ \"name\": \"loop\" }] }", "\"loop\", but that is a reserved word in WGSL"),
-        ("{ \"parameters\": [\"k_s\", { \"name\": \"k_s\" }] }", "there are two parameters k_s"),
+        ("{ \"parameters\": [\"k_s\", { \"name\": \"k_s\" }] }", "k_s is declared twice"),
         ("{ \"groups\": [\"k_s\"] }", "groups is [\"k_s\"], but it must be an object of lists"),
         ("{ \"groups\": { \"Coat\": 1 } }", "groups is 1, but it must be an object of lists"),
         (
             "{ \"parameters\": [\"k_s\"],\n \"groups\": { \"Coat\": [\"k_d\"] } }",
-            "2:14: group \"Coat\": \"k_d\" is no parameter of the model; did you mean \"k_s\"?",
+            "2:14: group \"Coat\": \"k_d\" is not a parameter of the model; did you mean \"k_s\"?",
         ),
         (
             "{ \"parameters\": [\"k_s\"], \"groups\": { \"A\": [\"k_s\"], \"B\": [\"k_s\"] } }",
-            "group \"B\": \"k_s\" is in a group already",
+            "group \"B\": \"k_s\" is already in a group",
         ),
         (
             "{ \"parameters\": [{ \"name\": \"base_colour\", \"type\": \"number\" }] }",
@@ -229,7 +232,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (
             r#""choices": ["maybe", "true"]"#,
-            r#"choices has "true", but true and false are the values of the type "flag""#,
+            r#"choices has "true", but true and false are only for the type "flag""#,
         ),
         (r#""type": "flag", "default": "true""#, r#"default is "true", but it must be true or false"#),
         (r#""default": true, "max": 1"#, "max is given, but a flag has none"),
@@ -400,7 +403,7 @@ fn registering_replaces_in_place_and_removing_forgets() {
         &with("second", &matt("{ \"parameters\": [{ \"name\": \"x\" }] }")),
     );
     let said = clash.unwrap_err()[0].message.clone();
-    assert!(said.contains("it is in ° here and without a unit in second"), "{said}");
+    assert!(said.contains("it is in ° here, but without a unit in second"), "{said}");
 }
 
 #[test]

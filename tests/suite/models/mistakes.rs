@@ -23,7 +23,7 @@ fn mistakes_are_reported_where_they_are() {
     for (text, expected) in [
         (
             head.to_owned(),
-            "models/mine.wgsl:1:36: the function response is missing; it is fn response(l: vec3<f32>",
+            "models/mine.wgsl:1:36: the function response is missing; define fn response(l: vec3<f32>",
         ),
         (format!("{head}{}", body.replace("m.k_s", "m.k_d")), "models/mine.wgsl:3:"),
         (
@@ -43,7 +43,7 @@ fn mistakes_are_reported_where_they_are() {
         ),
         (
             format!("{head}{}", body.replace("fn response", "fn respons")),
-            "models/mine.wgsl:2:4: the function response is missing; it is fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms; did you name it respons?",
+            "models/mine.wgsl:2:4: the function response is missing; define fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms; did you name it respons?",
         ),
         (
             format!("{head}{body}@fragment\n"),

@@ -5,16 +5,17 @@ use std::path::Path;
 use bevy_egui::egui::{PointerButton, accesskit::Role};
 use lights_camera_models::{
     custom,
-    document::{Edit, ObjectField},
+    document::Edit,
     panel::{caption::caption_text, state::Action},
     parameter::{UsedWhen, Value},
     registry::Registry,
+    scene::Part,
 };
 
 use crate::{helpers::support::lcm, window::panels::Bench};
 
 fn choose(bench: &mut Bench, name: &'static str, choice: &'static str) {
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material(name, Value::Choice(choice.into())))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), name, Value::Choice(choice.into()))));
 }
 
 #[test]
@@ -103,9 +104,9 @@ fn a_condition_that_cannot_hold_is_reported_where_it_stands() {
         ("\"soft\"", "3:36: parameters[1].used_when is \"soft\", but it must name one other parameter"),
         (
             "{ \"from\": [\"soft\"] }",
-            "used_when is { \"from\": [\"soft\"] }, but it must name a parameter of this model, and there is no \"from\"",
+            "used_when is { \"from\": [\"soft\"] }, but it must name a parameter of this model; there is no \"from\"",
         ),
-        ("{ \"k_d\": [\"soft\"] }", "it must name a parameter of type choice, and \"k_d\" has another type"),
+        ("{ \"k_d\": [\"soft\"] }", "it must name a parameter of type choice; \"k_d\" has another type"),
         ("{ \"form\": [\"sfot\"] }", "\"sfot\" is not a choice of form, which has \"plain\", \"soft\""),
         ("{ \"form\": [] }", "it must name one other parameter"),
     ] {

@@ -12,7 +12,7 @@ use bevy::{
 use glam::Vec3;
 use lights_camera_models::{
     custom::CustomFile,
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     light,
     optics::{
         TermSelection,
@@ -28,7 +28,7 @@ use lights_camera_models::{
         material::ModelMaterial,
         meshes::ShapeMeshes,
     },
-    scene::{Scene, check},
+    scene::{Light, Object, Part, Scene, check},
 };
 
 use crate::{
@@ -213,23 +213,28 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
             let i = numbers.below(window.document.objects.len());
             let l = numbers.below(window.document.lights.len());
             let number = numbers.below(60);
-            let object = |field| Action::Edit(Edit::Object(i, field));
             let action = match numbers.below(14) {
                 0 => Action::AddObject(shape),
                 1 => Action::Duplicate(Selection::Object(i)),
                 2 | 3 => Action::Remove(Selection::Object(i)),
                 4 => Action::AddLight(light),
                 5 => Action::Remove(Selection::Light(l)),
-                6 => Action::Edit(Edit::Light(l, LightField::Type(light))),
-                7 => object(ObjectField::Type(shape)),
-                8 => object(ObjectField::Size(0.1 + number as f32 / 20.0)),
-                9 => object(ObjectField::Model(Some(model))),
-                10 => object(ObjectField::ShadingModel(Some(shading))),
-                11 => object(ObjectField::Shape("tube_radius", Value::Number(0.02 + number as f32 / 300.0))),
-                12 => {
-                    object(ObjectField::Shape("vertical_exponent", Value::Number(0.1 + number as f32 / 30.0)))
-                }
-                _ => object(ObjectField::Tessellation(Some(3 + number as u32))),
+                6 => Action::Edit(Edit::set(Part::Light(l), Light::light_type, light)),
+                7 => Action::Edit(Edit::set(Part::Object(i), Object::object_type, shape)),
+                8 => Action::Edit(Edit::set(Part::Object(i), Object::size, 0.1 + number as f32 / 20.0)),
+                9 => Action::Edit(Edit::set(Part::Object(i), Object::reflection_model, model)),
+                10 => Action::Edit(Edit::set(Part::Object(i), Object::shading_model, shading)),
+                11 => Action::Edit(Edit::parameter(
+                    Part::Object(i),
+                    "tube_radius",
+                    Value::Number(0.02 + number as f32 / 300.0),
+                )),
+                12 => Action::Edit(Edit::parameter(
+                    Part::Object(i),
+                    "vertical_exponent",
+                    Value::Number(0.1 + number as f32 / 30.0),
+                )),
+                _ => Action::Edit(Edit::set(Part::Object(i), Object::tessellation, 3 + number as u32)),
             };
             window.apply(action, &registry);
             assert!(window.document.lights.len() <= light::MAX_LIGHTS);
@@ -300,9 +305,10 @@ fn both_renderers_agree_on_extreme_directions_and_sizes() {
         }
         agree(&format!("{direction}"), &scene, true);
     }
+    let largest = Object::size.limits().max as f32;
     for kind in ["sphere", "cube", "torus", "teapot"] {
         for shading in registry.shading_models() {
-            for size in [f32::MIN_POSITIVE, 1e-10, 1e5, check::MAX_SIZE] {
+            for size in [f32::MIN_POSITIVE, 1e-10, 1e5, largest] {
                 let mut scene = close_up(kind, "directional");
                 shading.declaration.id.clone_into(&mut scene.shading_model);
                 scene.objects[0].size = size;
@@ -318,14 +324,15 @@ fn both_renderers_agree_on_extreme_directions_and_sizes() {
 
 #[test]
 fn sizes_that_no_picture_can_show_are_refused() {
-    for size in [check::MAX_SIZE * 1.001, 3.4e38, f32::INFINITY] {
+    let largest = Object::size.limits().max as f32;
+    for size in [largest * 1.001, 3.4e38, f32::INFINITY] {
         let mut scene = Scene::default();
         scene.objects[0].size = size;
         let found = check::scene(&scene, &Registry::builtin());
         let [problem] = &found[..] else { panic!("{size}: {found:?}") };
         assert!(problem.to_string().ends_with("but a size must be at most 1e9 m"), "{problem}");
         let mut window = Window::default();
-        window.apply(Action::Edit(Edit::Object(0, ObjectField::Size(size))), &Registry::builtin());
+        window.apply(Action::Edit(Edit::set(Part::Object(0), Object::size, size)), &Registry::builtin());
         assert!(window.document == Scene::default(), "the window refuses it too");
     }
 }

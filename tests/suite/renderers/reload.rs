@@ -189,7 +189,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "missing import",
         file: "wrapper.wgsl",
         change: |t| replaced(t, "#import bevy_pbr::mesh_functions\n", "\n"),
-        said: "`mesh_functions` is used, but no `#import` brings it",
+        said: "`mesh_functions` is used, but no `#import` provides it",
         line: "mesh_functions::",
     },
     Breakage {
@@ -243,7 +243,7 @@ pub const BREAKAGES: &[Breakage] = &[
                 .expect("UTF-8");
             replaced(&t, "@fragment\nstruct", "struct")
         },
-        said: "@location(9) is not the same in the vertex and the fragment stage",
+        said: "@location(9) differs between the vertex and the fragment stage",
         line: "@location(9)",
     },
     Breakage {
@@ -255,7 +255,7 @@ pub const BREAKAGES: &[Breakage] = &[
             );
             replaced(&t, "* illumination.exposure;", "* illumination.exposure * more[0];")
         },
-        said: "@binding(7) is not there",
+        said: "@binding(7) does not exist",
         line: "@binding(7)",
     },
     Breakage {

@@ -12,7 +12,7 @@ use lights_camera_models::{
     parameter::{ALPHA, BASE_COLOUR, K_D, Value},
     registry::Registry,
     scene::{
-        Display, Light, Object, Observer, Scene, SceneSize,
+        Display, Light, Object, Observer, Part, Scene, SceneSize,
         error::LoadError,
         formats::{self, Parsed, SceneFormat, SceneFormats as _, SceneWriter, Source, Target},
         load::{self, Defaults},
@@ -146,7 +146,7 @@ fn each_mistake_of_a_format_is_told_by_name() {
     let mut registry = registry();
     let good = Other::GOOD;
     for (wrong, expected) in [
-        (Other { name: " ", ..good }, "it needs a name for people"),
+        (Other { name: " ", ..good }, "it needs a display name"),
         (Other { extensions: &[], ..Other::GOOD }, "it needs an extension"),
         (
             Other { extensions: &[".other"], ..Other::GOOD },
@@ -162,7 +162,7 @@ fn each_mistake_of_a_format_is_told_by_name() {
             Other { extensions: &["spheres"], ..Other::GOOD },
             "\"spheres\" belongs to the format list of spheres",
         ),
-        (Other { name: "JSON", ..Other::GOOD }, "there is a format of that name already"),
+        (Other { name: "JSON", ..Other::GOOD }, "a format of that name already exists"),
     ] {
         let name = wrong.name;
         let error = registry.try_add_scene_format(wrong).expect_err("refused").to_string();
@@ -253,7 +253,7 @@ fn a_scene_whose_format_can_only_be_read_is_saved_as_json_and_quitting_waits_for
     let mut desk = Desk::open(&path, registry());
     assert_eq!(desk.session.document.objects.len(), 2);
     assert!(desk.session.recent_files[0].ends_with("balls.spheres"));
-    desk.act(Action::Edit(Edit::SceneName("Balls".to_owned())));
+    desk.act(Action::Edit(Edit::set(Part::Scene, Scene::name, "Balls")));
     desk.act(Action::Quit);
     desk.act(Action::Answer(Answer::Save));
     assert!(desk.left.contains(&Effect::PickSave), "{:?}", desk.left);
@@ -316,7 +316,7 @@ fn an_edited_table_is_saved_as_a_table_and_followed() {
     let path = folder.path().join("wheel.csv");
     fs::copy(crate::helpers::support::root().join("scenes/colour_wheel.csv"), &path).expect("copied");
     let mut desk = Desk::open(&path, registry());
-    desk.act(Action::Edit(Edit::SceneName("Mine".to_owned())));
+    desk.act(Action::Edit(Edit::set(Part::Scene, Scene::name, "Mine")));
     desk.act(Action::Save);
     assert!(!desk.session.is_dirty(), "{:?}", desk.session.messages.last());
     let text = fs::read_to_string(&path).expect("written");

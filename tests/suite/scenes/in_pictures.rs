@@ -11,7 +11,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::Registry,
     scene::{
-        Scene,
+        Part, Scene,
         formats::SCENE_KEYWORD,
         load::{self, Defaults},
         save::to_json,
@@ -195,7 +195,7 @@ fn a_scene_from_a_picture_is_saved_as_json() {
     fs::write(&path, &picture).expect("written");
     let mut desk = Desk::open(&path, Registry::builtin());
     assert_eq!(desk.session.title(), "Gold");
-    desk.act(Action::Edit(Edit::SceneName("Silver".to_owned())));
+    desk.act(Action::Edit(Edit::set(Part::Scene, Scene::name, "Silver")));
     desk.act(Action::Save);
     assert!(desk.left.contains(&Effect::PickSave), "{:?}", desk.left);
     let said = &desk.session.messages.last().expect("said").text;

@@ -9,7 +9,7 @@ use std::{
 
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Document, Edit, ObjectField, Selection},
+    document::{Document, Edit, Selection},
     optics::{
         TermSelection,
         colour::{BACKGROUND, Encoding},
@@ -20,7 +20,7 @@ use lights_camera_models::{
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
-        Scene, check,
+        Part, Scene, check,
         load::{self, Defaults},
         save,
     },
@@ -221,7 +221,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let model = folder.path().join("model.obj").display().to_string();
     let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file: ";
     for (content, expected) in [
-        ("", ": it begins neither as glTF binary nor as PLY, and has no polygons (f) as OBJ"),
+        ("", ": it does not begin like binary glTF or PLY, and has no OBJ polygons (f)"),
         (
             "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1/1 2/1 3/1\n",
             ":5: this face (f) names the texture coordinate 1, but the file has no",
@@ -232,7 +232,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
         ("ply\nformat ascii 1.0\nend_header\n", ": its header has no element vertex"),
         (
             "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-            ":4: a corner of polygon 1 is at (NaN, 0, 0), which is nowhere",
+            ":4: a corner of polygon 1 is at (NaN, 0, 0), but positions must be finite",
         ),
     ] {
         fs::write(folder.path().join("model.obj"), content).expect("written");
@@ -363,7 +363,7 @@ fn hostile_files_are_refused_at_once_and_pipes_do_not_block() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     let begin = Instant::now();
     for (name, content, expected) in [
-        ("many.obj", format!("{square}{}", "f 1 2 3\n".repeat(500_001)), Some("more than the 500000 polygons")),
+        ("many.obj", format!("{square}{}", "f 1 2 3\n".repeat(500_001)), Some("more than 500000 polygons")),
         ("round.obj", format!("{square}f {}\n", "1 2 3 4 ".repeat(33)), Some("polygon 1 has 132 corners")),
         ("wide.obj", format!("{square}f {}\n", "9".repeat(1 << 20)), Some("a face (f) must name")),
         ("same.obj", format!("{square}{}f 1 2 3\n", "f 1 1 1\n".repeat(100_000)), None),
@@ -414,7 +414,7 @@ fn files_that_are_large_together_are_refused_before_any_is_read() {
     let start = Instant::now();
     let said = load::file(&path, &Registry::builtin(), Defaults::Refuse).expect_err("too much").to_string();
     let name = path.display();
-    assert_eq!(said, format!("{name}: the scene names files of 544 MiB together; at most 512 MiB are read"));
+    assert_eq!(said, format!("{name}: the scene names files of 544 MiB in total; at most 512 MiB are read"));
     assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
 }
 
@@ -486,7 +486,7 @@ fn an_edit_with_a_file_that_cannot_be_used_is_refused_and_a_good_one_is_taken() 
     let mut document = Document::new(read(folder.path(), "knot.glb").expect("shipped"));
     let mut set = |name: &str| {
         let file = Value::File(NamedFile::named(name, folder.path(), parameter().1));
-        document.edit(Edit::Object(0, ObjectField::Shape("path", file)), Selection::Object(0), &registry)
+        document.edit(Edit::parameter(Part::Object(0), "path", file), Selection::Object(0), &registry)
     };
     let refused = set("bad.obj").expect_err("it is no model");
     assert!(refused.contains("bad.obj:1: a vertex (v) must be three numbers"), "{refused}");
@@ -609,7 +609,7 @@ fn what_is_dropped_is_added_to_the_scene_or_opened() {
     fs::write(&copy, "// mine").expect("written");
     write(&Effect::AdoptModel(at("velvet.wgsl")), &mut fresh, &registry);
     assert_eq!(fs::read_to_string(&copy).expect("left alone"), "// mine");
-    assert!(fresh.messages.last().is_some_and(|m| m.text.contains("exists already")));
+    assert!(fresh.messages.last().is_some_and(|m| m.text.contains("already exists")));
 }
 
 #[test]

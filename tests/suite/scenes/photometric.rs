@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Document, Edit, LightField, Selection},
+    document::{Document, Edit, Selection},
     optics::{
         TermSelection,
         colour::{BACKGROUND, Encoding},
@@ -15,7 +15,7 @@ use lights_camera_models::{
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
-        Scene, check,
+        Part, Scene, check,
         load::{self, Defaults},
         save,
     },
@@ -120,9 +120,9 @@ fn files_that_cannot_be_used_are_told_with_line_and_mistake() {
     let folder = tempfile::tempdir().expect("a folder");
     let lamp = folder.path().join("lamp.ies").display().to_string();
     for (content, expected) in [
-        ("a letter", format!("{lamp}: this is no IES LM-63 file: no line begins with TILT=")),
+        ("a letter", format!("{lamp}: this is not an IES LM-63 file: no line begins with TILT=")),
         (&*ies("900 100"), format!("{lamp}:7: the file ends before candela value 3 of 3")),
-        (&*ies("900 100 3 4"), format!("{lamp}:7: after the 3 candela values come")),
+        (&*ies("900 100 3 4"), format!("{lamp}:7: the 3 candela values are followed by")),
         (&*ies("900 bright 3"), format!("{lamp}:7: candela value 2 of 3")),
     ] {
         let error = read(folder.path(), "lamp.ies", content).expect_err("it cannot be used");
@@ -185,7 +185,7 @@ fn an_edit_with_a_file_that_cannot_be_used_is_refused_and_a_good_one_is_taken() 
     let format = registry_file().expect("a file");
     let mut set = |name: &str| {
         let file = Value::File(NamedFile::named(name, folder.path(), format));
-        document.edit(Edit::Light(0, LightField::Parameter("file", file)), Selection::Light(0), &registry)
+        document.edit(Edit::parameter(Part::Light(0), "file", file), Selection::Light(0), &registry)
     };
     fs::write(folder.path().join("bad.ies"), "TILT=NONE\n1 1").expect("written");
     let refused = set("bad.ies").expect_err("it is no lamp");

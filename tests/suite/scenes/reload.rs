@@ -4,7 +4,7 @@ use std::{fs, path::PathBuf};
 
 use bevy::ecs::{entity::Entity, schedule::Schedule, world::World};
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     optics::TermSelection,
     panel::{
         effects,
@@ -14,7 +14,7 @@ use lights_camera_models::{
     registry::Registry,
     render::entities::{CurrentScene, SceneEntities, reconcile},
     scene::{
-        Object, Scene,
+        Object, Part, Scene,
         load::{self, Defaults, Stamp},
         save,
     },
@@ -119,7 +119,7 @@ impl Desk {
 
     /// An unsaved change in the window.
     fn change(&mut self) {
-        self.act(Action::Edit(Edit::Object(1, ObjectField::Size(0.5))));
+        self.act(Action::Edit(Edit::set(Part::Object(1), Object::size, 0.5)));
         assert!(self.session.is_dirty());
     }
 }
@@ -338,7 +338,7 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
     desk.edited(&broken("8"));
     desk.edited(&broken("9"));
     assert_eq!((desk.said("k_d is 8"), desk.said("k_d is 9")), (0, 3));
-    assert_eq!((desk.session.messages.len(), desk.said("no longer holds the scene")), (4, 1));
+    assert_eq!((desk.session.messages.len(), desk.said("can no longer be read as a scene")), (4, 1));
     assert_eq!(desk.complaints().len(), 3);
     // A valid one clears everything, even if it equals the one shown.
     desk.edited(&text(&three()));
@@ -434,7 +434,7 @@ fn a_file_that_no_longer_holds_the_scene_leaves_it_unsaved_and_nothing_waits_for
         assert!(begin.elapsed() < std::time::Duration::from_secs(2), "{expected}");
         assert_eq!(desk.session.document, three());
         assert!(desk.session.shows_unsaved(), "{expected}: only the window has the scene");
-        assert_eq!(desk.said("no longer holds the scene"), 1, "{expected}");
+        assert_eq!(desk.said("can no longer be read as a scene"), 1, "{expected}");
         assert!(desk.said(expected) > 0, "{:?}", desk.session.messages);
         assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
         assert_eq!(desk.session.disk_badge().map(|b| b.text).as_deref(), Some(desk.badge()), "nobody edited");
@@ -458,7 +458,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert_eq!(desk.badge(), "");
     assert!(!desk.report());
     assert_eq!(desk.badge(), "room.json was deleted: only this window has the scene");
-    assert_eq!(desk.said("no longer there"), 1);
+    assert_eq!(desk.said("was deleted or moved"), 1);
     assert_eq!(desk.session.document, three());
     desk.act(Action::Quit);
     assert!(
@@ -535,7 +535,7 @@ fn unsaved_changes_are_kept_when_the_user_says_so_and_saving_replaces_the_file()
 fn who_kept_a_version_and_undoes_all_is_still_unsaved() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Keep));
-    desk.act(Action::Edit(Edit::Object(1, ObjectField::Size(1.0))));
+    desk.act(Action::Edit(Edit::set(Part::Object(1), Object::size, 1.0)));
     assert_eq!(desk.session.document, three());
     assert!(desk.session.is_dirty(), "the file holds something else");
 }

@@ -181,14 +181,14 @@ fn every_mistake_has_its_line_and_column() {
         ),
         (
             with("# the end", "scene,,Again"),
-            "room.csv:9:1: part is \"scene\", but there is a row for the scene above; a table has one",
+            "room.csv:9:1: part is \"scene\", but there is a row for the scene above; a table has only one",
         ),
         (
             with("# the end", "observer,,,5,5,9,,,,,,,0 0 1"),
             "observer is a list of 2, but a scene has exactly one observer",
         ),
         (with(row, ""), "room.csv:2:1: objects is missing; a scene must have a list of objects"),
-        (with(",0 0 -1,,,", ",0 0 -1,,,,5"), "room.csv:7:36: row has 17 cells, but the heading has 16"),
+        (with(",0 0 -1,,,", ",0 0 -1,,,,5"), "room.csv:7:36: row has 17 cells, but the header has 16"),
         // The header.
         (with(",size,", ",siez,"), "room.csv:2:66: siez is not a column; did you mean \"size\"?"),
         (
@@ -197,7 +197,7 @@ fn every_mistake_has_its_line_and_column() {
         ),
         (
             with(",size,", ",,"),
-            "room.csv:8:41: row has \"2\" in a column without a name; name it in the heading, or empty the cell",
+            "room.csv:8:41: row has \"2\" in a column without a name; name it in the header, or empty the cell",
         ),
         (with("material.k_d", "k_d"), "k_d is not a column; did you mean \"material.k_d\"?"),
         (with(",size,", ",sizes,"), "sizes is not a column; did you mean \"size\"?"),

@@ -14,7 +14,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     registry::Registry,
-    scene::formats::SceneFormats as _,
+    scene::{Part, Scene, formats::SceneFormats as _},
 };
 
 use crate::{helpers::support::root, window::examples::until, window::panels::Bench};
@@ -212,7 +212,7 @@ fn no_tooltip_stands_over_a_question() {
     let mut bench = Bench::with_model("blinn_phong");
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::Scale(150)));
-    bench.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "derivative")));
     let whole = caption_text(&bench.session, &bench.registry);
     let said = |bench: &mut Bench| bench.texts().contains(&whole);
     bench.hover(bench.area.rect.left_bottom() + vec2(40.0, -16.0));

@@ -11,7 +11,7 @@ use lights_camera_models::{
     },
     reference::{self, LightSamples, Settings},
     registry::Registry,
-    scene::{Scene, examples::EXAMPLES},
+    scene::{Part, Scene, examples::EXAMPLES},
 };
 
 use crate::window::panels::Bench;
@@ -53,7 +53,7 @@ fn unsaved_changes_are_asked_about_before_an_example_is_opened() {
     let registry = Registry::builtin();
     for (answer, title) in [(Answer::Cancel, "Mine"), (Answer::Discard, "Portrait")] {
         let mut session = Session::default();
-        session.apply(Action::Edit(Edit::SceneName("Mine".to_owned())), &registry);
+        session.apply(Action::Edit(Edit::set(Part::Scene, Scene::name, "Mine")), &registry);
         let portrait = EXAMPLES.iter().position(|e| e.name == "Portrait").expect("shipped");
         session.apply(Action::OpenExample(portrait), &registry);
         assert!(matches!(session.questions.open, Some(Question::Unsaved { .. })));

@@ -5,7 +5,7 @@ use bevy_egui::egui::{
 };
 use glam::{Quat, Vec3};
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     light::{self, LightRecord, LightType, Size, extent},
     panel::{
         marks::Lens,
@@ -17,7 +17,7 @@ use lights_camera_models::{
     parameter::{Parameter, Value},
     parameters,
     registry::{Register as _, Registry},
-    scene::{Light, Scene, comparison::Layout},
+    scene::{Light, Object, Part, Scene, comparison::Layout},
     shader::Source,
 };
 
@@ -103,7 +103,7 @@ fn a_drag_along_an_axis_is_one_step_of_the_history() {
         let mut bench = bench(scene());
         let before = position(&bench);
         // A previous step with the same name is separate.
-        let moved = Edit::Object(0, ObjectField::Position(before + Vec3::X * 0.1));
+        let moved = Edit::set(Part::Object(0), Object::position, before + Vec3::X * 0.1);
         bench.apply(Action::Edit(moved));
         let start = position(&bench);
         let by = way(&bench, 0.5 * Vec3::AXES[axis]);
@@ -289,7 +289,7 @@ fn an_open_menu_or_question_keeps_the_handles_from_the_pointer() {
     bench.click("Edit");
     drag(&mut bench, at, vec2(40.0, 0.0), Modifiers::NONE);
     assert_eq!(bench.session.document.done(), 0, "the press closes the menu");
-    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
     bench.apply(Action::New);
     drag(&mut bench, at, vec2(40.0, 0.0), Modifiers::NONE);
     assert_eq!(bench.session.document.done(), 1);

@@ -2,13 +2,14 @@
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     panel::{
         state::{Action, ThemeChoice, ViewChange},
         theme,
     },
     parameter::Value,
     registry::Registry,
+    scene::{Part, Scene},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -128,7 +129,7 @@ fn model_and_shading_of_one_object_are_overridden_beside_the_name_of_the_model()
     bench.click("Scene default (Phong)");
     let object = &bench.session.document.objects[0];
     assert_eq!((&object.reflection_model, &object.shading_model), (&None, &None));
-    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")));
     bench.click_at(bench.area.rect.center(), PointerButton::Primary);
     assert!(bench.find(control).is_some());
 }
@@ -221,7 +222,7 @@ fn the_groups_of_a_model_fold_and_say_how_much_is_changed() {
         .to_vec();
     assert!(tops.is_sorted(), "each knob below the heading of its group: {tops:?}");
     assert!(!bench.tree.iter().any(|s| s.label.starts_with("Sheen") && s.label.contains("changed")));
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "sheen", Value::Number(0.25))));
     bench.settle();
     let heading = bench.tree.iter().find(|s| s.label.starts_with("Sheen") && s.label.contains("1 changed"));
     let at = heading.expect("the heading counts").rect.center();
@@ -239,7 +240,7 @@ fn the_groups_of_a_model_fold_and_say_how_much_is_changed() {
 #[test]
 fn the_filter_shows_what_differs_and_keeps_what_is_being_changed() {
     let mut bench = Bench::with_model("disney");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("sheen", Value::Number(0.25)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "sheen", Value::Number(0.25))));
     bench.settle();
     bench.click("Only changed");
     bench.settle();

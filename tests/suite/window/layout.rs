@@ -6,12 +6,12 @@ use std::collections::BTreeSet;
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, epaint::TextShape, pos2, vec2};
 use glam::Vec3;
 use lights_camera_models::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     panel::{
         keys,
         state::{Action, Session, Severity, ViewChange},
     },
-    scene::Scene,
+    scene::{Light, Object, Part, Scene},
 };
 
 use crate::window::panels::Bench;
@@ -71,7 +71,7 @@ fn an_override_is_said_at_the_top_however_large_everything_is() {
         let mut bench = bench(scale);
         bench.apply(Action::AddObject("cube".to_owned()));
         assert!(!bench.says("overrides reflection"));
-        bench.apply(Action::Edit(Edit::Object(1, ObjectField::Model(Some("lambert".to_owned())))));
+        bench.apply(Action::Edit(Edit::set(Part::Object(1), Object::reflection_model, "lambert")));
         let hint = bench.tree.iter().find(|s| s.label.contains("“Cube 1” overrides reflection"));
         let hint = hint.unwrap_or_else(|| panic!("no hint at {scale} %")).rect;
         assert!(
@@ -192,7 +192,7 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
         bench.size.y = 2000.0;
         bench.apply(Action::AddLight("directional".to_owned()));
         let direction = Vec3::new(-0.4082, -0.0824, -0.8165);
-        bench.apply(Action::Edit(Edit::Light(1, LightField::Direction(direction))));
+        bench.apply(Action::Edit(Edit::set(Part::Light(1), Light::direction, direction)));
         let shown: Vec<_> = ["x", "y", "z"]
             .map(|axis| {
                 let field = bench.field(&format!("direction {axis}")).rect;
@@ -217,7 +217,7 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
     let mut bench = bench(100);
     let number = Vec3::new(-0.40824, -0.0824, -0.8165);
     bench.apply(Action::AddLight("directional".to_owned()));
-    bench.apply(Action::Edit(Edit::Light(1, LightField::Direction(number))));
+    bench.apply(Action::Edit(Edit::set(Part::Light(1), Light::direction, number)));
     let before = bench.session.document.scene().clone();
     let field = bench.field("direction x").rect;
     bench.click_at(field.center(), PointerButton::Primary);
@@ -232,7 +232,7 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
 fn a_name_that_is_longer_than_its_field_is_told_whole() {
     let mut bench = bench(150);
     let name = "gold under the light: white, from the front".to_owned();
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Name(name.clone()))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::name, name.clone())));
     let field = bench.field("Name").rect;
     let count = |bench: &mut Bench| texts(bench).iter().filter(|(text, _)| *text == name).count();
     let before = count(&mut bench);
@@ -246,7 +246,7 @@ fn the_colour_of_a_temperature_stands_beside_its_choice() {
         let mut bench = bench(scale);
         bench.size.y = 2000.0;
         bench.apply(Action::Select(Selection::Light(0)));
-        bench.apply(Action::Edit(Edit::Light(0, LightField::ColourTemperature(2700.0))));
+        bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::colour_temperature, 2700.0)));
         let choice = bench.find("Colour by: temperature").expect("a choice").rect;
         let sample = bench.shapes().into_iter().find_map(|shape| match shape {
             Shape::Rect(r) if r.rect.size() == vec2(44.0, 22.0) && r.rect.left() > choice.left() => {
@@ -343,7 +343,7 @@ fn the_caption_says_that_the_picture_is_behind_until_it_is_not() {
 #[test]
 fn a_line_of_the_caption_that_goes_on_says_so() {
     let mut bench = bench(150);
-    bench.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "derivative")));
     let corner = bench.area.rect.left_bottom();
     let mut pieces: Vec<_> = texts(&mut bench)
         .into_iter()

@@ -17,7 +17,7 @@ use bevy_egui::egui::{
     vec2,
 };
 use lights_camera_models::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Selection},
     optics::{Frame, TermSelection, Terms, colour::Encoding, fresnel, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
@@ -37,7 +37,7 @@ use lights_camera_models::{
         usage,
     },
     registry::{Register, Registry},
-    scene::{Display, Light, Object, Scene, examples::looks, load::Stamp},
+    scene::{Display, Light, Object, Part, Scene, examples::looks, load::Stamp},
     shader::Source,
 };
 
@@ -438,7 +438,7 @@ fn parameters_that_the_model_does_not_use_are_disabled_and_kept() {
     let mut bench = Bench::new(Session::new(scene));
     assert!(bench.field("shininess").disabled);
     assert!(bench.says("Not used by Lambert"));
-    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
     assert!(!bench.field("shininess").disabled);
     assert_eq!(bench.session.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
 }
@@ -588,10 +588,10 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     // No illegal value gets in this way, not even in part.
     let before = bench.session.document.scene().clone();
     let bad = vec![("ior", Value::Triple([2.0; 3])), ("extinction", Value::Triple([99.0; 3]))];
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Preset(bad))));
+    bench.apply(Action::Edit(Edit::materials(Part::Object(0), bad, "Measured material")));
     assert_eq!(*bench.session.document, before);
     // A model that cannot represent measured materials has no such control.
-    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
     assert!(!bench.says("measured material"));
     assert!(bench.says("equivalent roughness: 0.352"));
 }
@@ -650,7 +650,7 @@ fn presets_of_every_model_are_legal_and_recognised() {
 fn what_the_top_shows_is_what_the_selected_object_has() {
     let mut bench = Bench::new(Session::default());
     bench.apply(Action::AddObject("cube".to_owned()));
-    bench.apply(Action::Edit(Edit::Object(1, ObjectField::Model(Some("phong".to_owned())))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(1), Object::reflection_model, "phong")));
     assert!(bench.says("Reflection model: Phong") && bench.says("“Cube 1” overrides reflection"));
     bench.key(Key::R, Modifiers::NONE);
     bench.frame(vec![Event::Text("1977".to_owned())]);
@@ -695,7 +695,7 @@ fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
     bench.apply(Action::Model(ModelCommand::New));
     for (typed, said, free) in [
         ("Lambert", "There is already a model “lambert”; “lambert_2” is free.", "lambert_2"),
-        ("Größe 2", "“groesse_2” would do", "groesse_2"),
+        ("Größe 2", "for example “groesse_2”", "groesse_2"),
     ] {
         bench.apply(Action::Model(ModelCommand::Type(typed.to_owned())));
         assert!(bench.says(said), "{typed}");
@@ -711,7 +711,7 @@ fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
 fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
     let mut bench = Bench::new(Session::default());
     assert!(bench.says("has no unsaved changes"));
-    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
     assert!(bench.says("has unsaved changes"));
     let path = PathBuf::from("a.json");
     let effects = bench.session.saved(path.clone(), &bench.registry);
@@ -726,7 +726,7 @@ fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
 fn nothing_is_lost_without_a_question() {
     for action in [Action::New, Action::Quit, Action::Open(PathBuf::from("b.json"))] {
         let mut bench = Bench::new(Session::default());
-        bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
         bench.effects.clear();
         bench.apply(action.clone());
         assert!(bench.effects.is_empty(), "{action:?}");
@@ -741,7 +741,7 @@ fn nothing_is_lost_without_a_question() {
 #[test]
 fn saving_first_carries_on_with_what_was_asked_for() {
     let mut bench = Bench::new(Session::default());
-    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
     bench.session.path = Some(PathBuf::from("a.json"));
     bench.apply(Action::Quit);
     bench.effects.clear();
@@ -777,7 +777,7 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     let ask = || {
         let mut bench = Bench::new(Session::default());
         bench.session.path = Some(PathBuf::from("room.json"));
-        bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let version = Stamp::of(b"another content");
         bench.session.questions.ask(Question::NewerOnDisk {
@@ -880,16 +880,16 @@ fn illegal_edits_are_refused_with_the_reason() {
     let before = bench.session.document.scene().clone();
     let observer = bench.session.document.observer.position;
     for edit in [
-        Edit::Model("nonsense".to_owned()),
-        Edit::Light(0, LightField::Position(observer)),
-        Edit::Light(0, LightField::Intensity(-1.0)),
-        Edit::Light(0, LightField::LuminousFlux(-1.0)),
-        Edit::Light(0, LightField::ColourTemperature(999.0)),
-        Edit::Display(Display { exposure: 17.0, ..Display::default() }),
-        Edit::Object(0, ObjectField::Position(glam::Vec3::splat(20.0))),
-        Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.1))),
-        Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.1))),
-        Edit::Object(7, ObjectField::Size(1.0)),
+        Edit::set(Part::Scene, Scene::reflection_model, "nonsense"),
+        Edit::set(Part::Light(0), Light::position, observer),
+        Edit::set(Part::Light(0), Light::intensity, -1.0),
+        Edit::set(Part::Light(0), Light::luminous_flux, -1.0),
+        Edit::set(Part::Light(0), Light::colour_temperature, 999.0),
+        Edit::from(Display { exposure: 17.0, ..Display::default() }),
+        Edit::set(Part::Object(0), Object::position, glam::Vec3::splat(20.0)),
+        Edit::material(Part::Object(0), "k_d", Value::Number(0.1)),
+        Edit::parameter(Part::Object(0), "tube_radius", Value::Number(0.1)),
+        Edit::set(Part::Object(7), Object::size, 1.0),
     ] {
         let messages = bench.session.messages.len();
         bench.apply(Action::Edit(edit.clone()));
@@ -902,7 +902,11 @@ fn illegal_edits_are_refused_with_the_reason() {
 fn another_type_of_light_has_what_the_type_needs() {
     let mut bench = Bench::new(Session::default());
     for light in Registry::builtin().lights() {
-        bench.apply(Action::Edit(Edit::Light(0, LightField::Type(light.declaration.id.to_owned()))));
+        bench.apply(Action::Edit(Edit::set(
+            Part::Light(0),
+            Light::light_type,
+            light.declaration.id.to_owned(),
+        )));
         let now = &bench.session.document.lights[0];
         assert_eq!(now.position.is_some(), light.declaration.has_position);
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
@@ -917,7 +921,7 @@ fn a_parameter_of_a_shape_has_its_knob_its_step_and_its_place_in_the_file() {
     let object = |b: &Bench| b.session.document.objects[0].clone();
     let tube = |b: &Bench| object(b).shape.0.get("tube_radius").cloned();
     assert!(!bench.says("tube radius"), "a sphere has none");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("torus".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::object_type, "torus")));
     assert_eq!(tube(&bench), None, "the default is not written down");
     bench.type_into("tube radius", "0.2");
     assert_eq!(tube(&bench), Some(Value::Number(0.2)));
@@ -926,14 +930,14 @@ fn a_parameter_of_a_shape_has_its_knob_its_step_and_its_place_in_the_file() {
     assert!(text.contains("\"tube_radius\": 0.2"), "{text}");
     assert_eq!(crate::helpers::support::read(&text), *bench.session.document);
     // What is illegal is refused.
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.5)))));
+    bench.apply(Action::Edit(Edit::parameter(Part::Object(0), "tube_radius", Value::Number(0.5))));
     assert_eq!(tube(&bench), Some(Value::Number(0.2)));
     assert!(bench.says("tube radius is 0.5, but must be between 0.02 and 0.24."));
     bench.apply(Action::Undo);
     assert_eq!(tube(&bench), None);
     bench.apply(Action::Redo);
     // As with lights, another type keeps only its own parameters.
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("superellipsoid".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::object_type, "superellipsoid")));
     assert_eq!(tube(&bench), None);
     for label in ["vertical exponent", "horizontal exponent"] {
         bench.type_into(label, "1.25");
@@ -966,10 +970,10 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
     bench.click("cd  candela");
     assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
     // Lights without a flux offer no choice.
-    bench.apply(Action::Edit(Edit::Light(0, LightField::Type("directional".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::light_type, "directional")));
     assert!(!bench.says("unit: ") && !bench.says(" lm"));
     let refused = bench.session.messages.len() + 1;
-    bench.apply(Action::Edit(Edit::Light(0, LightField::LuminousFlux(800.0))));
+    bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::luminous_flux, 800.0)));
     assert_eq!(bench.session.messages.len(), refused);
 }
 
@@ -978,8 +982,8 @@ fn a_lamp_with_extent_is_as_bright_as_its_luminance_or_lumen_say_and_its_unit_ha
     for scale in [100, 150] {
         let mut bench = Bench::new(Session::default());
         bench.apply(Action::View(ViewChange::Scale(scale)));
-        bench.apply(Action::Edit(Edit::Light(0, LightField::Type("disc".to_owned()))));
-        bench.apply(Action::Edit(Edit::Light(0, LightField::Intensity(100.0))));
+        bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::light_type, "disc")));
+        bench.apply(Action::Edit(Edit::set(Part::Light(0), Light::intensity, 100.0)));
         bench.apply(Action::Select(Selection::Light(0)));
         bench.settle();
         // π times the area of a disc with the radius 0.5 m.
@@ -999,15 +1003,15 @@ fn a_lamp_with_extent_is_as_bright_as_its_luminance_or_lumen_say_and_its_unit_ha
 #[test]
 fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
     let mut bench = Bench::new(Session::default());
-    let mut now = |field: LightField| {
-        bench.apply(Action::Edit(Edit::Light(0, field)));
+    let mut now = |edit: Edit| {
+        bench.apply(Action::Edit(edit));
         let light = bench.session.document.lights[0].clone();
         (light.luminous_flux, light.intensity)
     };
-    assert_eq!(now(LightField::LuminousFlux(800.0)), (Some(800.0), 20.0));
-    assert_eq!(now(LightField::Type("spot".to_owned())), (Some(800.0), 20.0));
-    assert_eq!(now(LightField::Type("ambient".to_owned())), (None, 1.0));
-    assert_eq!(now(LightField::Type("point".to_owned())), (None, 20.0));
+    assert_eq!(now(Edit::set(Part::Light(0), Light::luminous_flux, 800.0)), (Some(800.0), 20.0));
+    assert_eq!(now(Edit::set(Part::Light(0), Light::light_type, "spot")), (Some(800.0), 20.0));
+    assert_eq!(now(Edit::set(Part::Light(0), Light::light_type, "ambient")), (None, 1.0));
+    assert_eq!(now(Edit::set(Part::Light(0), Light::light_type, "point")), (None, 20.0));
 }
 
 #[test]
@@ -1092,8 +1096,8 @@ fn tab_goes_through_the_objects_and_takes_no_focus() {
 #[test]
 fn numbers_choose_recent_models_and_keep_their_places() {
     let mut bench = Bench::new(Session::default());
-    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
-    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
     for (key, model) in
         [(Key::Num2, "phong"), (Key::Num1, "lambert"), (Key::Num3, "blinn_phong"), (Key::Num2, "phong")]
     {
@@ -1118,7 +1122,7 @@ fn the_chooser_finds_by_typing_and_chooses_with_enter() {
 fn many_models_are_listed_by_family_within_the_window() {
     let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
-    bench.apply(Action::Edit(Edit::Model("disney".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "disney")));
     bench.key(Key::R, Modifiers::NONE);
     for family in ["Basic", "Classical", "Rough diffuse", "Microfacet", "Standard"] {
         assert!(bench.find(family).is_some(), "{family}");
@@ -1137,7 +1141,7 @@ fn many_models_are_listed_by_family_within_the_window() {
 #[test]
 fn nothing_but_the_question_can_be_used_while_it_is_open() {
     let mut bench = Bench::new(Session::default());
-    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
     bench.apply(Action::New);
     bench.letter(Key::P, "p");
     assert_eq!(bench.session.document.shading_model, "flat");
@@ -1239,8 +1243,11 @@ fn a_panel_from_outside_gets_a_tab() {
 fn lamp(bench: &mut Bench) {
     bench.apply(Action::AddLight("spot".to_owned()));
     let light = bench.session.document.lights.len() - 1;
-    for field in [LightField::LuminousFlux(800.0), LightField::ColourTemperature(2700.0)] {
-        bench.apply(Action::Edit(Edit::Light(light, field)));
+    for edit in [
+        Edit::set(Part::Light(light), Light::luminous_flux, 800.0),
+        Edit::set(Part::Light(light), Light::colour_temperature, 2700.0),
+    ] {
+        bench.apply(Action::Edit(edit));
     }
 }
 
@@ -1261,9 +1268,11 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             crate::comparing::matching::ask(b, "phong");
             crate::comparing::matching::run(b);
         }),
-        ("phong", (1280.0, 720.0), |b| b.apply(Action::Edit(Edit::Model("phong".to_owned())))),
+        ("phong", (1280.0, 720.0), |b| {
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")))
+        }),
         ("blinn", (1920.0, 1080.0), |b| {
-            b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
             let rect = b
                 .tree
                 .iter()
@@ -1274,24 +1283,23 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("light", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
-            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
             b.apply(Action::AddLight("spot".to_owned()));
         }),
         ("large", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
             b.apply(Action::View(ViewChange::Scale(150)));
-            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
         }),
         ("large-dark", (1920.0, 1080.0), |b| {
             b.apply(Action::View(ViewChange::Scale(150)));
-            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
         }),
         ("error", (1280.0, 720.0), |b| {
-            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
-            b.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(64)))));
-            b.apply(Action::Edit(Edit::Model("mod_lambert".to_owned())));
-            b.session
-                .say(Severity::Info, "The last light stays: a scene needs at least one to show anything.");
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
+            b.apply(Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(64))));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "mod_lambert")));
+            b.session.say(Severity::Info, "Can’t delete the last light: a scene needs at least one.");
             b.session.say(
                 Severity::Warning,
                 "The settings cannot be written to /home/x/.config: no space left on device.",
@@ -1300,7 +1308,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             b.type_into("position x", "12");
         }),
         ("knob-error", (1280.0, 900.0), |b| {
-            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
             b.type_into("diffuse coefficient", "0.2");
         }),
         ("many", (1280.0, 720.0), |b| {
@@ -1308,7 +1316,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 b.apply(Action::AddObject(["cube", "torus", "teapot", "sphere"][i % 4].to_owned()));
             }
             let name = "A very long name for a very small thing".to_owned();
-            b.apply(Action::Edit(Edit::Object(2, ObjectField::Name(name))));
+            b.apply(Action::Edit(Edit::set(Part::Object(2), Object::name, name)));
             b.apply(Action::Select(Selection::Object(2)));
         }),
         ("room", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Room))),
@@ -1327,15 +1335,15 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("caption", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Scale(150)));
-            b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
-            b.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "derivative")));
             b.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
             let display = Display {
                 tone_mapping: ToneMapping::KhronosPbrNeutral,
                 exposure: 1.5,
                 encoding: Encoding::Off,
             };
-            b.apply(Action::Edit(Edit::Display(display)));
+            b.apply(Action::Edit(Edit::from(display)));
         }),
         ("tones", (1280.0, 720.0), |b| {
             b.apply(Action::Select(Selection::Room));
@@ -1349,7 +1357,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         ("keys", (1280.0, 720.0), |b| b.key(Key::F1, Modifiers::NONE)),
         ("about", (1280.0, 720.0), |b| b.apply(Action::View(ViewChange::About(true)))),
         ("question", (1280.0, 720.0), |b| {
-            b.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+            b.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
             b.apply(Action::Quit);
         }),
         ("missing", (1280.0, 720.0), |b| {
@@ -1382,7 +1390,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             everything(b);
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
             let gold = preset::conductor(preset::by_id("gold").unwrap());
-            b.apply(Action::Edit(Edit::Object(0, ObjectField::Preset(gold))));
+            b.apply(Action::Edit(Edit::materials(Part::Object(0), gold, "Measured material")));
         }),
         ("everything-scrolled", (1280.0, 720.0), |b| {
             everything(b);
@@ -1413,14 +1421,14 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             b.type_into("refractive index G", "7");
         }),
         ("own", (1280.0, 720.0), |b| {
-            b.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
-            b.apply(Action::Edit(Edit::Object(0, ObjectField::ShadingModel(Some("flat".to_owned())))));
+            b.apply(Action::Edit(Edit::set(Part::Object(0), Object::reflection_model, "phong")));
+            b.apply(Action::Edit(Edit::set(Part::Object(0), Object::shading_model, "flat")));
         }),
     ];
     fn everything(b: &mut Bench) {
         b.registry = crowd();
         b.session.model_slots.fill(&b.registry);
-        b.apply(Action::Edit(Edit::Model("everything".to_owned())));
+        b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "everything")));
     }
     fn scroll(b: &mut Bench, by: f32) {
         b.frame(vec![Event::PointerMoved(pos2(1100.0, 400.0))]);

@@ -15,7 +15,7 @@ use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, accesskit::Rol
 use glam::Vec3;
 use lights_camera_models::{
     curves::{Channel, Detail, Kind, Setup, Style, Subject, curve, draw::Line},
-    document::{Edit, ObjectField},
+    document::Edit,
     optics::{Frame, Terms, colour::Encoding},
     panel::{
         plots::{Request, file_of, write},
@@ -30,7 +30,7 @@ use lights_camera_models::{
     progress::Progress,
     reflection::{self, ReflectionModel},
     registry::{Register, Registry},
-    scene::Scene,
+    scene::{Part, Scene},
     shader::Source,
     window::LabPlugins,
 };
@@ -93,7 +93,7 @@ fn reading(bench: &Bench) -> Option<(f64, Vec<f64>)> {
 #[test]
 fn the_values_under_the_pointer_are_those_of_the_curves() {
     let mut bench = plots("phong", Kind::Brdf);
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(40)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(40))));
     let entry = bench.registry.model("phong").expect("built in").clone();
     let subject = |alpha: i64| {
         let mut values = Values::default();
@@ -201,7 +201,7 @@ fn curves_are_pinned_hidden_and_removed() {
     let mut bench = plots("phong", Kind::Brdf);
     wait(&mut bench, |bench| bench.find("Phong").is_some());
     bench.click("Pin");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(64)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(64))));
     wait(&mut bench, |bench| bench.find("Phong, α = 64").is_some());
     // The pinned one stays unchanged, with a separate colour.
     assert!(surface(&bench).label.ends_with("Phong, α = 64; Phong"), "{}", surface(&bench).label);
@@ -279,7 +279,7 @@ fn what_a_model_lacks_is_said() {
     assert!(bench.field("Angle of the light θ_i in degrees").disabled);
     ask(&mut bench, PlotCommand::Kind(Kind::Albedo));
     ask(&mut bench, PlotCommand::Add(Of::Measured("acryl_blue".to_owned())));
-    wait(&mut bench, |bench| bench.says("Acryl blue was measured at single directions only"));
+    wait(&mut bench, |bench| bench.says("Acryl blue was measured only at single directions"));
     ask(&mut bench, PlotCommand::Add(Of::Measured("nonsense".to_owned())));
     wait(&mut bench, |bench| bench.says("measured data must be one of the paints"));
     let of = Of::Model { id: "gone".to_owned(), values: Values::default(), encoding: Encoding::Srgb };
@@ -356,7 +356,7 @@ fn nothing_is_calculated_while_the_plots_are_closed_and_no_frame_waits() {
     let calls = || CALLS.load(Ordering::Relaxed);
     let change = |bench: &mut Bench, red: u8| {
         let colour = Value::Colour([red, 0, 0]);
-        bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("base_colour", colour))));
+        bench.apply(Action::Edit(Edit::material(Part::Object(0), "base_colour", colour)));
     };
     bench.settle();
     for red in 0..10 {
@@ -394,7 +394,7 @@ fn files_are_what_the_command_writes() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let mut bench = plots("phong", Kind::Response);
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(20)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(20))));
     let of = Of::Model { id: "lambert".to_owned(), values: Values::default(), encoding: Encoding::Srgb };
     ask(&mut bench, PlotCommand::Add(of));
     ask(&mut bench, PlotCommand::Add(Of::Measured("gold-metallic-paint".to_owned())));
@@ -489,7 +489,7 @@ fn everything_in_the_plots_has_a_name_and_a_place_on_screen() {
         let mut bench = plots("phong", Kind::Polar);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         ask(&mut bench, PlotCommand::Pin);
-        bench.apply(Action::Edit(Edit::Model("microfacet".to_owned())));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "microfacet")));
         wait(&mut bench, |bench| bench.find("Remove the curve of Phong").is_some());
         let named =
             [Role::Button, Role::ComboBox, Role::Slider, Role::CheckBox, Role::TextInput, Role::Image];
@@ -551,7 +551,7 @@ fn the_time_of_a_frame_while_a_knob_is_dragged() {
             let mut times = Vec::new();
             for i in 0..200 {
                 let alpha = Value::Integer(10 + i);
-                let edit = Edit::Object(0, ObjectField::Material("alpha", alpha));
+                let edit = Edit::material(Part::Object(0), "alpha", alpha);
                 let start = Instant::now();
                 let effects = bench.session.apply(Action::Edit(edit), &bench.registry);
                 bench.effects.extend(effects);
@@ -581,7 +581,7 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
     let lively = |kind: Kind| {
         let mut bench = plots("phong", kind);
         ask(&mut bench, PlotCommand::Pin);
-        bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(40)))));
+        bench.apply(Action::Edit(Edit::material(Part::Object(0), "alpha", Value::Integer(40))));
         for id in ["microfacet", "oren_nayar"] {
             let of = Of::Model { id: id.to_owned(), values: Values::default(), encoding: Encoding::Srgb };
             ask(&mut bench, PlotCommand::Add(of));
@@ -606,7 +606,7 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
             ask(&mut bench, PlotCommand::Log(i % 4 == 2));
             ask(&mut bench, PlotCommand::Light(if size.x > 1500.0 { 60.0 } else { 40.0 }));
             if kind == Kind::Masking {
-                bench.apply(Action::Edit(Edit::Model("microfacet".to_owned())));
+                bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "microfacet")));
                 ask(&mut bench, PlotCommand::Remove(0));
             }
             rest(&mut bench);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use bevy_egui::egui::{self, Key, Modifiers, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, Selection},
     optics::TermSelection,
     panel::{
         marks::Lens,
@@ -12,7 +12,7 @@ use lights_camera_models::{
         state::{Action, Clipping, Effect, SCALES, Session, Severity, ViewChange},
     },
     registry::Registry,
-    scene::{Scene, examples::EXAMPLES},
+    scene::{Object, Part, Scene, examples::EXAMPLES},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -442,15 +442,18 @@ fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
 #[test]
 fn choices_in_a_presentation_are_those_of_the_scene() {
     let mut bench = bench((1280.0, 720.0), "phong");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("eon".to_owned())))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::reflection_model, "eon")));
     bench.apply(Action::Select(Selection::Object(0)));
     assert_eq!(
         bench.session.edit_model("hapke"),
-        Edit::Object(0, ObjectField::Model(Some("hapke".to_owned())))
+        Edit::set(Part::Object(0), Object::reflection_model, "hapke")
     );
     bench.apply(Action::View(ViewChange::Presenting(true)));
-    assert_eq!(bench.session.edit_model("hapke"), Edit::Model("hapke".to_owned()));
-    assert_eq!(bench.session.edit_shading_model("flat"), Edit::ShadingModel("flat".to_owned()));
+    assert_eq!(bench.session.edit_model("hapke"), Edit::set(Part::Scene, Scene::reflection_model, "hapke"));
+    assert_eq!(
+        bench.session.edit_shading_model("flat"),
+        Edit::set(Part::Scene, Scene::shading_model, "flat")
+    );
 }
 
 #[test]

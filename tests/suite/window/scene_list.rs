@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, path::PathBuf};
 
 use bevy_egui::egui::{Key, Modifiers, PointerButton, Shape, accesskit::Role};
 use lights_camera_models::{
-    document::{Edit, Extent, LightField, ObjectField, Selection},
+    document::{Edit, Extent, Selection},
     optics::TermSelection,
     panel::{
         caption::caption_text,
@@ -18,7 +18,7 @@ use lights_camera_models::{
         capture::gpu::{GpuRenderer, Output},
         entities::CurrentScene,
     },
-    scene::{Light, Object, Scene, examples::EXAMPLES},
+    scene::{Light, Object, Part, Scene, examples::EXAMPLES},
 };
 
 use crate::{
@@ -191,7 +191,7 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3", "Sphere 4"]);
     bench.apply(Action::Duplicate(Selection::Object(1)));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("cube".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::object_type, "cube")));
     assert_eq!(names(&bench)[1..], ["Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
@@ -213,9 +213,9 @@ fn a_part_keeps_its_name_for_life() {
     bench.apply(Action::Undo);
     assert_eq!(names(&bench), all);
     // Removing a name does not allow a second one of its kind.
-    let name = |text: &str| Action::Edit(Edit::Object(3, ObjectField::Name(text.to_owned())));
+    let name = |text: &str| Action::Edit(Edit::set(Part::Object(3), Object::name, text.to_owned()));
     bench.apply(name("Ball"));
-    bench.apply(Action::Edit(Edit::Object(4, ObjectField::Name("Sphere 3".to_owned()))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(4), Object::name, "Sphere 3")));
     bench.apply(name(""));
     assert_eq!(names(&bench)[3..], ["Sphere 5", "Sphere 3"]);
     bench.apply(Action::Undo);
@@ -271,13 +271,13 @@ fn terms_that_are_empty_are_passed_over() {
     assert!(bench.session.messages.iter().any(|m| m.text.contains("one term")));
     assert!(!bench.says("Terms:"), "no row for one term");
     let mut bench = Bench::with_model("phong");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("k_a", Value::Number(0.0)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "k_a", Value::Number(0.0))));
     assert!(bench.says("Terms: all"));
     assert_eq!(press(&mut bench), TermSelection::Diffuse, "k_a is 0: there is no ambient term");
     assert!(bench.says("Only the diffuse term"), "a badge while terms are hidden");
     assert_eq!(press(&mut bench), TermSelection::Specular);
     // The model changes: a single term is left, other than the one shown.
-    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")));
     assert!(bench.says("Terms: specular"), "the way back is there");
     assert_eq!(press(&mut bench), TermSelection::All);
     bench.apply(Action::View(ViewChange::Terms(TermSelection::All)));
@@ -312,7 +312,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
         [Effect::SaveFile { path: PathBuf::from("/somewhere/a.json"), overwrite: false }]
     );
     // A name given by the user stays.
-    bench.apply(Action::Edit(Edit::SceneName("My lecture".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::name, "My lecture")));
     bench.apply(Action::SaveAs(PathBuf::from("/somewhere/other.json")));
     assert_eq!(bench.session.title(), "My lecture");
 }
@@ -323,7 +323,7 @@ fn a_light_that_is_off_is_no_light_from_everywhere() {
     scene.lights.push(Light { light_type: "ambient".to_owned(), position: None, ..Light::default() });
     scene.lights[0].enabled = false;
     assert_eq!(scene.shining().map(|l| l.light_type.as_str()).collect::<Vec<_>>(), ["ambient"]);
-    let edit = Edit::Light(1, LightField::Enabled(false));
+    let edit = Edit::set(Part::Light(1), Light::enabled, false);
     let mut bench = Bench::new(Session::new(scene));
     bench.apply(Action::Edit(edit));
     assert_eq!(bench.session.document.shining().count(), 0);
@@ -344,7 +344,7 @@ fn the_caption_has_key_values_in_the_order_of_their_declaration() {
     }
     // A changed parameter is scrolled into view, wherever it is.
     let mut bench = Bench::with_model("disney");
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("clearcoat", Value::Number(0.25)))));
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "clearcoat", Value::Number(0.25))));
     assert!(caption_text(&bench.session, &bench.registry).ends_with(" 0.25"));
 }
 
@@ -397,7 +397,7 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
     }
     // A model that lacks the term is black, and the badge explains why.
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
-    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "lambert")));
     assert!(badge(&bench).unwrap().label.contains("which is 0 with Lambert"));
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
     assert!(!badge(&bench).unwrap().label.contains("which is 0"));
@@ -447,7 +447,7 @@ fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
     // As often as requested, until something else is done.
     bench.letter(Key::F, "f");
     assert!(bench.says("overrides the shading model"));
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Size(0.5))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::size, 0.5)));
     assert!(!bench.says("overrides the shading model"), "of what is no longer news");
     bench.letter(Key::G, "g");
     bench.apply(Action::Undo);
@@ -457,9 +457,9 @@ fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
 #[test]
 fn what_a_key_cannot_do_is_said_in_a_changed_scene() {
     let mut bench = Bench::with_model("lambert");
-    bench.apply(Action::Edit(Edit::ShadingModel("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "phong")));
     bench.letter(Key::T, "t");
-    assert!(bench.says("there is nothing to take apart"));
+    assert!(bench.says("there is nothing to separate"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::{
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, PointerButton, Shape, pos2, vec2};
 use lights_camera_models::{
     custom,
-    document::{Edit, ObjectField},
+    document::Edit,
     library::status::{Reloaded, ShaderStatus, Trouble},
     panel::{
         picture,
@@ -23,7 +23,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     registry::{Folders, Registry},
-    scene::{Light, Scene},
+    scene::{Light, Object, Part, Scene},
     shader::check::ShaderProblem,
     window::{
         authoring::{write, write_new},
@@ -120,7 +120,7 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
     bench.session.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }];
     bench.settle();
     assert_eq!(badge(&bench), None, "the picture is right");
-    assert!(bench.says("nothing on the picture depends on it"), "but the status line tells");
+    assert!(bench.says("nothing in the picture depends on it"), "but the status line tells");
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn an_error_is_told_with_its_line_and_what_the_picture_shows() {
     assert_eq!(bench.effects, [Effect::OpenInEditor { path, line: 12 }]);
     assert_eq!(
         consequence(&Trouble { stale: Vec::new(), ..broken_lambert() }),
-        "Nothing on the picture depends on it."
+        "Nothing in the picture depends on it."
     );
 }
 
@@ -371,7 +371,7 @@ fn every_file_of_the_picture_is_listed_and_can_be_opened() {
         Effect::OpenInEditor { path: file("loop.wgsl"), line: 1 },
     ];
     assert_eq!(bench.effects, expected);
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::reflection_model, "phong")));
     assert!(bench.says("the model: reflection/phong.wgsl"), "the model of the selected object");
 }
 
@@ -501,7 +501,7 @@ fn a_new_model_is_named_and_written() {
     // The field has the focus, and typing replaces the suggestion.
     bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
-    assert!(bench.says("“groesse” would do"), "what would be right");
+    assert!(bench.says("for example “groesse”"), "what would be right");
     assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(
@@ -537,7 +537,7 @@ fn nothing_moves_when_a_name_is_wrong() {
 #[test]
 fn the_shown_model_is_copied() {
     let mut bench = bench_with(Vec::new());
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
+    bench.apply(Action::Edit(Edit::set(Part::Object(0), Object::reflection_model, "phong")));
     bench.click("Edit");
     bench.click("Duplicate the model as a file… Ctrl+Shift+D");
     assert_eq!(
@@ -583,7 +583,7 @@ fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "phong");
     assert!(bench.says("my_phong.wgsl was written."), "what follows from it does not hide it");
-    bench.apply(Action::Edit(Edit::Model("ward".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "ward")));
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "ward", "it was asked for once");
 }
@@ -595,7 +595,7 @@ fn a_model_that_vanishes_leaves_a_sentence() {
     bench.session.shaders = folders();
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
-    assert!(bench.says("the file models/my_velvet.wgsl is gone"));
+    assert!(bench.says("the file models/my_velvet.wgsl is missing"));
     bench.click("Choose another model");
     assert!(bench.session.view.chooser_open);
     bench.key(Key::Escape, Modifiers::NONE);
@@ -603,7 +603,7 @@ fn a_model_that_vanishes_leaves_a_sentence() {
         vec![trouble("models/my_velvet.wgsl", 3, 9, "  x", "expected a declaration", &[])];
     bench.settle();
     assert!(bench.says("models/my_velvet.wgsl:3:9: expected a declaration"));
-    assert!(bench.says("no version of the file models/my_velvet.wgsl yet that works"));
+    assert!(bench.says("The file models/my_velvet.wgsl has no working version yet"));
     // Nothing that it can be asked causes it to stop.
     for ask in [ModelCommand::Duplicate, ModelCommand::EditShown] {
         bench.apply(Action::Model(ask));
@@ -667,7 +667,7 @@ fn an_editor_is_started_and_a_failure_is_told() -> Result<(), Box<dyn std::error
     }
     assert_eq!(fs::read_to_string(&told)?, format!("-n\n+7\n{}\n", file.display()));
     assert_eq!(editors.take(), [""; 0]);
-    for (command, why) in [("/nonexistent/editor", "does not start"), ("false", "ended with")] {
+    for (command, why) in [("/nonexistent/editor", "could not be started"), ("false", "ended with")] {
         editors.open(Some(command), &file, 1, wake());
         woken.recv_timeout(patience)?;
         let complaints = editors.take();
@@ -736,7 +736,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert_eq!(fs::read_to_string(&file)?, "mine");
     let asked_again = ModelDraft { of: Some("phong".to_owned()), name: "My velvet".to_owned() };
     assert_eq!(bench.session.draft, Some(asked_again));
-    assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("exists already")));
+    assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("already exists")));
     write(&copy("my_phong", "My Phong"), &mut bench.session, &bench.registry);
     let file = models.join("my_phong.wgsl");
     let model = custom::read(&file, &fs::read_to_string(&file)?, &bench.registry)
@@ -766,7 +766,7 @@ fn shaders_are_written_out_once_and_told() -> Result<(), Box<dyn std::error::Err
     assert!(last(&bench).contains("files of shaders"), "{}", last(&bench));
     write(&export, &mut bench.session, &bench.registry);
     assert_eq!(fs::read_to_string(&loop_file)?, "// mine");
-    assert!(last(&bench).contains("already; 1 file that differ"), "{}", last(&bench));
+    assert!(last(&bench).contains("; 1 file that differ were not changed"), "{}", last(&bench));
     let impossible = Effect::ExportShaders(loop_file);
     assert_eq!(write(&impossible, &mut bench.session, &bench.registry), None);
     assert!(last(&bench).contains("could not be written"), "{}", last(&bench));
@@ -788,7 +788,7 @@ fn bare() -> Bench {
         Ok(model) => bench.registry.put_custom_model(model),
         Err(problems) => panic!("{}", problems[0]),
     }
-    bench.apply(Action::Edit(Edit::Model("bare".to_owned())));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "bare")));
     bench
 }
 

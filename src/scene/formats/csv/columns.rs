@@ -10,10 +10,11 @@ use crate::{
     parameter::{Parameter, ParameterKind},
     registry::Registry,
     scene::{
+        Display, Field, Light, Object, Observer, Scene, SceneSize,
         error::{Path, Problem},
-        read::keys::{
-            DISPLAY_KEYS, LIGHT_KEYS, OBJECT_KEYS, OBSERVER_KEYS, OTHER_WORDS, SCENE_KEYS, SIZE_KEYS,
-        },
+        field::Kind,
+        part::Structure as _,
+        read::keys::OTHER_WORDS,
     },
     text::{did_you_mean, json::canonical, shortened},
 };
@@ -41,16 +42,28 @@ impl Part {
             Self::Object => "object",
         }
     }
+
+    /// The fields of the part.
+    fn fields(self) -> &'static [&'static Field] {
+        match self {
+            Self::Scene => Scene::FIELDS,
+            Self::Light => Light::FIELDS,
+            Self::Observer => Observer::FIELDS,
+            Self::Object => Object::FIELDS,
+        }
+    }
 }
 
 /// The components of vectors and of colours in column names.
 const AXES: [&str; 3] = ["x", "y", "z"];
 const CHANNELS: [&str; 3] = ["r", "g", "b"];
-/// The keys of vectors.
-const VECTORS: [&str; 3] = ["position", "direction", "rotation"];
-/// The keys of texts that are not parameters.
-const TEXTS: [&str; 7] =
-    ["type", "name", "description", "reflection_model", "shading_model", "tone_mapping", "encoding"];
+
+/// True if parts of tables have a vector under this key.
+fn is_vector(key: &str) -> bool {
+    let kinds = Part::ALL.into_iter().flat_map(Part::fields);
+    let mut named = kinds.filter(|field| field.key == key);
+    named.any(|field| matches!(field.kind, Kind::Position | Kind::Direction | Kind::Rotation))
+}
 
 /// A column that a table may have.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,12 +89,12 @@ impl Column {
 
 /// The names of the components of a list.
 pub(super) fn components(key: &str) -> [&'static str; 3] {
-    if VECTORS.contains(&key) { AXES } else { CHANNELS }
+    if is_vector(key) { AXES } else { CHANNELS }
 }
 
 /// True if each component of a list has its own column in a new table.
 pub(super) fn is_spread(key: &str) -> bool {
-    VECTORS.contains(&key)
+    is_vector(key)
 }
 
 /// All columns that a table may have, in the order of a new table.
@@ -89,39 +102,27 @@ pub(super) fn all(registry: &Registry) -> Vec<Column> {
     let mut all = All(Vec::new());
     for key in ["type", "name"] {
         for part in Part::ALL {
-            if keys(part).contains(&key) {
-                all.field(part, &[key], false);
-            }
+            let field = part.fields().iter().find(|field| field.key == key);
+            field.into_iter().for_each(|field| all.field(part, None, field));
         }
     }
     for part in [Part::Observer, Part::Light, Part::Object] {
-        for key in keys(part).iter().filter(|key| **key != "material") {
-            all.field(part, &[key], VECTORS.contains(key) || *key == "colour");
-        }
+        let own = |field: &&&Field| !matches!(field.kind, Kind::Material | Kind::Parameters);
+        part.fields().iter().filter(own).for_each(|field| all.field(part, None, field));
         match part {
             Part::Light => registry.lights().iter().for_each(|l| all.parameters(part, &[], l.parameters)),
             Part::Object => registry.shapes().iter().for_each(|s| all.parameters(part, &[], s.parameters)),
             _ => {}
         }
     }
-    for key in ["reflection_model", "shading_model"] {
-        all.field(Part::Scene, &[key], false);
-    }
+    all.field(Part::Scene, None, &Scene::reflection_model);
+    all.field(Part::Scene, None, &Scene::shading_model);
     registry.material_users().for_each(|(_, p)| all.parameters(Part::Object, &["material"], p));
-    SIZE_KEYS.iter().for_each(|key| all.field(Part::Scene, &["scene_size", key], false));
-    DISPLAY_KEYS.iter().for_each(|key| all.field(Part::Scene, &["display", key], false));
-    all.field(Part::Scene, &["description"], false);
-    all.0
-}
-
-/// The keys of a part that hold a value.
-fn keys(part: Part) -> &'static [&'static str] {
-    match part {
-        Part::Scene => SCENE_KEYS,
-        Part::Light => LIGHT_KEYS,
-        Part::Observer => OBSERVER_KEYS,
-        Part::Object => OBJECT_KEYS,
+    for (within, fields) in [(&Scene::scene_size, SceneSize::FIELDS), (&Scene::display, Display::FIELDS)] {
+        fields.iter().for_each(|field| all.field(Part::Scene, Some(within), field));
     }
+    all.field(Part::Scene, None, &Scene::description);
+    all.0
 }
 
 /// The columns collected so far.
@@ -138,9 +139,11 @@ impl All {
         }
     }
 
-    fn field(&mut self, part: Part, keys: &[&'static str], is_list: bool) {
-        let is_text = keys.last().is_some_and(|key| TEXTS.contains(key));
-        self.add(part, keys.to_vec(), is_list, is_text);
+    fn field(&mut self, part: Part, within: Option<&Field>, field: &Field) {
+        let keys = within.into_iter().chain([field]).map(|field| field.key).collect();
+        let is_list = matches!(field.kind, Kind::Colour) || is_vector(field.key);
+        let is_text = matches!(field.kind, Kind::Text(_) | Kind::Id(_) | Kind::Choice(_));
+        self.add(part, keys, is_list, is_text);
     }
 
     fn add(&mut self, part: Part, keys: Vec<&'static str>, is_list: bool, is_text: bool) {
@@ -254,11 +257,11 @@ pub fn table(registry: &Registry) -> String {
         let key = column.keys.last().copied().unwrap_or_default();
         let lights = registry.lights().iter().any(|l| l.parameter(key).is_some());
         let shapes = registry.shapes().iter().any(|s| s.parameter(key).is_some());
-        column.keys[0] == "material" || (lights || shapes) && !VECTORS.contains(&key)
+        column.keys[0] == "material" || (lights || shapes) && !is_vector(key)
     };
     for column in all(registry).iter().filter(|column| column.component.is_none() && !parameters(column)) {
         let key = column.keys.last().copied().unwrap_or_default();
-        let is_list = VECTORS.contains(&key) || key == "colour";
+        let is_list = is_vector(key) || key == "colour";
         let spread = match components(key) {
             names if is_list => names.map(|name| format!(", `{}.{name}`", column.name)).join(""),
             _ => String::new(),

@@ -86,7 +86,7 @@ pub(super) fn tree<'a>(text: &'a str, grid: &Grid, mut columns: Columns) -> (Ast
         let row = || Object { range: range(&(at..end)), properties: Vec::new() };
         match part {
             Part::Scene if scene.is_some() => {
-                let predicate = "is \"scene\", but there is a row for the scene above; a table has one";
+                let predicate = "is \"scene\", but there is a row for the scene above; a table has only one";
                 problems.add(at, |_| Problem::about(Path::root().key("part"), predicate));
             }
             Part::Scene => scene = Some(fields),
@@ -142,7 +142,7 @@ fn fields<'a>(
         let Some(column) = columns.list.get(i) else {
             problems.add(cell.range.start, |_| {
                 let counts = (cells.len(), columns.list.len() + 1);
-                let what = format!("has {} cells, but the heading has {}", counts.0, counts.1);
+                let what = format!("has {} cells, but the header has {}", counts.0, counts.1);
                 Problem::about(Path::root().key("row"), what)
             });
             break;
@@ -151,7 +151,7 @@ fn fields<'a>(
             problems.add(cell.range.start, |_| {
                 let written = quoted(&shortened(&content(text, cell)));
                 let what = format!(
-                    "has {written} in a column without a name; name it in the heading, or empty the cell"
+                    "has {written} in a column without a name; name it in the header, or empty the cell"
                 );
                 Problem::about(Path::root().key("row"), what)
             });

@@ -3,7 +3,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::clipping;
+use super::Clipping;
 use crate::{
     light::LightEntry,
     optics::{
@@ -14,7 +14,7 @@ use crate::{
     reference,
     registry::Registry,
     scene::limits::significant,
-    scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
+    scene::{Light, Object, Observer, Scene, observer::WIDE},
 };
 use block::Block;
 
@@ -62,7 +62,7 @@ impl<'a> Stand<'a> {
 
     /// Position and size of a new object.
     pub(super) fn object(&self, id: &str) -> (Vec3, f32) {
-        let size = DEFAULT_SIZE.min(0.5 * self.scene.scene_size.corner().min_element());
+        let size = Object::default().size.min(0.5 * self.scene.scene_size.corner().min_element());
         let unit = self.registry.shape(id).map_or(0.5, |shape| shape.bounds(&Values::default()).radius);
         let wanted = self.middle();
         // If there is no room for it, the object becomes smaller.
@@ -274,7 +274,7 @@ impl<'a> Stand<'a> {
         factors.sort_by(f32::total_cmp);
         floors.sort_by(f32::total_cmp);
         // Number of pixels that may clip without a warning.
-        let spared = (clipping::TOLERATED * f64::from(width * height)) as usize;
+        let spared = (Clipping::TOLERATED * f64::from(width * height)) as usize;
         let most = factors[spared.saturating_sub(clipped).min(factors.len() - 1)];
         let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
         // Highlights, but nothing else, may clip to make the light visible.

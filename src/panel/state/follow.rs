@@ -4,7 +4,7 @@
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
-use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
+use super::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::{
     document::{Extent, Selection},
     parameter::{Parameter, ParameterKind, Value},
@@ -141,14 +141,14 @@ impl Change {
     fn single(&self, object: &str) -> String {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
-            Some(value) if value == wanted => format!("{name} is {value} at {object} again."),
+            Some(value) if value == wanted => format!("{name} is {value} for {object} again."),
             Some(value) => {
-                format!("{name} is {value} at {object} instead of {wanted}, {} now.", self.reason(value))
+                format!("{name} is now {value} for {object} instead of {wanted}, {}.", self.reason(value))
             }
             None => {
                 let (why, until) = self.why_gone("when it is allowed again");
                 format!(
-                    "{name} {why}; its value {wanted} at {object} is kept for later and comes back {until}."
+                    "{name} {why}; its value {wanted} for {object} is kept for later and comes back {until}."
                 )
             }
         }
@@ -158,15 +158,15 @@ impl Change {
     fn several(&self) -> (String, String) {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
-            Some(value) if value == wanted => (format!("{name} is as it was again at"), ".".to_owned()),
+            Some(value) if value == wanted => (format!("{name} is as it was again for"), ".".to_owned()),
             Some(value @ Value::Triple(_)) => {
-                (format!("{name} is brought into its range at"), format!(", {} now.", self.reason(value)))
+                (format!("{name} is now clamped to its range for"), format!(", {}.", self.reason(value)))
             }
-            Some(value) => (format!("{name} is {value} at"), format!(", {} now.", self.reason(value))),
+            Some(value) => (format!("{name} is now {value} for"), format!(", {}.", self.reason(value))),
             None => {
                 let (why, until) = self.why_gone("when they are allowed again");
                 (
-                    format!("{name} {why}; its values at"),
+                    format!("{name} {why}; its values for"),
                     format!(" are kept for later and come back {until}."),
                 )
             }
@@ -189,8 +189,8 @@ impl Change {
             _ => (false, false),
         };
         match (most, least) {
-            (true, _) => "the most that is allowed".to_owned(),
-            (_, true) => "the least that is allowed".to_owned(),
+            (true, _) => "the largest value allowed".to_owned(),
+            (_, true) => "the smallest value allowed".to_owned(),
             _ => format!("since it must be {}", p.rule()),
         }
     }
@@ -198,11 +198,11 @@ impl Change {
     /// The reason for a missing value, and the condition for its return.
     fn why_gone(&self, allowed: &'static str) -> (String, &'static str) {
         match self.declared {
-            None => ("is no parameter of any model any more".to_owned(), "with the name"),
+            None => ("is no longer a parameter of any model".to_owned(), "when the name does"),
             Some(p) if discriminant(&p.default_value()) == discriminant(&self.wanted) => {
-                (format!("must be {} now", p.rule()), allowed)
+                (format!("must now be {}", p.rule()), allowed)
             }
-            Some(_) => ("has another type now".to_owned(), "with the type"),
+            Some(_) => ("now has another type".to_owned(), "when the type does"),
         }
     }
 }
@@ -214,9 +214,9 @@ mod tests {
     use super::*;
     use crate::{
         custom,
-        document::{Document, Edit, ObjectField},
+        document::{Document, Edit},
         panel::state::Action,
-        scene::{Scene, check, load, save},
+        scene::{Part, Scene, check, load, save},
     };
 
     /// Registers Lambert's law with parameters, none of which it uses.
@@ -285,13 +285,13 @@ mod tests {
             &mut session,
             &registry,
             &[
-                "gloss is no parameter of any model any more; its value 0.75 at Sphere 1 is kept for later and comes back \
-               with the name.",
+                "gloss is no longer a parameter of any model; its value 0.75 for Sphere 1 is kept for later and comes back \
+               when the name does.",
             ],
         );
         assert_eq!((value(&session, "gloss"), session.stashed.len()), (None, 1));
         put(&mut registry, &number("gloss", 0.0, 1.0));
-        follow(&mut session, &registry, &["gloss is 0.75 at Sphere 1 again."]);
+        follow(&mut session, &registry, &["gloss is 0.75 for Sphere 1 again."]);
         assert!(session.stashed.is_empty() && !session.is_dirty());
     }
 
@@ -300,13 +300,13 @@ mod tests {
         let (mut session, mut registry) =
             begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
         put(&mut registry, &number("polish", 0.0, 100.0));
-        let most = "polish is 100 at Sphere 1 instead of 150, the most that is allowed now.";
+        let most = "polish is now 100 for Sphere 1 instead of 150, the largest value allowed.";
         follow(&mut session, &registry, &[most]);
         put(&mut registry, &number("polish", 160.0, 200.0));
-        let least = "polish is 160 at Sphere 1 instead of 150, the least that is allowed now.";
+        let least = "polish is now 160 for Sphere 1 instead of 150, the smallest value allowed.";
         follow(&mut session, &registry, &[least]);
         put(&mut registry, &number("polish", 0.0, 200.0));
-        follow(&mut session, &registry, &["polish is 150 at Sphere 1 again."]);
+        follow(&mut session, &registry, &["polish is 150 for Sphere 1 again."]);
         assert!(session.stashed.is_empty() && !session.is_dirty());
     }
 
@@ -322,18 +322,18 @@ mod tests {
         follow(
             &mut session,
             &registry,
-            &["steps is 5 at Sphere 1 instead of 7, the most that is allowed now."],
+            &["steps is now 5 for Sphere 1 instead of 7, the largest value allowed."],
         );
         put(&mut registry, "{ \"name\": \"steps\", \"type\": \"colour\", \"default\": [1, 2, 3] }");
         follow(
             &mut session,
             &registry,
             &[
-                "steps has another type now; its value 7 at Sphere 1 is kept for later and comes back with the type.",
+                "steps now has another type; its value 7 for Sphere 1 is kept for later and comes back when the type does.",
             ],
         );
         put(&mut registry, &integer(9));
-        follow(&mut session, &registry, &["steps is 7 at Sphere 1 again."]);
+        follow(&mut session, &registry, &["steps is 7 for Sphere 1 again."]);
         assert!(!session.is_dirty());
         let triple = |max| {
             format!(
@@ -345,7 +345,7 @@ mod tests {
         follow(
             &mut session,
             &registry,
-            &["index is 1,2,2 at Sphere 1 instead of 1,2,3, since each must be between 0 and 2 now."],
+            &["index is now 1,2,2 for Sphere 1 instead of 1,2,3, since each must be between 0 and 2."],
         );
     }
 
@@ -356,7 +356,7 @@ mod tests {
         follow(
             &mut session,
             &registry,
-            &["polish is 3 at Sphere 1 instead of 0, since it must be greater than 0 and at most 9 now."],
+            &["polish is now 3 for Sphere 1 instead of 0, since it must be greater than 0 and at most 9."],
         );
     }
 
@@ -365,8 +365,8 @@ mod tests {
         let (mut session, mut registry) = begin(&number("polish", 0.0, 100.0), "polish", Value::Number(80.0));
         put_as("other", &mut registry, &number("polish", 0.0, 1.0));
         let start = session.document.scene().clone();
-        let polish = |v| Edit::Object(0, ObjectField::Material("polish", Value::Number(v)));
-        let model = |id: &str| Edit::Model(id.to_owned());
+        let polish = |v| Edit::material(Part::Object(0), "polish", Value::Number(v));
+        let model = |id: &str| Edit::set(Part::Scene, Scene::reflection_model, id.to_owned());
         let edit = |session: &mut Session, registry: &Registry, edit, now| {
             session.document.end_gesture();
             session.apply(Action::Edit(edit), registry);
@@ -411,7 +411,7 @@ mod tests {
             &mut session,
             &registry,
             &[
-                "gloss has another type now; its value 0.75 at Sphere 1 is kept for later and comes back with the type.",
+                "gloss now has another type; its value 0.75 for Sphere 1 is kept for later and comes back when the type does.",
             ],
         );
         assert_eq!(value(&session, "gloss"), None);
@@ -422,7 +422,7 @@ mod tests {
             &mut session,
             &registry,
             &[
-                "gloss must be one of \"low\", \"full\" now; its value high at Sphere 1 is kept for later and comes back \
+                "gloss must now be one of \"low\", \"full\"; its value high for Sphere 1 is kept for later and comes back \
                when it is allowed again.",
             ],
         );
@@ -430,7 +430,7 @@ mod tests {
             &mut registry,
             "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"high\", \"full\"] }",
         );
-        follow(&mut session, &registry, &["gloss is high at Sphere 1 again."]);
+        follow(&mut session, &registry, &["gloss is high for Sphere 1 again."]);
     }
 
     #[test]
@@ -446,15 +446,15 @@ mod tests {
             &mut session,
             &registry,
             &[
-                "gloss is no parameter of any model any more; its values at 3 objects are kept for later and come back \
-               with the name.",
+                "gloss is no longer a parameter of any model; its values for 3 objects are kept for later and come back \
+               when the name does.",
             ],
         );
         let part = Selection::Object(1);
-        let _ = session.apply(super::super::state::Action::Duplicate(part), &registry);
-        let _ = session.apply(super::super::state::Action::Remove(part), &registry);
+        let _ = session.apply(super::super::Action::Duplicate(part), &registry);
+        let _ = session.apply(super::super::Action::Remove(part), &registry);
         put(&mut registry, &number("gloss", 0.0, 1.0));
-        follow(&mut session, &registry, &["gloss is as it was again at 3 objects."]);
+        follow(&mut session, &registry, &["gloss is as it was again for 3 objects."]);
         let values: Vec<_> =
             session.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
         assert_eq!(values, [0.75, 0.25, 0.5].map(|v| Some(Value::Number(v))));

@@ -1,0 +1,32 @@
+//! What belongs to the open document besides its scene and file; a lesson sets it aside with the document.
+
+use std::ops::{Deref, DerefMut};
+
+use super::{ModelSlots, OnDisk, Plots, Session, StashedValues};
+
+/// What belongs to the open document besides its scene and file.
+#[derive(Clone, Debug, Default)]
+pub struct Desk {
+    /// State of the document's file on disk.
+    pub disk: OnDisk,
+    /// Values of the document that no model accepts at present.
+    pub(in crate::panel) stashed: StashedValues,
+    /// Display options of the plots.
+    pub plots: Plots,
+    /// The models that keys 1–9 choose.
+    pub model_slots: ModelSlots,
+}
+
+impl Deref for Session {
+    type Target = Desk;
+
+    fn deref(&self) -> &Desk {
+        &self.desk
+    }
+}
+
+impl DerefMut for Session {
+    fn deref_mut(&mut self) -> &mut Desk {
+        &mut self.desk
+    }
+}

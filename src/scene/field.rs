@@ -1,0 +1,381 @@
+//! The declaration of a field of a scene, in the words in which models declare their parameters. Keys, reading, rules,
+//! writing, the schema, the limits of widgets and the names of steps follow from it.
+
+use super::{
+    check::{self, Rule},
+    limits::{Limits, number},
+};
+use crate::{
+    parameter::{ABOVE_ZERO, Parameter, Value},
+    registry::Registry,
+    text,
+};
+
+/// A declared field.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// The key in scene files.
+    pub key: &'static str,
+    /// The documentation, for editors of scene files and for manuals.
+    pub help: &'static str,
+    /// The subject of its rule: "the field of view".
+    pub subject: &'static str,
+    /// The name for people where it differs from the subject.
+    pub name: &'static str,
+    /// The unit, empty for dimensionless numbers.
+    pub unit: &'static str,
+    /// Type and range.
+    pub kind: Kind,
+    /// The meaning of its absence in a file.
+    pub absent: Absent,
+    /// True if it is written even with its default.
+    pub always: bool,
+    /// True if its default depends on the type of its part.
+    pub by_type: bool,
+    /// The key of the field that may be given instead; if neither is given, this one has its default.
+    pub instead: Option<&'static str>,
+}
+
+/// Type and range of a field.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A real number in a closed range, with the ends of its slider if they differ from the range's.
+    Number {
+        /// Smallest legal value.
+        min: f32,
+        /// Largest legal value; infinite if there is none.
+        max: f32,
+        /// The ends of the slider.
+        slider: Option<[f32; 2]>,
+    },
+    /// A whole number, that or more.
+    Count(u32),
+    /// Yes or no, with the first words of the steps that switch it off and on.
+    Flag([&'static str; 2]),
+    /// A text, and the rule that a value of another type breaks, if it is not obvious.
+    Text(Option<&'static str>),
+    /// A position in the room.
+    Position,
+    /// A direction of any length.
+    Direction,
+    /// Euler angles in degrees.
+    Rotation,
+    /// Three sRGB-encoded integers, 0–255.
+    Colour,
+    /// The id of a registered model or type.
+    Id(Ids),
+    /// One of several words: id, name and summary of each.
+    Choice(fn() -> Vec<[&'static str; 3]>),
+    /// The values of a material.
+    Material,
+    /// The parameters that the type of the part declares, each with a key of its own.
+    Parameters,
+    /// Another part.
+    Part,
+    /// A list of parts.
+    Parts,
+}
+
+/// The meaning of a field's absence in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absent {
+    /// It has its default, or is not there.
+    Allowed,
+    /// The user is asked whether to take the default.
+    Asked,
+    /// An error: "the observer needs one".
+    Error(&'static str),
+}
+
+/// The registered things to which an id may refer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ids {
+    /// Reflection models.
+    ReflectionModel,
+    /// Shading models.
+    ShadingModel,
+    /// Light types.
+    LightType,
+    /// Object types.
+    ObjectType,
+}
+
+impl Field {
+    /// A real number in a range. From [`ABOVE_ZERO`] on it is greater than zero.
+    #[must_use]
+    pub const fn number(subject: &'static str, range: std::ops::RangeInclusive<f32>) -> Self {
+        Self::of(subject, Kind::Number { min: *range.start(), max: *range.end(), slider: None })
+    }
+
+    /// A field of another kind.
+    #[must_use]
+    pub const fn of(subject: &'static str, kind: Kind) -> Self {
+        let (key, help, name, unit, absent) = ("", "", "", "", Absent::Allowed);
+        Self { key, help, subject, name, unit, kind, absent, always: false, by_type: false, instead: None }
+    }
+
+    /// Sets the name for people.
+    #[must_use]
+    pub const fn called(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
+    /// Sets the unit.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Sets the ends of the slider.
+    #[must_use]
+    pub const fn slider(self, from: f32, to: f32) -> Self {
+        match self.kind {
+            Kind::Number { min, max, .. } => {
+                Self { kind: Kind::Number { min, max, slider: Some([from, to]) }, ..self }
+            }
+            _ => self,
+        }
+    }
+
+    /// Writes the field even with its default.
+    #[must_use]
+    pub const fn always(self) -> Self {
+        Self { always: true, ..self }
+    }
+
+    /// Requires the field, and asks where it is missing.
+    #[must_use]
+    pub const fn asked(self) -> Self {
+        Self { absent: Absent::Asked, always: true, ..self }
+    }
+
+    /// Requires the field, for this reason.
+    #[must_use]
+    pub const fn required(self, why: &'static str) -> Self {
+        Self { absent: Absent::Error(why), always: true, ..self }
+    }
+
+    /// Leaves the default, and whether there is one, to the type of the part; it is always written.
+    #[must_use]
+    pub const fn by_type(self) -> Self {
+        Self { by_type: true, always: true, ..self }
+    }
+
+    /// Allows another field instead.
+    #[must_use]
+    pub const fn or(self, other: &'static str) -> Self {
+        Self { instead: Some(other), always: true, ..self }
+    }
+
+    /// The name for people: "field of view".
+    #[must_use]
+    pub fn label(&self) -> &'static str {
+        match self.name {
+            "" => self.subject.split_once(' ').map_or(self.subject, |(_, label)| label),
+            name => name,
+        }
+    }
+
+    /// A value in words: the names of what is chosen, numbers with their unit.
+    #[must_use]
+    pub fn shown(&self, value: &Value, registry: &Registry) -> String {
+        match (self.kind, value) {
+            (Kind::Id(ids), Value::Choice(id)) => {
+                ids.find(registry, id).map_or(id.as_ref(), |listed| listed.name).to_owned()
+            }
+            (Kind::Choice(words), Value::Choice(word)) => {
+                let known = words().into_iter().find(|[known, ..]| known == word);
+                known.map_or(word.as_ref(), |[_, name, _]| name).to_owned()
+            }
+            (_, Value::Number(v)) => format!("{} {}", number((*v).into()), self.unit).trim_end().to_owned(),
+            (_, value) => value.to_string(),
+        }
+    }
+
+    /// The legal numbers, for widgets.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        let any = Limits::between(f64::NEG_INFINITY, f64::INFINITY);
+        match self.kind {
+            Kind::Number { min, max, slider } => {
+                let limits = if min == ABOVE_ZERO {
+                    Limits::above_zero(max.into())
+                } else {
+                    Limits::between(min.into(), max.into())
+                };
+                match slider {
+                    Some([from, to]) => limits.slider(from.into(), to.into()),
+                    None => limits,
+                }
+            }
+            Kind::Count(min) => Limits::between(min.into(), f64::INFINITY).whole(),
+            Kind::Rotation => any.slider(-180.0, 180.0),
+            _ => any.slider(-1.0, 1.0),
+        }
+    }
+
+    /// Checks a value by itself. Whether a position is in the room, and parameters are known, is decided by
+    /// [`check`](mod@check).
+    ///
+    /// # Errors
+    /// Returns the broken rule as a clause.
+    pub fn check(&self, value: &Value, registry: &Registry) -> Rule {
+        match (self.kind, value) {
+            (Kind::Number { .. }, Value::Number(v)) => self.check_number(*v),
+            (Kind::Count(min), Value::Integer(n)) if *n < i64::from(min) => Err(self.rule(registry)),
+            (Kind::Direction, Value::Triple(v)) => check::direction((*v).into()),
+            (Kind::Rotation, Value::Triple(v)) if v.iter().any(|v| !v.is_finite()) => {
+                Err("a rotation must be three finite numbers of degrees".to_owned())
+            }
+            (Kind::Id(ids), Value::Choice(id)) => ids.check(registry, id),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks the word of a choice.
+    ///
+    /// # Errors
+    /// Returns the broken rule as a clause.
+    pub fn check_text(&self, word: &str) -> Rule {
+        let Kind::Choice(words) = self.kind else { return Ok(()) };
+        one_of(
+            self.subject,
+            word,
+            words().into_iter().map(|[id, name, _]| (id, if name.is_empty() { id } else { name })),
+        )
+    }
+
+    /// Checks a number.
+    ///
+    /// # Errors
+    /// Returns the broken rule as a clause.
+    pub fn check_number(&self, v: f32) -> Rule {
+        let Kind::Number { min, max, .. } = self.kind else { return Ok(()) };
+        if v.is_finite() && min <= v && v <= max { Ok(()) } else { Err(self.clause(v)) }
+    }
+
+    /// The rule that a number breaks.
+    fn clause(&self, v: f32) -> String {
+        let Kind::Number { min, max, .. } = self.kind else { return String::new() };
+        let Self { subject, unit, .. } = self;
+        let unit = match *unit {
+            "" => String::new(),
+            _ if max.is_infinite() => String::new(),
+            "°" => " degrees".to_owned(),
+            unit => format!(" {unit}"),
+        };
+        // Of a range that nobody reaches, only the end that was left is of interest.
+        let wide = max >= 1e6;
+        let most =
+            if wide { format!("{:.1e}", max.min(f32::MAX)).replace(".0e", "e") } else { max.to_string() };
+        match (wide, min == ABOVE_ZERO) {
+            (true, _) if v > max || v == f32::INFINITY => format!("{subject} must be at most {most}{unit}"),
+            (true, true) => format!("{subject} must be greater than 0"),
+            (true, false) => format!("{subject} must be at least {min}"),
+            (false, true) => format!("{subject} must be greater than 0 and at most {most}{unit}"),
+            (false, false) => format!("{subject} must be between {min} and {most}{unit}"),
+        }
+    }
+
+    /// The rule that a value of another type breaks.
+    #[must_use]
+    pub fn rule(&self, registry: &Registry) -> String {
+        let subject = self.subject;
+        match self.kind {
+            Kind::Number { .. } => self.clause(f32::NAN),
+            Kind::Count(0) => format!("{subject} must be a whole number"),
+            Kind::Count(min) => format!("{subject} must be a whole number of at least {min}"),
+            Kind::Flag(_) => format!("{} must be true or false", self.key),
+            Kind::Text(rule) => rule.map_or_else(|| format!("{subject} must be text"), str::to_owned),
+            Kind::Position | Kind::Direction | Kind::Rotation => {
+                format!("{subject} must be three numbers: [x, y, z]")
+            }
+            Kind::Colour => {
+                format!("{subject} must be three whole numbers from 0 to 255: [red, green, blue]")
+            }
+            Kind::Id(ids) => ids.check(registry, "").err().unwrap_or_default(),
+            Kind::Choice(_) => self.check_text("").err().unwrap_or_default(),
+            Kind::Material | Kind::Parameters | Kind::Part | Kind::Parts => String::new(),
+        }
+    }
+}
+
+/// Something registered.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed {
+    /// Its id.
+    pub id: &'static str,
+    /// Its name for people.
+    pub name: &'static str,
+    /// One sentence about it.
+    pub summary: &'static str,
+    /// The parameters that it declares.
+    pub parameters: &'static [Parameter],
+}
+
+impl Ids {
+    /// The name of what the ids refer to.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ReflectionModel => "reflection model",
+            Self::ShadingModel => "shading model",
+            Self::LightType => "light type",
+            Self::ObjectType => "object type",
+        }
+    }
+
+    /// Everything registered.
+    #[must_use]
+    pub fn all(self, registry: &Registry) -> Box<dyn Iterator<Item = Listed> + '_> {
+        macro_rules! all {
+            ($list:ident) => {
+                Box::new(registry.$list().iter().map(|entry| Listed {
+                    id: entry.declaration.id,
+                    name: entry.declaration.name,
+                    summary: entry.declaration.summary,
+                    parameters: entry.parameters,
+                }))
+            };
+        }
+        match self {
+            Self::ReflectionModel => all!(models),
+            Self::ShadingModel => all!(shading_models),
+            Self::LightType => all!(lights),
+            Self::ObjectType => all!(shapes),
+        }
+    }
+
+    /// What an id refers to.
+    #[must_use]
+    pub fn find(self, registry: &Registry, id: &str) -> Option<Listed> {
+        self.all(registry).find(|listed| listed.id == id)
+    }
+
+    /// Checks that an id is registered.
+    ///
+    /// # Errors
+    /// Returns the rule, with the nearest id, or the reason why a custom model is missing.
+    pub fn check(self, registry: &Registry, id: &str) -> Rule {
+        if self.find(registry, id).is_some() {
+            return Ok(());
+        }
+        let known = self.all(registry).map(|listed| (listed.id, listed.name));
+        let rule = one_of(&format!("the {}", self.name()), id, known);
+        match self {
+            Self::ReflectionModel => rule.map_err(|rule| check::missing_model(registry, id, rule)),
+            _ => rule,
+        }
+    }
+}
+
+/// One of several ids: the rule lists them and names the nearest.
+fn one_of<'a>(what: &str, id: &str, known: impl Iterator<Item = (&'a str, &'a str)>) -> Rule {
+    let known: Vec<_> = known.collect();
+    if known.iter().any(|(known, _)| *known == id) {
+        return Ok(());
+    }
+    let names = known.iter().map(|(k, name)| (*name, *k));
+    let candidates = known.iter().map(|(k, _)| (*k, *k)).chain(names);
+    Err(text::one_of(what, known.iter().map(|(k, _)| *k)) + &text::did_you_mean(id, candidates))
+}
