@@ -1,5 +1,6 @@
 //! Frames of the GPU renderer at 1280×720, one sample per pixel: compared with a frame of the same app with
-//! an empty room, over objects, lights and views, by model, and compared with Bevy's own material.
+//! an empty room, over objects, lights and views, under light with extent, by model, and compared with Bevy's
+//! own material.
 
 use bevy::{
     app::Update,
@@ -104,6 +105,26 @@ fn frames(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("lights, Phong shading", count), |b| {
             b.iter(|| frame(&mut renderer))
         });
+    }
+    group.finish();
+}
+
+/// The default scene with Phong shading under one light with extent, or a point light for comparison, with one
+/// sample: the first picture after a change.
+fn extended(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("first picture, Phong shading");
+    group.sample_size(20);
+    let registry = Registry::builtin();
+    for kind in ["point", "rectangle", "disc", "sphere", "cylinder", "sun", "environment"] {
+        let mut scene = lit(1);
+        let light = &mut scene.lights[0];
+        light.set_type(registry.light(kind).expect("built in"), &registry, scene.scene_size);
+        light.direction = Some(Vec3::new(-2.0, -3.0, -2.0));
+        let mut renderer = renderer(Scene::default());
+        renderer.set_light_samples(1);
+        renderer.set_scene(scene);
+        renderer.settle().expect("the GPU draws");
+        group.bench_function(kind, |b| b.iter(|| frame(&mut renderer)));
     }
     group.finish();
 }
@@ -257,5 +278,5 @@ fn views(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, models, frames, moved, views);
+criterion_group!(benches, models, frames, extended, moved, views);
 criterion_main!(benches);

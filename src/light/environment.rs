@@ -130,6 +130,7 @@ parameters! {
 
 impl Environment {
     /// A direction in the room, rotated back into the environment.
+    #[inline]
     fn turned_back(&self, d: Vec3) -> Vec3 {
         let [sine, cosine] = self.turn.to_array();
         Vec3::new(d.x * cosine - d.z * sine, d.y, d.x * sine + d.z * cosine)
@@ -142,6 +143,7 @@ impl Environment {
     }
 
     /// The luminance from a direction, and its sampling density.
+    #[inline]
     fn at(&self, d: Vec3) -> (Vec3, f32) {
         let (luminance, pdf) = match (self.source, self.picture()) {
             (STUDIO, _) => studio::seen(d),
@@ -204,6 +206,7 @@ impl LightType for Environment {
         Sample { l: self.turned(d), radiance: light.intensity * luminance, pdf }
     }
 
+    #[inline]
     fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
         let (luminance, pdf) = self.at(self.turned_back(l));
         Seen { radiance: light.intensity * luminance, pdf, distance: f32::INFINITY }

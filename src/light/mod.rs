@@ -223,6 +223,10 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::seen`].
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
 
+    /// Radiance and distance in each direction, as of [`seen`](Self::seen): the type is dispatched once for all of
+    /// them, and densities are not calculated.
+    fn seen_along(&self, light: &LightRecord, p: Vec3, directions: &[Vec3], to: &mut [(Vec3, f32)]);
+
     /// See [`LightType::bounds`].
     fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone>;
 
@@ -241,6 +245,13 @@ impl<L: LightType> Emitter for L {
 
     fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
         LightType::seen(self, light, p, l)
+    }
+
+    fn seen_along(&self, light: &LightRecord, p: Vec3, directions: &[Vec3], to: &mut [(Vec3, f32)]) {
+        for (l, to) in directions.iter().zip(to) {
+            let seen = LightType::seen(self, light, p, *l);
+            *to = (seen.radiance, seen.distance);
+        }
     }
 
     fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {

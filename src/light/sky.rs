@@ -100,6 +100,7 @@ impl Sky {
 
     /// The luminance from a direction above the horizon: gradation `1 + a exp(b / cos Z)` times indicatrix `1
     /// + c (exp(d χ) − exp(d π/2)) + e cos² χ`, with Z from the zenith and χ from the sun, scaled.
+    #[inline]
     fn above(&self, direction: Vec3) -> f32 {
         let [a, b, c, d, e] = self.coefficients;
         let gradation = 1.0 + a * (b / direction.y.max(0.01)).exp();
@@ -110,6 +111,7 @@ impl Sky {
     }
 
     /// The luminance from a direction, and its sampling density.
+    #[inline]
     #[must_use]
     pub fn seen(&self, direction: Vec3) -> (f32, f32) {
         let around = direction.dot(self.sun).max(0.0).powf(AROUND) * (AROUND + 1.0);

@@ -50,6 +50,7 @@ static PLACED: LazyLock<[Placed; 3]> = LazyLock::new(|| {
 });
 
 /// True if a direction hits a softbox.
+#[inline]
 fn is_in(softbox: &Softbox, placed: &Placed, d: Vec3) -> bool {
     let along = d.dot(placed.axis);
     let [x, y] = placed.sides.map(|side| d.dot(side).abs());
@@ -57,6 +58,7 @@ fn is_in(softbox: &Softbox, placed: &Placed, d: Vec3) -> bool {
 }
 
 /// The luminance from a direction, and its sampling density.
+#[inline]
 pub(super) fn seen(d: Vec3) -> (f32, f32) {
     let (mut luminance, mut pdf) = (ROOM, ROOM_SHARE / (4.0 * PI));
     for (softbox, placed) in SOFTBOXES.iter().zip(&*PLACED) {

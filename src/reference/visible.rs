@@ -48,8 +48,12 @@ impl Visible {
             return None;
         }
         let seen = self.emitter.seen(&self.record, eye, ray.l);
-        let radiance = within_bounds(seen.radiance * self.record.colour);
-        (seen.distance > 0.0).then(|| Sight { radiance, nearness: ray.stretch / seen.distance })
+        self.sight(seen.radiance, seen.distance, ray)
+    }
+
+    fn sight(&self, radiance: Vec3, distance: f32, ray: &Ray) -> Option<Sight> {
+        let radiance = within_bounds(radiance * self.record.colour);
+        (distance > 0.0).then(|| Sight { radiance, nearness: ray.stretch / distance })
     }
 }
 
@@ -141,7 +145,15 @@ impl VisibleLights {
             .filter(|light| light.cone.is_none_or(|(cone, _)| touches(cone)))
             .partition(|light| light.cone.is_some());
         let any = !bounded.is_empty() || !around.is_empty();
-        any.then(|| Part { of: self, bounded, around, origin: [left, top], edge, centres: Vec::new() })
+        any.then(|| Part {
+            of: self,
+            bounded,
+            around,
+            origin: [left, top],
+            edge,
+            margin: 0,
+            centres: Vec::new(),
+        })
     }
 }
 
@@ -153,23 +165,32 @@ pub(super) struct Part<'a> {
     around: Vec<&'a Visible>,
     origin: [usize; 2],
     edge: usize,
-    /// The light of the latter at the centres of the pixels, and of those around the part.
+    /// Width of the border of pixels around the part that `centres` includes.
+    margin: usize,
+    /// The light of the latter at the centres of the pixels.
     centres: Vec<Option<Sight>>,
 }
 
 impl Part<'_> {
-    /// Prepares for [`even`](Self::even): surrounding light that is nearly uniform is evaluated once for
-    /// each pixel, not for each sample.
-    fn prepare(&mut self) {
+    /// Evaluates surrounding light at the centres of all pixels, with a border of `margin` pixels.
+    fn prepare(&mut self, margin: usize) {
         if !self.centres.is_empty() {
             return;
         }
-        let side = self.edge + 2;
-        let centre = |i: usize| {
-            let at = |axis: usize, step: usize| self.origin[axis] as f32 + step as f32 - 0.5;
-            sum(&self.around, None, &self.of.ray([at(0, i % side), at(1, i / side)]), self.of.eye)
-        };
-        self.centres = (0..side * side).map(centre).collect();
+        let side = self.edge + 2 * margin;
+        let at = |axis: usize, step: usize| self.origin[axis] as f32 + step as f32 + 0.5 - margin as f32;
+        let rays: Vec<Ray> =
+            (0..side * side).map(|i| self.of.ray([at(0, i % side), at(1, i / side)])).collect();
+        let directions: Vec<Vec3> = rays.iter().map(|ray| ray.l).collect();
+        let mut seen = vec![(Vec3::ZERO, 0.0); rays.len()];
+        self.centres = vec![None; rays.len()];
+        self.margin = margin;
+        for light in &self.around {
+            light.emitter.seen_along(&light.record, self.of.eye, &directions, &mut seen);
+            for ((known, (radiance, distance)), ray) in self.centres.iter_mut().zip(&seen).zip(&rays) {
+                *known = joined(*known, light.sight(*radiance, *distance, ray));
+            }
+        }
     }
 
     /// The visible lights at the samples of a pixel, which are given relative to it: radiance and `1 / w`.
@@ -178,12 +199,24 @@ impl Part<'_> {
         [x, y]: [usize; 2],
         samples: [[f32; 2]; S],
     ) -> [Option<(Vec3, f32)>; S] {
-        let even = if S > 1 && !self.around.is_empty() { self.even(x, y) } else { None };
+        let is_around = !self.around.is_empty();
+        if is_around {
+            // Pixels with one sample have it at their centre; the others compare with their neighbours.
+            self.prepare(usize::from(S > 1));
+        }
+        let even = if S > 1 && is_around { self.even(x, y) } else { None };
         let at = |axis: usize, place: usize| (self.origin[axis] + place) as f32;
         samples.map(|[right, down]| {
-            let ray = self.of.ray([at(0, x) + right, at(1, y) + down]);
-            let around = even.or_else(|| sum(&self.around, None, &ray, self.of.eye));
-            let sight = sum(&self.bounded, around, &ray, self.of.eye)?;
+            let ray = || self.of.ray([at(0, x) + right, at(1, y) + down]);
+            let around = match even {
+                None if S == 1 && is_around => self.centres[y * self.edge + x],
+                None if is_around => sum(&self.around, None, &ray(), self.of.eye),
+                even => even,
+            };
+            let sight = match &self.bounded[..] {
+                [] => around,
+                bounded => sum(bounded, around, &ray(), self.of.eye),
+            }?;
             Some((sight.radiance, sight.nearness))
         })
     }
@@ -192,9 +225,8 @@ impl Part<'_> {
     fn even(&mut self, x: usize, y: usize) -> Option<Sight> {
         /// Maximum relative difference.
         const EVEN: f32 = 1.0 / 64.0;
-        self.prepare();
-        let side = self.edge + 2;
-        let i = (y + 1) * side + x + 1;
+        let side = self.edge + 2 * self.margin;
+        let i = (y + self.margin) * side + x + self.margin;
         let here = self.centres[i]?;
         let is_near = |i: usize| {
             let there = self.centres[i]?;
@@ -211,14 +243,19 @@ impl Part<'_> {
 /// The light visible in a direction, combined with the known light: the nearest, or the sum of lights at
 /// infinity.
 fn sum(lights: &[&Visible], known: Option<Sight>, ray: &Ray, eye: Vec3) -> Option<Sight> {
-    lights.iter().filter_map(|light| light.seen(ray, eye)).fold(known, |known, sight| match known {
-        Some(known) if sight.nearness > known.nearness => Some(sight),
-        Some(known) if known.nearness == 0.0 => {
+    lights.iter().map(|light| light.seen(ray, eye)).fold(known, joined)
+}
+
+fn joined(known: Option<Sight>, sight: Option<Sight>) -> Option<Sight> {
+    match (known, sight) {
+        (known, None) => known,
+        (Some(known), Some(sight)) if sight.nearness > known.nearness => Some(sight),
+        (Some(known), Some(sight)) if known.nearness == 0.0 => {
             Some(Sight { radiance: known.radiance + sight.radiance, ..known })
         }
-        Some(known) => Some(known),
-        None => Some(sight),
-    })
+        (Some(known), Some(_)) => Some(known),
+        (None, sight) => sight,
+    }
 }
 
 #[cfg(test)]
